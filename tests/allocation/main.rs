@@ -12,5 +12,6 @@ mod hid;
 mod kinematics;
 mod kinova;
 mod ndi;
+mod network;
 mod tip_force;
 mod whole_loop;

@@ -1,0 +1,297 @@
+//! The other machine's clock, from four time stamps.
+//!
+//! An [`Exchange`] gives the apparent delay of one datagram there and of one back. The offset lies between the two bounds that they
+//! set, whatever the delays are: the middle is the estimate, half the round trip its bound (Mills, RFC 5905). Of every 0.2 s only the
+//! least apparent delay of each direction is kept; a straight line through the last 20 s of them, the steadier the round trip the
+//! heavier, gives offset and skew. A step of either clock moves the two apparent delays against each other and leaves the round trip as it
+//! was; a route that becomes longer does not.
+
+/// Least length of one window, s, and least number of exchanges in it; unless [`WINDOW_MAX_S`] is over.
+const WINDOW_S: f64 = 0.2;
+const WINDOW_SAMPLES: u32 = 20;
+const WINDOW_MAX_S: f64 = 1.0;
+/// Number of windows that are kept.
+const WINDOWS: usize = 100;
+/// Fewer windows do not tell a step.
+const WINDOWS_MIN: usize = 4;
+/// Least step that is told, s; half of it must be exceeded by the estimate of two windows.
+pub const STEP_MIN_S: f64 = 5e-3;
+/// A window is compared with this many before it.
+const REFERENCE: usize = 5;
+/// A step exceeds the usual deviation of a window this many times.
+const STEP_DEVIATIONS: f64 = 6.0;
+/// Usual deviation of a crystal's rate, as share, and of a window's estimate, s: what the skew is shrunk by.
+const SKEW_USUAL: f64 = 1e-4;
+const WINDOW_USUAL_S: f64 = 2e-4;
+/// A window whose round trip is longer than the least by this, s, counts half.
+const ROUND_TRIP_SCALE_S: f64 = 1e-4;
+
+/// Four time stamps, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exchange {
+    /// Our datagram was sent, by our clock.
+    pub origin_s: f64,
+    /// It arrived, by their clock.
+    pub received_s: f64,
+    /// Their datagram was sent, by their clock.
+    pub sent_s: f64,
+    /// It arrived, by our clock.
+    pub arrived_s: f64,
+}
+
+/// What is known of their clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Their clock minus ours, s.
+    pub offset_s: f64,
+    /// The offset is wrong by this at most, s: half the least round trip.
+    pub bound_s: f64,
+    /// Least round trip lately, s.
+    pub round_trip_s: f64,
+    /// How much faster their clock runs, as share.
+    pub skew: f64,
+}
+
+/// A step of either clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// When it was found, by our clock, s.
+    pub found_s: f64,
+    /// By how much their clock minus ours has changed, s.
+    pub by_s: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Window {
+    begin_s: f64,
+    last_s: f64,
+    samples: u32,
+    /// Least apparent delay from us to them, and back, s.
+    there_s: f64,
+    back_s: f64,
+}
+
+impl Window {
+    const fn starting(at_s: f64) -> Self {
+        Self { begin_s: at_s, last_s: at_s, samples: 0, there_s: f64::INFINITY, back_s: f64::INFINITY }
+    }
+
+    const fn offset_s(&self) -> f64 {
+        (self.there_s - self.back_s) / 2.0
+    }
+
+    const fn half_s(&self) -> f64 {
+        f64::midpoint(self.there_s, self.back_s)
+    }
+
+    const fn middle_s(&self) -> f64 {
+        f64::midpoint(self.begin_s, self.last_s)
+    }
+
+    fn is_full(&self) -> bool {
+        let length_s = self.last_s - self.begin_s;
+        (length_s >= WINDOW_S && self.samples >= WINDOW_SAMPLES) || length_s >= WINDOW_MAX_S
+    }
+}
+
+/// Offset at a moment, and how it changes.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    at_s: f64,
+    offset_s: f64,
+    skew: f64,
+}
+
+impl Line {
+    fn at(&self, t_s: f64) -> f64 {
+        self.offset_s + self.skew * (t_s - self.at_s)
+    }
+}
+
+/// What a window is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Verdict {
+    /// Like those before it.
+    Usual,
+    /// Unlike them; the next one tells why.
+    Suspect,
+    /// The way has become longer or shorter in one direction.
+    OtherWay,
+    /// A clock was set.
+    Step(f64),
+}
+
+/// Estimates the offset between two clocks.
+#[derive(Clone, Debug)]
+pub struct Clock {
+    windows: [Window; WINDOWS],
+    /// Number of windows that were closed since the last step.
+    closed: usize,
+    open: Option<Window>,
+    line: Option<Line>,
+    /// Least half round trip of the kept windows, s.
+    half_s: f64,
+    /// The windows from this one on are compared with the next.
+    reference_from: usize,
+    /// By what the last window deviated, offset and half round trip, s, if it looked like a step.
+    suspect: Option<(f64, f64)>,
+    step: Option<Step>,
+    steps: u32,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self {
+            windows: [Window::starting(0.0); WINDOWS],
+            closed: 0,
+            open: None,
+            line: None,
+            half_s: f64::INFINITY,
+            reference_from: 0,
+            suspect: None,
+            step: None,
+            steps: 0,
+        }
+    }
+}
+
+impl Clock {
+    /// Takes one exchange. Gives the step that it proved, if it did; the estimate is then that of the new clock.
+    pub fn add(&mut self, exchange: &Exchange) -> Option<Step> {
+        let there_s = exchange.received_s - exchange.origin_s;
+        let back_s = exchange.arrived_s - exchange.sent_s;
+        let at_s = exchange.arrived_s;
+        if !(there_s + back_s + at_s).is_finite() {
+            return None;
+        }
+        let open = self.open.get_or_insert(Window::starting(at_s));
+        open.samples += 1;
+        open.last_s = open.last_s.max(at_s);
+        open.there_s = open.there_s.min(there_s);
+        open.back_s = open.back_s.min(back_s);
+        let full = *open;
+        if !full.is_full() {
+            return None;
+        }
+        self.open = None;
+        self.close(full)
+    }
+
+    /// What is known; `None` before the first exchange.
+    pub fn estimate(&self, now_s: f64) -> Option<Estimate> {
+        let Some(line) = self.line else {
+            let open = self.open.as_ref()?;
+            let half_s = open.half_s().max(0.0);
+            return Some(Estimate {
+                offset_s: open.offset_s(),
+                bound_s: half_s,
+                round_trip_s: 2.0 * half_s,
+                skew: 0.0,
+            });
+        };
+        let half_s = self.half_s.max(0.0);
+        Some(Estimate { offset_s: line.at(now_s), bound_s: half_s, round_trip_s: 2.0 * half_s, skew: line.skew })
+    }
+
+    /// The last step, if there was one.
+    pub const fn step(&self) -> Option<Step> {
+        self.step
+    }
+
+    /// Number of steps found.
+    pub const fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    fn kept(&self) -> &[Window] {
+        &self.windows[..self.closed.min(WINDOWS)]
+    }
+
+    fn close(&mut self, window: Window) -> Option<Step> {
+        let step = match self.judge(&window) {
+            Verdict::Usual => None,
+            // Neither taken nor thrown away: the next window tells.
+            Verdict::Suspect => return None,
+            Verdict::OtherWay => {
+                self.reference_from = self.closed;
+                None
+            }
+            Verdict::Step(by_s) => {
+                let step = Step { found_s: window.last_s, by_s };
+                *self = Self { steps: self.steps + 1, step: Some(step), ..Self::default() };
+                Some(step)
+            }
+        };
+        self.windows[self.closed % WINDOWS] = window;
+        self.closed += 1;
+        self.fit(window.last_s);
+        step
+    }
+
+    /// The last windows that were taken, newest first, at most this many.
+    fn last(&self, count: usize) -> impl Iterator<Item = &Window> {
+        let count = count.min(self.closed).min(WINDOWS);
+        (1..=count).map(|back| &self.windows[(self.closed - back) % WINDOWS])
+    }
+
+    /// Compares a window with those just before it. A longer or shorter way in one direction moves the middle by as much as half the round
+    /// trip; a step leaves the round trip as it was. A window in which it happened shows something between: only two in a row that agree
+    /// are judged.
+    fn judge(&mut self, window: &Window) -> Verdict {
+        let count = REFERENCE.min(self.closed - self.reference_from);
+        if self.closed < WINDOWS_MIN || count == 0 {
+            return Verdict::Usual;
+        }
+        let mean = |of: fn(&Window) -> f64| self.last(count).map(of).sum::<f64>() / count as f64;
+        let by_s = window.offset_s() - mean(Window::offset_s);
+        let longer_s = window.half_s() - mean(Window::half_s);
+        // Few windows know their own deviation badly.
+        let deviations = STEP_DEVIATIONS * (1.0 + WINDOWS_MIN as f64 / self.closed.min(WINDOWS) as f64);
+        let before = self.suspect.take();
+        if by_s.abs() <= (STEP_MIN_S / 2.0).max(deviations * self.deviation_s()) {
+            return Verdict::Usual;
+        }
+        let agrees = |(before_s, before_longer_s): (f64, f64)| {
+            (before_s - by_s).abs().max((before_longer_s - longer_s).abs()) < 0.3 * by_s.abs()
+        };
+        if !before.is_some_and(agrees) {
+            self.suspect = Some((by_s, longer_s));
+            return Verdict::Suspect;
+        }
+        if longer_s.abs() < 0.4 * by_s.abs() { Verdict::Step(by_s) } else { Verdict::OtherWay }
+    }
+
+    /// Usual deviation of a window, s: from how much two in a row differ.
+    fn deviation_s(&self) -> f64 {
+        let differences = self.last(WINDOWS).zip(self.last(WINDOWS).skip(1));
+        let (sum_s, count) =
+            differences.fold((0.0, 0.0), |(sum, n), (a, b)| (sum + (a.offset_s() - b.offset_s()).abs(), n + 1.0));
+        1.25 / std::f64::consts::SQRT_2 * sum_s / f64::max(count, 1.0)
+    }
+
+    /// The straight line through the kept windows, with a skew that is shrunk towards none.
+    fn fit(&mut self, now_s: f64) {
+        let half_s = self.kept().iter().map(Window::half_s).fold(f64::INFINITY, f64::min);
+        self.half_s = half_s;
+        let weight = |w: &Window| 1.0 / (1.0 + ((w.half_s() - half_s) / ROUND_TRIP_SCALE_S).powi(2)).max(1.0);
+        let (mut all, mut t, mut offset) = (0.0, 0.0, 0.0);
+        for window in self.kept() {
+            let weight = weight(window);
+            all += weight;
+            t += weight * (window.middle_s() - now_s);
+            offset += weight * window.offset_s();
+        }
+        let (t, offset) = (t / all, offset / all);
+        let (mut tt, mut to) = (all * (WINDOW_USUAL_S / SKEW_USUAL).powi(2) / self.kept().len().max(1) as f64, 0.0);
+        for window in self.kept() {
+            let (weight, away_s) = (weight(window), window.middle_s() - now_s - t);
+            tt += weight * away_s * away_s;
+            to += weight * away_s * (window.offset_s() - offset);
+        }
+        self.line = Some(Line { at_s: now_s + t, offset_s: offset, skew: to / tt });
+    }
+}
+
+#[cfg(test)]
+#[path = "clock_tests.rs"]
+mod tests;

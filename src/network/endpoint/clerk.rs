@@ -1,0 +1,204 @@
+//! A thread that makes sessions, so that the loop's does not have to: key agreements and memory take time.
+//!
+//! The loop hands it the datagrams of handshakes and gets sessions; those that have ended go back to it to be freed. Neither side
+//! ever waits for the other.
+
+use std::{
+    io,
+    net::SocketAddr,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
+    },
+    thread::{Builder, JoinHandle, sleep},
+    time::{Duration, Instant},
+};
+
+use crossbeam_channel::{Receiver, Sender, bounded};
+
+use super::session::Session;
+use crate::{
+    control::Refusal,
+    secure::{Approach, Heard, Reception, Trouble},
+    socket::Socket,
+    stream::StreamSettings,
+    wire::HANDSHAKE_MAX,
+};
+
+/// Datagrams that wait for the thread; what comes on top is dropped.
+const LETTERS: usize = 64;
+/// Sessions that wait for the loop, and that wait to be freed.
+const SESSIONS: usize = 16;
+/// How often it looks for letters: while something happens, and at rest.
+const BUSY: Duration = Duration::from_millis(1);
+const REST: Duration = Duration::from_millis(10);
+/// So long it stays busy.
+const BUSY_S: f64 = 1.0;
+
+/// A datagram of a handshake.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Letter {
+    from: SocketAddr,
+    len: usize,
+    bytes: [u8; HANDSHAKE_MAX],
+}
+
+/// What the thread tells the loop.
+#[derive(Debug)]
+pub(super) enum News {
+    Opened(Box<Session>),
+    Refused(Refusal),
+}
+
+/// Counters and switches that both look at.
+#[derive(Debug, Default)]
+pub(super) struct Shared {
+    ends: AtomicBool,
+    /// A console wants a session.
+    pub(super) is_wanted: AtomicBool,
+    /// A follower admits no more consoles.
+    pub(super) is_full: AtomicBool,
+    pub(super) malformed: AtomicU64,
+    pub(super) foreign_version: AtomicU64,
+    pub(super) flooded: AtomicU64,
+    pub(super) refused: AtomicU64,
+    /// Datagrams of handshakes that were sent.
+    pub(super) sent: AtomicU64,
+}
+
+/// Which side of the handshake it takes.
+#[derive(Debug)]
+pub(super) enum Side {
+    Follower(Box<Reception>),
+    Console(Box<Approach>, SocketAddr),
+}
+
+/// The loop's end.
+#[derive(Debug)]
+pub(super) struct Clerk {
+    letters: Sender<Letter>,
+    news: Receiver<News>,
+    ended: Sender<Box<Session>>,
+    pub(super) shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Clerk {
+    pub(super) fn start(side: Side, socket: Socket, settings: StreamSettings) -> io::Result<Self> {
+        let (letters, inbox) = bounded(LETTERS);
+        let (outbox, news) = bounded(SESSIONS);
+        let (ended, rest) = bounded(SESSIONS);
+        let shared = Arc::new(Shared::default());
+        let desk = Desk {
+            side,
+            socket,
+            settings,
+            inbox,
+            outbox,
+            ended: rest,
+            shared: Arc::clone(&shared),
+            out: [0; HANDSHAKE_MAX],
+        };
+        let thread = Builder::new().name("network".into()).spawn(move || desk.work())?;
+        Ok(Self { letters, news, ended, shared, thread: Some(thread) })
+    }
+
+    /// Hands a datagram over; `false` if too many wait.
+    pub(super) fn give(&self, datagram: &[u8], from: SocketAddr) -> bool {
+        let mut letter = Letter { from, len: datagram.len(), bytes: [0; HANDSHAKE_MAX] };
+        let Some(room) = letter.bytes.get_mut(..letter.len) else { return false };
+        room.copy_from_slice(datagram);
+        self.letters.try_send(letter).is_ok()
+    }
+
+    pub(super) fn news(&self) -> Option<News> {
+        self.news.try_recv().ok()
+    }
+
+    /// Takes a session that has ended, to free it; gives it back if too many wait.
+    pub(super) fn free(&self, session: Box<Session>) -> Option<Box<Session>> {
+        self.ended.try_send(session).err().map(crossbeam_channel::TrySendError::into_inner)
+    }
+}
+
+impl Drop for Clerk {
+    fn drop(&mut self) {
+        self.shared.ends.store(true, Relaxed);
+        if let Some(thread) = self.thread.take() {
+            thread.join().ok();
+        }
+    }
+}
+
+/// The thread's end.
+struct Desk {
+    side: Side,
+    socket: Socket,
+    settings: StreamSettings,
+    inbox: Receiver<Letter>,
+    outbox: Sender<News>,
+    ended: Receiver<Box<Session>>,
+    shared: Arc<Shared>,
+    out: [u8; HANDSHAKE_MAX],
+}
+
+impl Desk {
+    fn work(mut self) {
+        let begin = Instant::now();
+        let mut busy_s = 0.0;
+        while !self.shared.ends.load(Relaxed) {
+            let now_s = begin.elapsed().as_secs_f64();
+            for _ in 0..LETTERS {
+                let Ok(letter) = self.inbox.try_recv() else { break };
+                busy_s = now_s;
+                self.answer(&letter, now_s);
+            }
+            while self.ended.try_recv().is_ok() {}
+            let is_wanted = self.shared.is_wanted.load(Relaxed);
+            if let Side::Console(approach, to) = &mut self.side
+                && is_wanted
+            {
+                let len = approach.due(now_s, &mut self.out);
+                let to = *to;
+                self.send(len, to);
+            }
+            sleep(if is_wanted || now_s - busy_s < BUSY_S { BUSY } else { REST });
+        }
+    }
+
+    fn send(&self, len: usize, to: SocketAddr) {
+        if len > 0 && self.socket.send(&self.out[..len], to) {
+            self.shared.sent.fetch_add(1, Relaxed);
+        }
+    }
+
+    fn answer(&mut self, letter: &Letter, now_s: f64) {
+        let datagram = &letter.bytes[..letter.len];
+        let heard = match &mut self.side {
+            Side::Follower(reception) => {
+                reception.is_full = self.shared.is_full.load(Relaxed);
+                reception.hear(datagram, letter.from, now_s, &mut self.out)
+            }
+            Side::Console(approach, _) => approach.hear(datagram, now_s, &mut self.out),
+        };
+        let Heard { answer, trouble, agreed } = heard;
+        if let Some(agreed) = agreed {
+            // The session is handed over before the other side learns of it.
+            let session = Box::new(Session::new(*agreed, letter.from, &self.settings));
+            self.outbox.try_send(News::Opened(session)).ok();
+        }
+        self.send(answer, letter.from);
+        let counter = match trouble {
+            None => return,
+            Some(Trouble::TheyRefuse(refusal)) => {
+                self.outbox.try_send(News::Refused(refusal)).ok();
+                return;
+            }
+            Some(Trouble::Malformed) => &self.shared.malformed,
+            Some(Trouble::ForeignVersion) => &self.shared.foreign_version,
+            Some(Trouble::Flooded) => &self.shared.flooded,
+            Some(Trouble::Refused) => &self.shared.refused,
+        };
+        counter.fetch_add(1, Relaxed);
+    }
+}

@@ -1,0 +1,98 @@
+//! What an endpoint does with a datagram that has arrived.
+
+use super::{Endpoint, RECEIVE_MAX, config::Wish, session::Session};
+use crate::{
+    control::{FromConsole, FromFollower, Standing},
+    socket::Arrival,
+    stream::Unaccepted,
+    wire::{self, DATAGRAM_MAX, Kind, Unreadable},
+};
+
+impl Endpoint {
+    pub(super) fn hear(&mut self) {
+        for _ in 0..RECEIVE_MAX {
+            let Some(arrival) = self.socket.receive(&mut self.buffer) else { return };
+            self.take(arrival);
+        }
+    }
+
+    fn take(&mut self, arrival: Arrival) {
+        let Some(datagram) = self.buffer.get(..arrival.len).filter(|datagram| datagram.len() <= DATAGRAM_MAX) else {
+            self.dropped.malformed += 1;
+            return;
+        };
+        match wire::kind(datagram) {
+            Ok(Kind::Data) => self.take_data(arrival),
+            Ok(Kind::Pairing) | Err(Unreadable::Malformed) => self.dropped.malformed += 1,
+            // The thread answers a foreign version.
+            Ok(_) | Err(Unreadable::ForeignVersion(_)) => {
+                if !self.clerk.give(datagram, arrival.from) {
+                    self.dropped.flooded += 1;
+                }
+            }
+        }
+    }
+
+    fn take_data(&mut self, arrival: Arrival) {
+        let datagram = &self.buffer[..arrival.len];
+        let number = wire::open_outer(datagram).map(|(session, ..)| session);
+        let is_it = |session: &Option<Box<Session>>| session.as_ref().is_some_and(|s| Some(s.ours) == number);
+        let Some(at) = self.sessions.iter().position(is_it) else {
+            self.dropped.unknown_session += 1;
+            return;
+        };
+        let Some(session) = self.sessions[at].as_mut() else { return };
+        let accepted = match session.stream.receive(datagram, self.now_s - arrival.age_s) {
+            Ok(accepted) => accepted,
+            Err(cause) => {
+                *match cause {
+                    Unaccepted::Forged => &mut self.dropped.forged,
+                    Unaccepted::Replayed => &mut self.dropped.replayed,
+                    Unaccepted::Old => &mut self.dropped.old,
+                    Unaccepted::Malformed => &mut self.dropped.malformed,
+                } += 1;
+                return;
+            }
+        };
+        if let Some(step) = accepted.step.filter(|_| self.active == Some(at)) {
+            self.jumped = Some((self.now_s, step.by_s));
+        }
+        if !accepted.is_newest {
+            return;
+        }
+        session.heard_s = self.now_s;
+        session.at = arrival.from;
+        if self.is_follower {
+            session.from_console = FromConsole::from_byte(accepted.control);
+            self.heard_console(at);
+        } else {
+            let before = session.from_follower.standing;
+            session.from_follower = FromFollower::from_byte(accepted.control);
+            session.is_confirmed = true;
+            if matches!(before, Standing::Waits | Standing::Free) && session.from_follower.standing == Standing::Holds {
+                session.stream.begin();
+            }
+            self.heard_follower(at);
+        }
+    }
+
+    /// What a console does with the byte of its follower.
+    fn heard_follower(&mut self, at: usize) {
+        let Some(said) = self.sessions[at].as_ref().map(|session| session.from_follower) else { return };
+        self.heard_s = Some(self.now_s);
+        if said.goodbye {
+            self.is_closed = true;
+            self.end(at);
+            return;
+        }
+        if said.asked == 0 || self.answer.is_some_and(|(number, _)| number != said.asked) {
+            self.answer = None;
+        }
+        self.wish = match self.wish {
+            _ if said.standing == Standing::Holds => Wish::None,
+            Wish::Asks if said.is_denied => Wish::Denied,
+            Wish::AsksAgain if !said.is_denied => Wish::Asks,
+            wish => wish,
+        };
+    }
+}

@@ -1,0 +1,124 @@
+//! Who holds a follower: one console at a time, and another only with its consent.
+
+use super::{Endpoint, SESSIONS};
+use crate::control::{FromFollower, Standing};
+
+/// A console asks the holder for control.
+#[derive(Clone, Copy, Debug)]
+struct Question {
+    by: usize,
+    /// 1 to 3, so that an answer to the question before is not taken for one to this.
+    number: u8,
+}
+
+/// The open question.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Holding {
+    question: Option<Question>,
+    last_number: u8,
+}
+
+impl Holding {
+    /// The session at this place has ended.
+    pub(super) fn forget(&mut self, at: usize) {
+        self.question = self.question.filter(|question| question.by != at);
+    }
+}
+
+impl Endpoint {
+    /// What this follower tells the console at this place.
+    pub(super) fn told_to(&self, at: usize) -> FromFollower {
+        let standing = match self.active {
+            Some(holder) if holder == at => Standing::Holds,
+            Some(_) => Standing::Waits,
+            None => Standing::Free,
+        };
+        let question = self.holding.question.filter(|_| standing == Standing::Holds);
+        FromFollower {
+            standing,
+            asked: question.map_or(0, |question| question.number),
+            is_denied: self.sessions[at].as_ref().is_some_and(|session| session.is_denied),
+            goodbye: false,
+        }
+    }
+
+    /// What a follower does with a datagram of the console at this place.
+    pub(super) fn heard_console(&mut self, at: usize) {
+        let Some(session) = self.sessions[at].as_mut() else { return };
+        let is_new = !session.is_confirmed;
+        session.is_confirmed = true;
+        let (peer, said) = (session.peer, session.from_console);
+        if !said.asks {
+            session.is_denied = false;
+        }
+        if said.goodbye {
+            self.is_closed |= self.active == Some(at);
+            self.end(at);
+            return;
+        }
+        if is_new {
+            self.welcome(at, &peer);
+        }
+        if self.active == Some(at) {
+            self.heard_s = Some(self.now_s);
+        }
+    }
+
+    /// A console has confirmed its session. It takes the place of an older session of the same console.
+    fn welcome(&mut self, at: usize, peer: &crate::keys::PublicKey) {
+        let mut holds = self.active.is_none();
+        for old in 0..SESSIONS {
+            let is_same = self.sessions[old].as_ref().is_some_and(|s| s.is_confirmed && s.peer == *peer);
+            if old != at && is_same {
+                holds |= self.active == Some(old);
+                self.end(old);
+            }
+        }
+        if holds {
+            self.give_to(at);
+        }
+    }
+
+    fn give_to(&mut self, at: usize) {
+        self.active = Some(at);
+        self.holding.question = None;
+        (self.is_closed, self.jumped, self.heard_s) = (false, None, Some(self.now_s));
+        if let Some(session) = self.sessions[at].as_mut() {
+            session.stream.begin();
+        }
+    }
+
+    /// Passes questions on and obeys answers.
+    pub(super) fn hand_over(&mut self) {
+        let asks = |this: &Self, at: usize| {
+            this.active != Some(at) && this.sessions[at].as_ref().is_some_and(|s| s.is_confirmed && s.from_console.asks)
+        };
+        let open = self.holding.question.filter(|question| asks(self, question.by));
+        self.holding.question = open;
+        let Some(holder) = self.active else {
+            if let Some(first) = (0..SESSIONS).find(|&at| asks(self, at)) {
+                self.give_to(first);
+            }
+            return;
+        };
+        let Some(question) = open else {
+            let waits = |&at: &usize| asks(self, at) && self.sessions[at].as_ref().is_some_and(|s| !s.is_denied);
+            if let Some(by) = (0..SESSIONS).find(waits) {
+                self.holding.last_number = self.holding.last_number % 3 + 1;
+                self.holding.question = Some(Question { by, number: self.holding.last_number });
+            }
+            return;
+        };
+        let answer = self.sessions[holder].as_ref().map(|session| session.from_console);
+        match answer.filter(|answer| answer.answers == question.number) {
+            Some(answer) if answer.consents => self.give_to(question.by),
+            Some(_) => {
+                if let Some(session) = self.sessions[question.by].as_mut() {
+                    session.is_denied = true;
+                }
+                self.holding.question = None;
+            }
+            None => {}
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! How an endpoint looks after its sessions: it takes new ones over, keeps them alive, and ends them.
+
+use std::sync::atomic::Ordering::Relaxed;
+
+use super::{
+    ALIVE_S, ALIVE_WAITING_S, CONFIRM_S, CONSOLES_MAX, Endpoint, SESSIONS, clerk::News, config::Wish, session::Session,
+};
+use crate::{
+    control::{FromConsole, FromFollower},
+    stream::Sent,
+};
+
+impl Endpoint {
+    pub(super) fn take_news(&mut self) {
+        for _ in 0..SESSIONS {
+            match self.clerk.news() {
+                Some(News::Opened(session)) => self.opened(session),
+                Some(News::Refused(refusal)) => self.refused = Some((self.now_s, refusal)),
+                None => return,
+            }
+        }
+    }
+
+    /// A session of a handshake that has ended. A console uses it from now on, a follower when it is confirmed.
+    fn opened(&mut self, mut session: Box<Session>) {
+        (session.opened_s, session.heard_s) = (self.now_s, self.now_s);
+        if !self.is_follower {
+            if let Some(old) = self.active {
+                self.end(old);
+            }
+            (self.refused, self.is_closed, self.answer) = (None, false, None);
+            if self.wish == Wish::AsksAgain {
+                self.wish = Wish::Asks;
+            }
+        }
+        let free = self.sessions.iter().position(Option::is_none);
+        let unconfirmed = |session: &Option<Box<Session>>| session.as_ref().is_some_and(|s| !s.is_confirmed);
+        match free.or_else(|| self.sessions.iter().position(unconfirmed)) {
+            Some(at) => {
+                self.end(at);
+                if self.sessions[at].is_none() {
+                    self.sessions[at] = Some(session);
+                    if !self.is_follower {
+                        self.active = Some(at);
+                    }
+                }
+            }
+            // It is freed by the thread; if that is behind, here: nothing is lost but time.
+            None => drop(self.clerk.free(session)),
+        }
+    }
+
+    /// Ends a session; its memory goes back to the thread.
+    pub(super) fn end(&mut self, at: usize) {
+        if self.active == Some(at) {
+            self.active = None;
+        }
+        self.holding.forget(at);
+        if let Some(session) = self.sessions[at].take() {
+            self.sessions[at] = self.clerk.free(session);
+        }
+    }
+
+    pub(super) fn look_after_sessions(&mut self) {
+        for at in 0..SESSIONS {
+            let Some(session) = self.sessions[at].as_ref() else { continue };
+            let silent_s = self.now_s - session.heard_s;
+            let is_over = if !self.is_follower {
+                self.active != Some(at)
+            } else if session.is_confirmed {
+                silent_s > self.forget_after_s
+            } else {
+                self.now_s - session.opened_s > CONFIRM_S
+            };
+            if is_over {
+                self.end(at);
+            }
+        }
+        if self.is_follower {
+            self.hand_over();
+            let connected = self.sessions.iter().flatten().filter(|session| session.is_confirmed).count();
+            self.clerk.shared.is_full.store(connected >= CONSOLES_MAX, Relaxed);
+        }
+    }
+
+    pub(super) fn keep_alive(&mut self) {
+        for at in 0..SESSIONS {
+            let Some(session) = self.sessions[at].as_ref() else { continue };
+            let pause_s = if self.active == Some(at) && self.carries() { ALIVE_S } else { ALIVE_WAITING_S };
+            // A follower says nothing in a session that its console has not confirmed.
+            if (session.is_confirmed || !self.is_follower) && self.now_s - session.sent_s >= pause_s {
+                self.send_to(at, self.now_s, None);
+            }
+        }
+    }
+
+    pub(super) fn send_to(&mut self, at: usize, now_s: f64, payload: Option<&[u8]>) -> Sent {
+        self.send_with(at, now_s, payload, false)
+    }
+
+    pub(super) fn send_with(&mut self, at: usize, now_s: f64, payload: Option<&[u8]>, goodbye: bool) -> Sent {
+        let control = self.control_byte(at, goodbye);
+        let Some(session) = self.sessions[at].as_mut() else { return Sent::Held };
+        let sent = session.stream.send(now_s, payload, control, &mut self.out);
+        if let Sent::Datagram(len) = sent {
+            session.sent_s = now_s;
+            if !self.socket.send(&self.out[..len], session.at) {
+                self.dropped.unsent += 1;
+            }
+        }
+        sent
+    }
+
+    fn control_byte(&self, at: usize, goodbye: bool) -> u8 {
+        if self.is_follower {
+            return FromFollower { goodbye, ..self.told_to(at) }.byte();
+        }
+        let (answers, consents) = self.answer.unwrap_or_default();
+        FromConsole { asks: self.wish == Wish::Asks, answers, consents, goodbye }.byte()
+    }
+}

@@ -1,0 +1,325 @@
+//! One end of a link: a console or a follower, on a real socket.
+//!
+//! The thread of a control loop drives it: [`Endpoint::poll`] once per tick, then [`Endpoint::send`]. Once a session is open, neither
+//! allocates, locks, logs, waits, panics or runs an unbounded loop. What takes time, the key agreements, is done by a thread of its own.
+//! Times are handed in: any clock of the caller's that does not stand still, s.
+//!
+//! A follower listens on loopback unless an address is given, and admits the machines that it is paired with. One console holds it; others may
+//! be connected and ask the holder for control.
+
+mod clerk;
+mod config;
+mod hearing;
+mod holding;
+mod keeping;
+mod session;
+
+use std::{
+    io,
+    net::{Ipv4Addr, Ipv6Addr, SocketAddr},
+    sync::atomic::Ordering::Relaxed,
+};
+
+pub use self::config::{Config, Control, LinkState, OpenError, Outcome, Role};
+use self::{
+    clerk::{Clerk, Side},
+    config::Wish,
+    holding::Holding,
+    session::Session,
+};
+use crate::{
+    control::{Cause, Refusal, Standing},
+    figures::{Dropped, Figures},
+    keys::PublicKey,
+    playout::Payload,
+    secure::{Approach, Reception},
+    socket::Socket,
+    stream::Sent,
+    wire::DATAGRAM_MAX,
+};
+
+/// Where a follower listens unless told otherwise.
+pub const PORT: u16 = 47_110;
+/// Consoles that are connected to a follower at once.
+pub const CONSOLES_MAX: usize = 6;
+/// Sessions at once: those, and some whose handshake has only just ended.
+const SESSIONS: usize = CONSOLES_MAX + 2;
+/// Datagrams that are taken from the socket in one call.
+const RECEIVE_MAX: usize = 128;
+/// Without payloads, datagrams are sent this often, s: by the holder and to it, and otherwise.
+const ALIVE_S: f64 = 0.02;
+const ALIVE_WAITING_S: f64 = 0.05;
+/// A session that the other side has not confirmed for this long is none, s.
+const CONFIRM_S: f64 = 3.0;
+/// A console that has heard nothing for this long makes a new session beside the old one, s.
+const SEEK_AFTER_S: f64 = 0.5;
+/// A jump of a clock and a refusal are told for this long, s.
+const TOLD_S: f64 = 1.0;
+const REFUSED_TOLD_S: f64 = 5.0;
+/// How often a goodbye is said: datagrams may be lost.
+const GOODBYES: usize = 3;
+
+/// One end of a link.
+#[derive(Debug)]
+pub struct Endpoint {
+    is_follower: bool,
+    silent_after_s: f64,
+    forget_after_s: f64,
+    socket: Socket,
+    clerk: Clerk,
+    sessions: [Option<Box<Session>>; SESSIONS],
+    /// The session whose payloads count: a follower's holder, a console's follower.
+    active: Option<usize>,
+    /// A follower's.
+    holding: Holding,
+    /// A console's: whether it asks for control, and what it answers to the question with a number.
+    wish: Wish,
+    answer: Option<(u8, bool)>,
+    dropped: Dropped,
+    now_s: f64,
+    /// When the active session was last heard, s; also after it has ended.
+    heard_s: Option<f64>,
+    is_closed: bool,
+    jumped: Option<(f64, f64)>,
+    refused: Option<(f64, Refusal)>,
+    buffer: [u8; 2 * DATAGRAM_MAX],
+    out: [u8; DATAGRAM_MAX],
+}
+
+impl Endpoint {
+    /// Opens the socket and starts the thread for handshakes.
+    ///
+    /// # Errors
+    /// [`OpenError`] if the address cannot be used.
+    pub fn open(config: Config) -> Result<Self, OpenError> {
+        let Config { role, keys, stream, silent_after_s, forget_after_s } = config;
+        let (at, to) = match &role {
+            Role::Follower { at, .. } => (at.unwrap_or((Ipv4Addr::LOCALHOST, PORT).into()), None),
+            Role::Console { follower, .. } => (towards(follower), Some(*follower)),
+        };
+        let address = |source| OpenError::Address { address: to.unwrap_or(at), source };
+        let socket = Socket::open(at, to).map_err(address)?;
+        let theirs = socket.try_clone().map_err(address)?;
+        let is_follower = to.is_none();
+        let side = match role {
+            Role::Follower { consoles, .. } => Side::Follower(Box::new(Reception::new(keys, consoles, 0.0)?)),
+            Role::Console { follower, key } => Side::Console(Box::new(Approach::new(keys, key)?), follower),
+        };
+        Ok(Self {
+            is_follower,
+            silent_after_s,
+            forget_after_s,
+            socket,
+            clerk: Clerk::start(side, theirs, stream).map_err(OpenError::Thread)?,
+            sessions: [const { None }; SESSIONS],
+            active: None,
+            holding: Holding::default(),
+            wish: Wish::None,
+            answer: None,
+            dropped: Dropped::default(),
+            now_s: 0.0,
+            heard_s: None,
+            is_closed: false,
+            jumped: None,
+            refused: None,
+            buffer: [0; 2 * DATAGRAM_MAX],
+            out: [0; DATAGRAM_MAX],
+        })
+    }
+
+    /// The address of its socket.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn address(&self) -> io::Result<SocketAddr> {
+        self.socket.address()
+    }
+
+    /// Takes what has arrived and sends what keeps the session alive; once per tick. Gives the payloads that are due at `now_s`.
+    pub fn poll(&mut self, now_s: f64) -> Received<'_> {
+        self.now_s = now_s;
+        self.take_news();
+        self.hear();
+        self.look_after_sessions();
+        self.keep_alive();
+        let seeks = !self.is_follower && self.session().is_none_or(|session| now_s - session.heard_s > SEEK_AFTER_S);
+        self.clerk.shared.is_wanted.store(seeks, Relaxed);
+        let carries = self.carries();
+        let session = self.active.and_then(|at| self.sessions[at].as_mut());
+        if let Some(session) = session
+            && carries
+        {
+            session.stream.advance(now_s);
+            return Received { session: Some(session), now_s };
+        }
+        Received { session: None, now_s }
+    }
+
+    /// Sends a payload to the other side. `now_s` is the time of sending, s: the time that the caller's work has taken since
+    /// [`Endpoint::poll`] would otherwise count as the network's delay.
+    pub fn send(&mut self, now_s: f64, payload: &[u8]) -> Outcome {
+        match self.active {
+            Some(at) if self.carries() => match self.send_to(at, now_s, Some(payload)) {
+                Sent::Datagram(_) => Outcome::Sent,
+                Sent::Held => Outcome::Held,
+                Sent::TooLong => Outcome::TooLong,
+            },
+            _ => Outcome::NotOpen,
+        }
+    }
+
+    /// What the link is, at the last poll.
+    pub fn state(&self) -> LinkState {
+        let silent_s = self.heard_s.map(|heard_s| self.now_s - heard_s);
+        let recent = |at_s: f64, told_s: f64| self.now_s - at_s <= told_s;
+        let Some(session) = self.session() else {
+            return match (self.refused, silent_s) {
+                (Some((at_s, refusal)), _) if recent(at_s, REFUSED_TOLD_S) => LinkState::Down(Cause::Refused(refusal)),
+                _ if self.is_closed => LinkState::Down(Cause::PeerClosed),
+                (_, Some(for_s)) => LinkState::Down(Cause::Silent { for_s }),
+                _ => LinkState::Waiting,
+            };
+        };
+        let for_s = self.now_s - session.heard_s;
+        if session.is_confirmed && for_s > self.silent_after_s {
+            // A follower that was started anew with other keys refuses while the old session is silent.
+            return match self.refused {
+                Some((at_s, refusal)) if recent(at_s, REFUSED_TOLD_S) => LinkState::Down(Cause::Refused(refusal)),
+                _ => LinkState::Down(Cause::Silent { for_s }),
+            };
+        }
+        match (self.jumped, self.standing()) {
+            (Some((at_s, by_s)), _) if recent(at_s, TOLD_S) => LinkState::Down(Cause::ClockJumped { by_s }),
+            (_, Standing::Holds) => LinkState::Open,
+            (_, Standing::Waits) => LinkState::Down(Cause::HeldByAnother),
+            (_, Standing::Free) => LinkState::Down(Cause::NotAsked),
+            (_, Standing::Unknown) => LinkState::Waiting,
+        }
+    }
+
+    /// What the session whose payloads count has measured; all zero without one.
+    pub fn figures(&self) -> Figures {
+        self.session().map_or_else(Figures::default, |session| session.stream.figures(self.now_s))
+    }
+
+    /// Datagrams that were dropped since the endpoint was opened.
+    pub fn dropped(&self) -> Dropped {
+        let (shared, own) = (&self.clerk.shared, self.dropped);
+        Dropped {
+            malformed: own.malformed + shared.malformed.load(Relaxed),
+            foreign_version: own.foreign_version + shared.foreign_version.load(Relaxed),
+            flooded: own.flooded + shared.flooded.load(Relaxed),
+            refused: own.refused + shared.refused.load(Relaxed),
+            ..own
+        }
+    }
+
+    /// Datagrams of handshakes that this end has sent.
+    pub fn handshake_datagrams(&self) -> u64 {
+        self.clerk.shared.sent.load(Relaxed)
+    }
+
+    /// The key of the other side: the follower's, or that of the console that holds this follower.
+    pub fn peer(&self) -> Option<PublicKey> {
+        self.session().map(|session| session.peer)
+    }
+
+    /// Asks for control of the follower, until it is given or refused. Nobody has to consent if nobody holds it.
+    pub fn ask_for_control(&mut self) {
+        let is_stale = self.session().is_some_and(|session| session.from_follower.is_denied);
+        self.wish = if is_stale { Wish::AsksAgain } else { Wish::Asks };
+    }
+
+    /// Does not ask any more.
+    pub const fn withdraw(&mut self) {
+        self.wish = Wish::None;
+    }
+
+    /// Answers the console that asks for control ([`Control::HoldsAsked`]); with `true` control goes to it.
+    pub fn answer(&mut self, consents: bool) {
+        let asked = self.session().map_or(0, |session| session.from_follower.asked);
+        if asked != 0 {
+            self.answer = Some((asked, consents));
+        }
+    }
+
+    /// A console's part in who holds the follower; [`Control::None`] for a follower.
+    pub fn control(&self) -> Control {
+        let Some(session) = self.session().filter(|_| !self.is_follower) else { return Control::None };
+        match session.from_follower.standing {
+            Standing::Unknown => Control::None,
+            Standing::Holds if session.from_follower.asked != 0 && self.answer.is_none() => Control::HoldsAsked,
+            Standing::Holds => Control::Holds,
+            _ => match self.wish {
+                Wish::Asks | Wish::AsksAgain => Control::Asks,
+                Wish::Denied => Control::Denied,
+                Wish::None => Control::Waits,
+            },
+        }
+    }
+
+    /// Tells the other side that the session ends. Dropping the endpoint does it too.
+    pub fn close(&mut self) {
+        for at in 0..SESSIONS {
+            if self.sessions[at].is_some() {
+                for _ in 0..GOODBYES {
+                    self.send_with(at, self.now_s, None, true);
+                }
+            }
+        }
+        self.active = None;
+        self.sessions = [const { None }; SESSIONS];
+    }
+
+    fn session(&self) -> Option<&Session> {
+        self.sessions[self.active?].as_deref()
+    }
+
+    /// What this end is to the active session.
+    fn standing(&self) -> Standing {
+        match self.session() {
+            Some(_) if self.is_follower => Standing::Holds,
+            Some(session) => session.from_follower.standing,
+            None => Standing::Unknown,
+        }
+    }
+
+    fn carries(&self) -> bool {
+        self.standing() == Standing::Holds
+    }
+}
+
+impl Drop for Endpoint {
+    fn drop(&mut self) {
+        self.close();
+    }
+}
+
+/// The address that a socket for datagrams to this one is bound to: what is on this machine is not reached through the network.
+pub(crate) fn towards(to: &SocketAddr) -> SocketAddr {
+    match to {
+        SocketAddr::V4(v4) if v4.ip().is_loopback() => (Ipv4Addr::LOCALHOST, 0).into(),
+        SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, 0).into(),
+        SocketAddr::V6(v6) if v6.ip().is_loopback() => (Ipv6Addr::LOCALHOST, 0).into(),
+        SocketAddr::V6(_) => (Ipv6Addr::UNSPECIFIED, 0).into(),
+    }
+}
+
+/// Payloads that are due, one after the other.
+#[derive(Debug)]
+pub struct Received<'a> {
+    session: Option<&'a mut Box<Session>>,
+    now_s: f64,
+}
+
+impl Received<'_> {
+    /// The next, in order; `None` when all that are due have been taken.
+    pub fn next_due(&mut self) -> Option<Payload<'_>> {
+        self.session.as_mut()?.stream.take(self.now_s)
+    }
+}
+
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+mod two_hosts_tests;

@@ -1,0 +1,384 @@
+use std::{
+    net::UdpSocket,
+    sync::atomic::AtomicBool,
+    thread::{scope, sleep},
+    time::{Duration, Instant},
+};
+
+use nima_testing::real_time::{alone, judged};
+
+use super::*;
+use crate::{
+    impairment::{Loss, Settings},
+    keys::{Keys, Peers},
+    relay::{Relay, RelaySettings},
+    wire::{self, HELLO_LEN, Kind, VERSION},
+};
+
+const HOME: (Ipv4Addr, u16) = (Ipv4Addr::LOCALHOST, 0);
+const TICK: Duration = Duration::from_millis(1);
+
+/// A follower that admits consoles with these keys.
+fn follower(keys: &Keys, consoles: &[&Keys], at: SocketAddr) -> Endpoint {
+    let mut peers = Peers::default();
+    for (i, console) in consoles.iter().enumerate() {
+        peers.add(&format!("console {i}"), console.public()).unwrap();
+    }
+    Endpoint::open(Config::new(Role::Follower { at: Some(at), consoles: peers }, keys.clone())).unwrap()
+}
+
+fn console(keys: &Keys, key: PublicKey, follower: SocketAddr) -> Endpoint {
+    Endpoint::open(Config::new(Role::Console { follower, key }, keys.clone())).unwrap()
+}
+
+/// An endpoint and what it got.
+struct End {
+    endpoint: Endpoint,
+    got: Vec<u64>,
+    ages_s: Vec<f64>,
+    sent: u64,
+    /// Added to the time that it is told, s.
+    ahead_s: f64,
+}
+
+impl End {
+    fn new(endpoint: Endpoint) -> Self {
+        Self { endpoint, got: Vec::new(), ages_s: Vec::new(), sent: 0, ahead_s: 0.0 }
+    }
+
+    fn tick(&mut self, now_s: f64) {
+        let now_s = now_s + self.ahead_s;
+        let mut received = self.endpoint.poll(now_s);
+        while let Some(payload) = received.next_due() {
+            self.got.push(u64::from_le_bytes(payload.bytes.try_into().unwrap()));
+            self.ages_s.push(payload.age_s);
+        }
+        if self.endpoint.send(now_s, &self.sent.to_le_bytes()) != Outcome::NotOpen {
+            self.sent += 1;
+        }
+    }
+}
+
+/// Real time, one tick after the other.
+struct Time {
+    begin: Instant,
+}
+
+impl Time {
+    fn start() -> Self {
+        Self { begin: Instant::now() }
+    }
+
+    fn now_s(&self) -> f64 {
+        self.begin.elapsed().as_secs_f64()
+    }
+
+    /// Ticks until `done`, for five seconds at most; whether it was done, and after how long, s.
+    fn until(&self, ends: &mut [&mut End], done: impl Fn(&[&mut End]) -> bool) -> Option<f64> {
+        let from_s = self.now_s();
+        while self.now_s() - from_s < 5.0 {
+            for end in &mut *ends {
+                end.tick(self.now_s());
+            }
+            if done(ends) {
+                return Some(self.now_s() - from_s);
+            }
+            sleep(TICK);
+        }
+        None
+    }
+
+    fn run(&self, ends: &mut [&mut End], length_s: f64) {
+        let to_s = self.now_s() + length_s;
+        self.until(ends, |_| self.now_s() >= to_s);
+    }
+}
+
+fn are_open(ends: &[&mut End]) -> bool {
+    ends.iter().all(|end| end.endpoint.state() == LinkState::Open)
+}
+
+fn keys() -> Keys {
+    Keys::random().unwrap()
+}
+
+/// A follower and its console, open.
+fn pair() -> (Time, End, End, Keys, Keys) {
+    let (theirs, ours) = (keys(), keys());
+    let mut far = End::new(follower(&theirs, &[&ours], HOME.into()));
+    let address = far.endpoint.address().unwrap();
+    let mut near = End::new(console(&ours, theirs.public(), address));
+    let time = Time::start();
+    time.until(&mut [&mut far, &mut near], are_open).expect("they find each other");
+    (time, far, near, theirs, ours)
+}
+
+#[test]
+#[ignore = "real time: ./dev test runs it beside the wires"]
+fn two_loops_exchange_payloads_at_a_thousand_per_second() {
+    let _alone = alone();
+    judged(|| {
+        let (theirs, ours) = (keys(), keys());
+        let far = follower(&theirs, &[&ours], HOME.into());
+        let near = console(&ours, theirs.public(), far.address().unwrap());
+        let begin = Instant::now();
+        let work = |endpoint: Endpoint| {
+            let mut end = End::new(endpoint);
+            let mut wake = begin;
+            while begin.elapsed() < Duration::from_secs(3) {
+                end.tick(begin.elapsed().as_secs_f64());
+                wake += TICK;
+                sleep(wake.saturating_duration_since(Instant::now()));
+            }
+            let figures = end.endpoint.figures();
+            (figures, end.endpoint.state(), end.endpoint.handshake_datagrams(), end)
+        };
+        let ends = scope(|scope| [far, near].map(|end| scope.spawn(|| work(end))).map(|thread| thread.join().unwrap()));
+        for (figures, state, handshake, end) in &ends {
+            assert_eq!((*state, *handshake), (LinkState::Open, 2), "two datagrams from each side: two round trips");
+            assert!(end.got.len() > 2600, "{}", end.got.len());
+            assert!(end.got.windows(2).all(|pair| pair[1] == pair[0] + 1), "none lost");
+            let clock = figures.clock.unwrap();
+            assert!(clock.offset_s.abs() <= clock.bound_s + 1e-4 && clock.bound_s < 1e-3, "{clock:?}");
+            assert_eq!(figures.counts.lost, 0);
+        }
+        assert!(ends.iter().all(|(.., end)| end.endpoint.dropped().total() == 0));
+    });
+}
+
+#[test]
+#[ignore = "real time: ./dev test runs it beside the wires"]
+fn who_closes_says_so() {
+    let _alone = alone();
+    judged(|| {
+        let (time, mut far, near, theirs, ours) = pair();
+        drop(near);
+        let closed = |ends: &[&mut End]| ends[0].endpoint.state() == LinkState::Down(Cause::PeerClosed);
+        assert!(time.until(&mut [&mut far], closed).expect("it is told") < 0.1);
+        let address = far.endpoint.address().unwrap();
+        let mut near = End::new(console(&ours, theirs.public(), address));
+        time.until(&mut [&mut far, &mut near], are_open).expect("and it comes back");
+        drop(far);
+        assert!(time.until(&mut [&mut near], closed).expect("it is told") < 0.1);
+    });
+}
+
+#[test]
+#[ignore = "real time: ./dev test runs it beside the wires"]
+fn silence_is_told_with_its_length_and_ends_without_a_new_session() {
+    let _alone = alone();
+    judged(|| {
+        let (time, mut far, mut near, ..) = pair();
+        let before = near.endpoint.handshake_datagrams();
+        time.run(&mut [&mut near], 0.3);
+        let LinkState::Down(Cause::Silent { for_s }) = near.endpoint.state() else {
+            panic!("{:?}", near.endpoint.state())
+        };
+        assert!((0.25..0.4).contains(&for_s), "{for_s}");
+        assert!(time.until(&mut [&mut far, &mut near], are_open).expect("open again") < 0.1);
+        assert_eq!(near.endpoint.handshake_datagrams(), before);
+    });
+}
+
+#[test]
+#[ignore = "real time: ./dev test runs it beside the wires"]
+fn a_side_that_was_started_anew_is_back_within_a_second() {
+    let _alone = alone();
+    judged(|| {
+        let (time, mut far, mut near, theirs, ours) = pair();
+        let address = far.endpoint.address().unwrap();
+        // A console that was killed says no goodbye.
+        let mut anew = End::new(console(&ours, theirs.public(), address));
+        let back_s = time.until(&mut [&mut far, &mut anew], are_open).expect("the same console");
+        assert!(back_s < 0.5, "{back_s}");
+        time.run(&mut [&mut far, &mut anew], 0.3);
+        assert!(anew.got.len() > 50 && far.endpoint.peer() == Some(ours.public()));
+        near.endpoint.active = None;
+        drop(far);
+        let mut far = End::new(follower(&theirs, &[&ours], address));
+        let back_s = time.until(&mut [&mut far, &mut anew], are_open).expect("the same follower");
+        assert!(back_s < 1.0, "{back_s}");
+    });
+}
+
+#[test]
+#[ignore = "real time: ./dev test runs it beside the wires"]
+fn one_console_holds_and_another_gets_control_only_by_consent() {
+    let _alone = alone();
+    judged(|| {
+        let (theirs, first, second) = (keys(), keys(), keys());
+        let mut far = End::new(follower(&theirs, &[&first, &second], HOME.into()));
+        let address = far.endpoint.address().unwrap();
+        let mut holder = End::new(console(&first, theirs.public(), address));
+        let time = Time::start();
+        time.until(&mut [&mut far, &mut holder], are_open).expect("the first holds it");
+        let mut other = End::new(console(&second, theirs.public(), address));
+        let all = |control: [Control; 2]| {
+            move |ends: &[&mut End]| [ends[1].endpoint.control(), ends[2].endpoint.control()] == control
+        };
+        let mut ends = [&mut far, &mut holder, &mut other];
+        time.until(&mut ends, all([Control::Holds, Control::Waits])).expect("the second is told");
+        assert_eq!(ends[2].endpoint.state(), LinkState::Down(Cause::HeldByAnother));
+        assert_eq!(ends[2].endpoint.send(time.now_s(), b"?"), Outcome::NotOpen);
+        for _ in 0..2 {
+            ends[2].endpoint.ask_for_control();
+            time.until(&mut ends, all([Control::HoldsAsked, Control::Asks])).expect("the first is asked");
+            ends[1].endpoint.answer(false);
+            time.until(&mut ends, all([Control::Holds, Control::Denied])).expect("it refuses");
+        }
+        assert_eq!(ends[0].endpoint.peer(), Some(first.public()));
+        ends[2].endpoint.ask_for_control();
+        time.until(&mut ends, all([Control::HoldsAsked, Control::Asks])).expect("asked again");
+        ends[1].endpoint.answer(true);
+        time.until(&mut ends, all([Control::Waits, Control::Holds])).expect("it consents");
+        assert_eq!(ends[0].endpoint.peer(), Some(second.public()));
+        let before = ends[2].got.len();
+        time.run(&mut ends, 0.4);
+        assert!(ends[2].got.len() > before + 50, "payloads go to the new holder");
+        assert!(ends[0].got.windows(2).filter(|pair| pair[1] < pair[0]).count() <= 1, "one change of streams");
+        // The holder goes: nobody takes over by himself.
+        ends[2].endpoint.close();
+        drop(other);
+        let mut ends = [&mut far, &mut holder];
+        let free = |ends: &[&mut End]| ends[1].endpoint.state() == LinkState::Down(Cause::NotAsked);
+        time.until(&mut ends, free).expect("told that it is free");
+        ends[1].endpoint.ask_for_control();
+        time.until(&mut ends, are_open).expect("nobody has to consent");
+    });
+}
+
+#[test]
+#[ignore = "real time: ./dev test runs it beside the wires"]
+fn a_stranger_and_another_version_are_refused() {
+    let _alone = alone();
+    judged(|| {
+        let (time, mut far, mut near, theirs, _) = pair();
+        let address = far.endpoint.address().unwrap();
+        let mut stranger = End::new(console(&keys(), theirs.public(), address));
+        let refused = |ends: &[&mut End]| ends[2].endpoint.state() == LinkState::Down(Cause::Refused(Refusal::Key));
+        time.until(&mut [&mut far, &mut near, &mut stranger], refused).expect("told why");
+        // A datagram of another version gets an answer that says so.
+        let socket = UdpSocket::bind(HOME).unwrap();
+        socket.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
+        let mut hello = [0; HELLO_LEN];
+        hello[..wire::HANDSHAKE_LEN].copy_from_slice(&wire::handshake(Kind::Hello, 5));
+        hello[0] = VERSION + 1;
+        socket.send_to(&hello, address).unwrap();
+        time.run(&mut [&mut far, &mut near], 0.1);
+        let mut answer = [0; 100];
+        let len = socket.recv(&mut answer).unwrap();
+        assert_eq!(
+            (wire::kind(&answer[..len]), &answer[wire::HANDSHAKE_LEN..len]),
+            (Ok(Kind::Refusal), &[1, VERSION][..])
+        );
+        let dropped = far.endpoint.dropped();
+        assert!(dropped.foreign_version == 1 && dropped.refused > 0, "{dropped:?}");
+        assert!(are_open(&[&mut far, &mut near]));
+    });
+}
+
+#[test]
+#[ignore = "real time: ./dev test runs it beside the wires"]
+fn a_clock_that_jumps_is_named() {
+    let _alone = alone();
+    judged(|| {
+        let (time, mut far, mut near, ..) = pair();
+        time.run(&mut [&mut far, &mut near], 2.0);
+        near.ahead_s += 0.05;
+        let named = |ends: &[&mut End]| {
+            ends.iter().all(|end| matches!(end.endpoint.state(), LinkState::Down(Cause::ClockJumped { .. })))
+        };
+        let after_s = time.until(&mut [&mut far, &mut near], named).expect("named by both");
+        assert!(after_s < 1.0, "{after_s}");
+        let LinkState::Down(Cause::ClockJumped { by_s }) = near.endpoint.state() else { panic!() };
+        assert!((by_s + 0.05).abs() < 2e-3, "their clock minus ours: {by_s}");
+        time.until(&mut [&mut far, &mut near], are_open).expect("and then all is well");
+    });
+}
+
+#[test]
+#[ignore = "real time: ./dev test runs it beside the wires"]
+fn a_flood_of_handshakes_and_noise_does_not_stop_the_stream() {
+    let _alone = alone();
+    judged(|| {
+        let (time, mut far, mut near, ..) = pair();
+        let address = far.endpoint.address().unwrap();
+        let ends = AtomicBool::new(false);
+        let sent = scope(|scope| {
+            let flood = scope.spawn(|| {
+                let sockets: Vec<UdpSocket> = (0..16).map(|_| UdpSocket::bind(HOME).unwrap()).collect();
+                let mut rng = fastrand::Rng::with_seed(1);
+                let mut sent = 0_u64;
+                while !ends.load(Relaxed) {
+                    // 20 000 per second.
+                    for _ in 0..20 {
+                        let mut datagram = [0; HELLO_LEN];
+                        let kind = if rng.bool() { Kind::Hello } else { Kind::Initiation };
+                        datagram[..wire::HANDSHAKE_LEN].copy_from_slice(&wire::handshake(kind, rng.u64(..)));
+                        if rng.u32(..4) == 0 {
+                            datagram[..wire::OUTER_LEN].copy_from_slice(&wire::outer(rng.u32(..), rng.u64(..)));
+                        }
+                        sent += u64::from(sockets[rng.usize(..16)].send_to(&datagram, address).is_ok());
+                    }
+                    sleep(TICK);
+                }
+                sent
+            });
+            time.run(&mut [&mut far, &mut near], 1.5);
+            ends.store(true, Relaxed);
+            flood.join().unwrap()
+        });
+        time.run(&mut [&mut far, &mut near], 0.2);
+        assert!(are_open(&[&mut far, &mut near]));
+        let (dropped, figures) = (far.endpoint.dropped(), far.endpoint.figures());
+        assert!(
+            dropped.flooded + dropped.refused > sent / 4 && dropped.unknown_session > sent / 8,
+            "{dropped:?} of {sent}"
+        );
+        assert!(figures.counts.lost < 20 && figures.counts.delivered > 800, "{:?}", figures.counts);
+        assert_eq!(far.endpoint.sessions.iter().flatten().count(), 1, "no state");
+    });
+}
+
+#[test]
+#[ignore = "real time: ./dev test runs it beside the wires"]
+fn a_relay_makes_the_line_bad_and_repeated_datagrams_are_dropped() {
+    let _alone = alone();
+    judged(|| {
+        let (theirs, ours) = (keys(), keys());
+        let mut far = End::new(follower(&theirs, &[&ours], HOME.into()));
+        let to = far.endpoint.address().unwrap();
+        let line =
+            Settings { delay_s: 0.02, loss: Loss::Independent { share: 0.05 }, duplicate: 0.2, ..Settings::default() };
+        let there = Settings { delay_s: 0.03, ..line };
+        let relay = Relay::start(RelaySettings { at: HOME.into(), to, there, back: line, seed: 3 }).unwrap();
+        let mut near = End::new(console(&ours, theirs.public(), relay.address()));
+        let time = Time::start();
+        let mut ends = [&mut far, &mut near];
+        let after_s = time.until(&mut ends, are_open).expect("through the relay");
+        assert!(after_s > 0.1, "two round trips of 50 ms: {after_s}");
+        time.run(&mut ends, 2.5);
+        for end in ends {
+            let figures = end.endpoint.figures();
+            let round_trip_s = figures.clock.unwrap().round_trip_s;
+            assert!((0.05..0.056).contains(&round_trip_s), "{round_trip_s}");
+            assert!((0.02..0.12).contains(&figures.loss), "{}", figures.loss);
+            assert!(end.endpoint.dropped().replayed > 100, "{:?}", end.endpoint.dropped());
+            assert!(end.got.windows(2).all(|pair| pair[0] < pair[1]), "each once, in order");
+            assert!(figures.counts.lost * 100 < figures.counts.delivered, "{:?}", figures.counts);
+        }
+        let totals = relay.totals();
+        assert!(totals.there > 1500 && totals.there_lost * 8 < totals.there && totals.there_lost > 20, "{totals:?}");
+    });
+}
+
+#[test]
+fn a_follower_listens_on_loopback_unless_told_otherwise() {
+    let _alone = alone();
+    let role = Role::Follower { at: None, consoles: Peers::default() };
+    let Ok(endpoint) = Endpoint::open(Config::new(role.clone(), keys())) else { return };
+    assert_eq!(endpoint.address().unwrap(), (Ipv4Addr::LOCALHOST, PORT).into());
+    let taken = Endpoint::open(Config::new(role, keys())).unwrap_err();
+    assert!(taken.to_string().contains("127.0.0.1:47110"), "{taken}");
+    assert_eq!(endpoint.state(), LinkState::Waiting);
+}

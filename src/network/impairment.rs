@@ -1,0 +1,322 @@
+//! A line that is bad on purpose, and always in the same way: delay, jitter, loss, reordering, duplicates, a limited rate, outages.
+//!
+//! [`Impairment`] decides when each datagram arrives, on any clock; [`Line`] also holds the datagrams. A study feeds it virtual time, a
+//! [`crate::relay`] the real one. Both directions of a link have a line of their own, so that they can differ.
+
+use std::{cmp::Reverse, collections::BinaryHeap};
+
+use nima_core::noise::Noise;
+use serde::{Deserialize, Serialize};
+
+/// How much longer than the delay a datagram takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Jitter {
+    /// No longer.
+    #[default]
+    None,
+    /// By the absolute value of a normal number with this standard deviation.
+    Normal {
+        /// Standard deviation, s.
+        deviation_s: f64,
+    },
+    /// By a Pareto (Lomax) number: rarely by very much.
+    Pareto {
+        /// Mean, s.
+        mean_s: f64,
+        /// Shape, above 1: the smaller, the longer the tail. 3 is usual.
+        shape: f64,
+    },
+}
+
+/// Which datagrams are lost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Loss {
+    /// None.
+    #[default]
+    None,
+    /// Each with this probability, whatever happened to others.
+    Independent {
+        /// Share lost.
+        share: f64,
+    },
+    /// In bursts: while the line is bad all are lost, while it is good none (E. N. Gilbert, 1960; E. O. Elliott, 1963).
+    Bursts {
+        /// Share lost in the long run.
+        share: f64,
+        /// Mean length of a burst, s.
+        burst_s: f64,
+    },
+}
+
+/// The line is down again and again.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Flap {
+    /// For so long, s.
+    pub down_s: f64,
+    /// Once in so long, s; at its end.
+    pub every_s: f64,
+}
+
+/// The published profile of outages: 3.2 s on, 0.8 s off.
+pub const OUTAGES: Flap = Flap { down_s: 0.8, every_s: 4.0 };
+
+/// What is wrong with one direction of a line. The default is a perfect line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Settings {
+    /// Least delay, s.
+    pub delay_s: f64,
+    /// What comes on top.
+    pub jitter: Jitter,
+    /// Datagrams may overtake each other by their jitter; otherwise a late one holds up those behind it, as in a queue.
+    pub overtakes: bool,
+    /// Which are lost.
+    pub loss: Loss,
+    /// This share is held back by `reorder_s` more, and overtaken meanwhile.
+    pub reorder: f64,
+    /// See `reorder`, s.
+    pub reorder_s: f64,
+    /// This share comes twice.
+    pub duplicate: f64,
+    /// Most that passes, bit/s; what waits longer than `queue_s` is lost. 0 for no limit.
+    pub rate_bit_s: f64,
+    /// See `rate_bit_s`, s.
+    pub queue_s: f64,
+    /// Times without a connection.
+    pub flap: Option<Flap>,
+}
+
+impl Settings {
+    /// What cannot be, in one sentence.
+    ///
+    /// # Errors
+    /// The sentence, with key, value and what is allowed.
+    pub fn check(&self) -> Result<(), String> {
+        let share = |name: &str, value: f64| {
+            if (0.0..=1.0).contains(&value) {
+                Ok(())
+            } else {
+                Err(format!("{name} = {value}: a share is between 0 and 1"))
+            }
+        };
+        let time = |name: &str, value: f64| {
+            let allowed = (0.0..=60.0).contains(&value);
+            if allowed { Ok(()) } else { Err(format!("{name} = {value}: it is between 0 and 60 s")) }
+        };
+        time("delay_s", self.delay_s)?;
+        time("reorder_s", self.reorder_s)?;
+        time("queue_s", self.queue_s)?;
+        share("reorder", self.reorder)?;
+        share("duplicate", self.duplicate)?;
+        match self.jitter {
+            Jitter::None => {}
+            Jitter::Normal { deviation_s } => time("deviation_s", deviation_s)?,
+            Jitter::Pareto { mean_s, shape } => {
+                time("mean_s", mean_s)?;
+                if !(shape > 1.0 && shape <= 100.0) {
+                    return Err(format!("shape = {shape}: it is above 1, and 100 at most"));
+                }
+            }
+        }
+        match self.loss {
+            Loss::None => {}
+            Loss::Independent { share: lost } => share("share", lost)?,
+            Loss::Bursts { share: lost, burst_s } => {
+                share("share", lost)?;
+                time("burst_s", burst_s)?;
+            }
+        }
+        if let Some(Flap { down_s, every_s }) = self.flap {
+            time("down_s", down_s)?;
+            time("every_s", every_s)?;
+            if down_s >= every_s {
+                return Err(format!("down_s = {down_s}: it is shorter than every_s = {every_s}"));
+            }
+        }
+        if !(self.rate_bit_s >= 0.0 && self.rate_bit_s.is_finite()) {
+            return Err(format!("rate_bit_s = {}: it is 0 (no limit) or above", self.rate_bit_s));
+        }
+        Ok(())
+    }
+}
+
+/// When a datagram arrives, s: not at all, once, or twice.
+pub type Fate = [Option<f64>; 2];
+
+/// Decides what happens to datagrams.
+#[derive(Clone, Debug)]
+pub struct Impairment {
+    settings: Settings,
+    noise: Noise,
+    /// The line is bad until or good until, s.
+    is_bad: bool,
+    until_s: f64,
+    /// The last datagram that keeps its place in the queue arrives then, s.
+    last_s: f64,
+    /// The rate's limit is busy until, s.
+    busy_s: f64,
+}
+
+impl Impairment {
+    /// The same seed gives the same fates.
+    pub fn new(settings: Settings, seed: u64) -> Self {
+        let noise = Noise::new(seed);
+        Self {
+            settings,
+            noise,
+            is_bad: false,
+            until_s: f64::NEG_INFINITY,
+            last_s: f64::NEG_INFINITY,
+            busy_s: f64::NEG_INFINITY,
+        }
+    }
+
+    /// What happens to a datagram of this length (bytes, with all headers) that is sent at `now_s`; times must not go back.
+    pub fn pass(&mut self, now_s: f64, len: usize) -> Fate {
+        let Settings { flap, duplicate, reorder, reorder_s, delay_s, overtakes, .. } = self.settings;
+        // Every datagram draws the same numbers, whatever happens to it.
+        let (lost, twice, held) = (self.noise.uniform(), self.noise.uniform(), self.noise.uniform());
+        let jitter_s = self.jitter_s();
+        let is_down = flap.is_some_and(|flap| now_s.rem_euclid(flap.every_s) >= flap.every_s - flap.down_s);
+        if self.is_lost(now_s, lost) || is_down {
+            return [None, None];
+        }
+        let Some(sent_s) = self.through_limit(now_s, len) else { return [None, None] };
+        let mut due_s = sent_s + delay_s + jitter_s;
+        if held < reorder {
+            due_s += reorder_s;
+        } else if !overtakes {
+            due_s = due_s.max(self.last_s);
+            self.last_s = due_s;
+        }
+        [Some(due_s), (twice < duplicate).then_some(due_s)]
+    }
+
+    fn jitter_s(&mut self) -> f64 {
+        match self.settings.jitter {
+            Jitter::None => 0.0,
+            Jitter::Normal { deviation_s } => self.noise.gaussian().abs() * deviation_s,
+            Jitter::Pareto { mean_s, shape } => {
+                let tail = libm::pow(1.0 - self.noise.uniform(), -1.0 / shape) - 1.0;
+                tail * mean_s * (shape - 1.0)
+            }
+        }
+    }
+
+    fn is_lost(&mut self, now_s: f64, chance: f64) -> bool {
+        match self.settings.loss {
+            Loss::None => false,
+            Loss::Independent { share } => chance < share,
+            Loss::Bursts { share, burst_s } => {
+                if share <= 0.0 || burst_s <= 0.0 {
+                    return false;
+                }
+                if self.until_s == f64::NEG_INFINITY {
+                    (self.is_bad, self.until_s) = (chance < share, now_s);
+                } else if self.until_s > now_s {
+                    return self.is_bad;
+                } else {
+                    self.is_bad = !self.is_bad;
+                }
+                let good_s = burst_s * (1.0 / share - 1.0);
+                // A few changes at most: each lasts as long as the mean of its kind.
+                for _ in 0..1000 {
+                    let mean_s = if self.is_bad { burst_s } else { good_s };
+                    self.until_s += -mean_s * libm::log(1.0 - self.noise.uniform());
+                    if self.until_s > now_s {
+                        return self.is_bad;
+                    }
+                    self.is_bad = !self.is_bad;
+                }
+                self.until_s = now_s;
+                self.is_bad
+            }
+        }
+    }
+
+    /// When it has passed the limit of the rate; `None` if it would wait too long.
+    fn through_limit(&mut self, now_s: f64, len: usize) -> Option<f64> {
+        if self.settings.rate_bit_s <= 0.0 {
+            return Some(now_s);
+        }
+        let begin_s = self.busy_s.max(now_s);
+        if begin_s - now_s > self.settings.queue_s {
+            return None;
+        }
+        self.busy_s = begin_s + len as f64 * 8.0 / self.settings.rate_bit_s;
+        Some(self.busy_s)
+    }
+}
+
+/// A datagram under way.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct UnderWay {
+    /// ns, so that it can be ordered.
+    due_ns: i64,
+    /// In the order of sending where they are due at once.
+    number: u64,
+    bytes: Vec<u8>,
+}
+
+/// One direction of a bad line, with the datagrams under way.
+#[derive(Debug)]
+pub struct Line {
+    impairment: Impairment,
+    under_way: BinaryHeap<Reverse<UnderWay>>,
+    number: u64,
+    /// Datagrams given to it, and those that it lost.
+    sent: u64,
+    lost: u64,
+    /// Added to the length of each for the limit of the rate, bytes.
+    headers: usize,
+}
+
+/// Datagrams under way at most; more are lost.
+const UNDER_WAY_MAX: usize = 1 << 17;
+
+impl Line {
+    /// The same seed gives the same line.
+    pub fn new(settings: Settings, seed: u64) -> Self {
+        let impairment = Impairment::new(settings, seed);
+        Self { impairment, under_way: BinaryHeap::new(), number: 0, sent: 0, lost: 0, headers: crate::wire::UDP_LEN }
+    }
+
+    /// Sends a datagram.
+    pub fn send(&mut self, now_s: f64, bytes: &[u8]) {
+        let fate = self.impairment.pass(now_s, bytes.len() + self.headers);
+        self.sent += 1;
+        let has_room = self.under_way.len() < UNDER_WAY_MAX;
+        self.lost += u64::from(fate == [None, None] || !has_room);
+        for due_s in fate.into_iter().flatten().filter(|_| has_room) {
+            self.number += 1;
+            let due_ns = (due_s * 1e9).round() as i64;
+            self.under_way.push(Reverse(UnderWay { due_ns, number: self.number, bytes: bytes.into() }));
+        }
+    }
+
+    /// The next datagram that has arrived by `now_s`, and when it did, s.
+    pub fn receive(&mut self, now_s: f64) -> Option<(f64, Vec<u8>)> {
+        let due_s = self.due_s()?;
+        if due_s > now_s {
+            return None;
+        }
+        self.under_way.pop().map(|Reverse(datagram)| (due_s, datagram.bytes))
+    }
+
+    /// When the next one arrives, s.
+    pub fn due_s(&self) -> Option<f64> {
+        self.under_way.peek().map(|Reverse(next)| next.due_ns as f64 * 1e-9)
+    }
+
+    /// Datagrams given to it, and those that it lost.
+    pub const fn totals(&self) -> (u64, u64) {
+        (self.sent, self.lost)
+    }
+}
+
+#[cfg(test)]
+#[path = "impairment_tests.rs"]
+mod tests;

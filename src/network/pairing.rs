@@ -1,0 +1,330 @@
+//! Pairing: two machines learn each other's key, and two people see by a code that nobody stands between them.
+//!
+//! Each machine contributes its key and a secret that is used once. The console first sends a hash of its own (a commitment), then sees the
+//! follower's, then shows its own: who stands between them would have to guess before he knows what the code depends on, one chance in a
+//! million. Both screens show the code, made of both keys and both secrets, and each person enters the code of the other screen. A wrong
+//! one is a refusal, and after three of them a machine pairs with nobody for a minute. (Commitment and comparison as in ZRTP, RFC 6189, 4.)
+//!
+//! It is no part of a loop: [`ask`] and [`offer`] wait, on a thread of the caller's, while a person has pressed a button on both machines.
+
+use std::{
+    fmt, io,
+    net::SocketAddr,
+    sync::atomic::{AtomicBool, Ordering::Relaxed},
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+use blake2::{Blake2s256, Digest as _};
+
+use crate::{
+    endpoint::towards,
+    keys::{KeyError, Keys, PublicKey},
+    socket::Socket,
+    wire::{self, HANDSHAKE_LEN, Kind},
+};
+
+/// Wrong codes before a pause, and its length.
+pub const WRONG_MAX: usize = 3;
+/// See [`WRONG_MAX`].
+pub const PAUSE: Duration = Duration::from_mins(1);
+/// Digits of a code.
+const DIGITS: u32 = 6;
+/// A question is asked again after this.
+const AGAIN: Duration = Duration::from_millis(200);
+const NAP: Duration = Duration::from_millis(5);
+/// So long the last answer is repeated for a question that comes again: it may have been lost.
+const REPEATS: Duration = Duration::from_secs(1);
+/// Commitments that a follower answers in one pairing; more are somebody who tries.
+const TRIES_MAX: usize = 8;
+
+/// Steps, in the first byte after the number of the pairing.
+const COMMIT: u8 = 1;
+const ANSWER: u8 = 2;
+const REVEAL: u8 = 3;
+const DONE: u8 = 4;
+
+/// Each datagram of a pairing is as long as the longest: no answer is longer than its question.
+const LEN: usize = HANDSHAKE_LEN + 1 + 64;
+
+/// Why no pairing was made.
+#[derive(Debug, thiserror::Error)]
+pub enum PairingError {
+    /// The address cannot be used.
+    #[error("pairing: cannot use {address}: {source}")]
+    Address {
+        /// The address.
+        address: SocketAddr,
+        /// Why.
+        source: io::Error,
+    },
+    /// Nobody answered in time, or it was called off.
+    #[error("pairing: nobody answered; begin it on both machines, and look at the address and the firewall")]
+    Nobody,
+    /// What came does not fit to what was promised before: somebody stands between the machines.
+    #[error("pairing: the other side contradicts itself; somebody may stand between the two machines")]
+    Contradiction,
+    /// The code that was entered is another one.
+    #[error(
+        "pairing: the codes differ; nothing was kept. If nobody mistyped it, somebody stands between the two machines"
+    )]
+    WrongCode,
+    /// Too many wrong codes.
+    #[error("pairing: too many wrong codes; wait {wait_s:.0} s")]
+    TooMany {
+        /// How long, s.
+        wait_s: f64,
+    },
+    /// The system gives no random numbers.
+    #[error(transparent)]
+    Keys(#[from] KeyError),
+}
+
+/// What both screens show: six digits.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Code(u32);
+
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:03} {:03}", self.0 / 1000, self.0 % 1000)
+    }
+}
+
+impl fmt::Debug for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+/// Counts wrong codes of this machine.
+#[derive(Debug, Default)]
+pub struct Attempts {
+    wrong: Vec<Instant>,
+}
+
+impl Attempts {
+    /// Whether another pairing may be begun.
+    ///
+    /// # Errors
+    /// [`PairingError::TooMany`] with the time to wait.
+    pub fn may_begin(&mut self, now: Instant) -> Result<(), PairingError> {
+        self.wrong.retain(|&at| now.saturating_duration_since(at) < PAUSE);
+        match self.wrong.first() {
+            Some(&first) if self.wrong.len() >= WRONG_MAX => {
+                let wait = PAUSE.saturating_sub(now.saturating_duration_since(first));
+                Err(PairingError::TooMany { wait_s: wait.as_secs_f64() })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A pairing that waits for the code of the other screen.
+#[derive(Debug)]
+pub struct Pending {
+    code: Code,
+    peer: PublicKey,
+}
+
+impl Pending {
+    /// The code to show.
+    pub const fn code(&self) -> Code {
+        self.code
+    }
+
+    /// The other machine's key, if `entered` is the code; spaces do not count.
+    ///
+    /// # Errors
+    /// [`PairingError::WrongCode`], which is counted.
+    pub fn confirm(self, entered: &str, attempts: &mut Attempts) -> Result<PublicKey, PairingError> {
+        let digits: String = entered.chars().filter(|c| !c.is_whitespace() && *c != '-').collect();
+        let is_whole = digits.len() == DIGITS as usize && digits.bytes().all(|digit| digit.is_ascii_digit());
+        if is_whole && digits.parse() == Ok(self.code.0) {
+            return Ok(self.peer);
+        }
+        attempts.wrong.push(Instant::now());
+        Err(PairingError::WrongCode)
+    }
+}
+
+/// A machine's part: its key and its secret.
+#[derive(Clone, Copy)]
+struct Part {
+    key: PublicKey,
+    secret: [u8; 32],
+}
+
+impl Part {
+    fn new(keys: &Keys) -> Result<Self, KeyError> {
+        let mut secret = [0; 32];
+        getrandom::fill(&mut secret).map_err(|_| KeyError::Random)?;
+        Ok(Self { key: keys.public(), secret })
+    }
+
+    fn bytes(&self) -> [u8; 64] {
+        let mut bytes = [0; 64];
+        bytes[..32].copy_from_slice(self.key.bytes());
+        bytes[32..].copy_from_slice(&self.secret);
+        bytes
+    }
+
+    fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        let (key, secret) = bytes.split_first_chunk()?;
+        Some(Self { key: PublicKey::new(*key), secret: secret.try_into().ok()? })
+    }
+
+    fn commitment(&self) -> [u8; 32] {
+        hash(&[b"nima pairing 1 commitment", &self.bytes()])
+    }
+}
+
+fn hash(parts: &[&[u8]]) -> [u8; 32] {
+    let mut hash = Blake2s256::new();
+    for part in parts {
+        hash.update(part);
+    }
+    hash.finalize().into()
+}
+
+fn code(console: &Part, follower: &Part) -> Code {
+    let [a, b, c, d, e, f, g, h, ..] = hash(&[b"nima pairing 1 code", &console.bytes(), &follower.bytes()]);
+    Code((u64::from_le_bytes([a, b, c, d, e, f, g, h]) % 10_u64.pow(DIGITS)) as u32)
+}
+
+fn datagram(token: u64, step: u8, content: &[u8]) -> [u8; LEN] {
+    let mut bytes = [0; LEN];
+    bytes[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(Kind::Pairing, token));
+    bytes[HANDSHAKE_LEN] = step;
+    for (byte, &value) in bytes[HANDSHAKE_LEN + 1..].iter_mut().zip(content) {
+        *byte = value;
+    }
+    bytes
+}
+
+/// Number, step and content of a datagram of a pairing.
+fn read(bytes: &[u8]) -> Option<(u64, u8, &[u8])> {
+    let is_pairing = bytes.len() == LEN && wire::kind(bytes) == Ok(Kind::Pairing);
+    let (step, content) = bytes.get(HANDSHAKE_LEN..)?.split_first()?;
+    Some((wire::token(bytes)?, *step, content)).filter(|_| is_pairing)
+}
+
+fn next(socket: &Socket, buffer: &mut [u8; 2 * LEN]) -> Option<(usize, SocketAddr)> {
+    let arrival = socket.receive(buffer)?;
+    Some((arrival.len.min(buffer.len()), arrival.from))
+}
+
+/// The console's side: asks the follower at this address, for as long as `wait`, until `called_off`.
+///
+/// # Errors
+/// [`PairingError`] if nobody answers, or too many wrong codes were entered before.
+pub fn ask(
+    follower: SocketAddr,
+    keys: &Keys,
+    attempts: &mut Attempts,
+    wait: Duration,
+    called_off: &AtomicBool,
+) -> Result<Pending, PairingError> {
+    let begin = Instant::now();
+    attempts.may_begin(begin)?;
+    let address = |source| PairingError::Address { address: follower, source };
+    let socket = Socket::open(towards(&follower), Some(follower)).map_err(address)?;
+    let own = Part::new(keys)?;
+    let mut token = [0; 8];
+    getrandom::fill(&mut token).map_err(|_| KeyError::Random)?;
+    let token = u64::from_le_bytes(token);
+    let mut question = datagram(token, COMMIT, &own.commitment());
+    let mut theirs: Option<Part> = None;
+    let (mut asked, mut buffer) = (None, [0; 2 * LEN]);
+    while begin.elapsed() < wait && !called_off.load(Relaxed) {
+        if asked.is_none_or(|at: Instant| at.elapsed() >= AGAIN) {
+            socket.send(&question, follower);
+            asked = Some(Instant::now());
+        }
+        let Some((len, _)) = next(&socket, &mut buffer) else {
+            sleep(NAP);
+            continue;
+        };
+        match (read(&buffer[..len]).filter(|(number, ..)| *number == token), theirs) {
+            (Some((_, ANSWER, content)), None) => {
+                theirs = Part::from_bytes(content);
+                question = datagram(token, REVEAL, &own.bytes());
+                asked = None;
+            }
+            // Another answer than before.
+            (Some((_, ANSWER, content)), Some(theirs)) if content != theirs.bytes() => {
+                return Err(PairingError::Contradiction);
+            }
+            (Some((_, DONE, _)), Some(theirs)) => return Ok(Pending { code: code(&own, &theirs), peer: theirs.key }),
+            _ => {}
+        }
+    }
+    Err(PairingError::Nobody)
+}
+
+/// The follower's side: listens at this address, for as long as `wait`, until `called_off`. The first console that shows what it promised
+/// is the one; nobody else is heard then.
+///
+/// # Errors
+/// [`PairingError`] if nobody asks, or too many wrong codes were entered before.
+pub fn offer(
+    at: SocketAddr,
+    keys: &Keys,
+    attempts: &mut Attempts,
+    wait: Duration,
+    called_off: &AtomicBool,
+) -> Result<Pending, PairingError> {
+    let begin = Instant::now();
+    attempts.may_begin(begin)?;
+    let socket = Socket::open(at, None).map_err(|source| PairingError::Address { address: at, source })?;
+    let mut buffer = [0; 2 * LEN];
+    // Of each console: where it is, its number, what it promised, and our part, which is another one for each.
+    let mut asked: Vec<(SocketAddr, u64, [u8; 32], Part)> = Vec::new();
+    while begin.elapsed() < wait && !called_off.load(Relaxed) {
+        let Some((len, from)) = next(&socket, &mut buffer) else {
+            sleep(NAP);
+            continue;
+        };
+        let Some((token, step, content)) = read(&buffer[..len]) else { continue };
+        let known = asked.iter().find(|(address, number, ..)| (*address, *number) == (from, token));
+        match (step, known) {
+            (COMMIT, Some((.., own))) => {
+                socket.send(&datagram(token, ANSWER, &own.bytes()), from);
+            }
+            (COMMIT, None) if asked.len() < TRIES_MAX => {
+                let own = Part::new(keys)?;
+                let Some(&promised) = content.first_chunk() else { continue };
+                asked.push((from, token, promised, own));
+                socket.send(&datagram(token, ANSWER, &own.bytes()), from);
+            }
+            (REVEAL, Some((.., promised, own))) => {
+                let Some(console) = Part::from_bytes(content) else { continue };
+                if console.commitment() != *promised {
+                    return Err(PairingError::Contradiction);
+                }
+                repeat(&socket, &datagram(token, DONE, &[]), token, from);
+                return Ok(Pending { code: code(&console, own), peer: console.key });
+            }
+            _ => {}
+        }
+    }
+    Err(PairingError::Nobody)
+}
+
+/// Sends the last answer, and again for each question that shows that it was lost.
+fn repeat(socket: &Socket, answer: &[u8; LEN], token: u64, to: SocketAddr) {
+    let (begin, mut buffer) = (Instant::now(), [0; 2 * LEN]);
+    socket.send(answer, to);
+    while begin.elapsed() < REPEATS {
+        match next(socket, &mut buffer) {
+            Some((len, from)) if from == to && read(&buffer[..len]).is_some_and(|(number, ..)| number == token) => {
+                socket.send(answer, to);
+            }
+            Some(_) => {}
+            None => sleep(NAP),
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "pairing_tests.rs"]
+mod tests;

@@ -1,0 +1,109 @@
+use std::{net::Ipv4Addr, net::UdpSocket, thread::scope};
+
+use super::*;
+use crate::{
+    impairment::{Loss, Settings},
+    relay::{Relay, RelaySettings},
+};
+
+const WAIT: Duration = Duration::from_secs(10);
+
+/// A port that was free a moment ago.
+fn free_address() -> SocketAddr {
+    UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap()
+}
+
+/// Both sides over this address of the follower, which the console reaches at another.
+fn both(console: &Keys, follower: &Keys, at: SocketAddr, reached: SocketAddr) -> [Result<Pending, PairingError>; 2] {
+    let stop = AtomicBool::new(false);
+    scope(|scope| {
+        let theirs = scope.spawn(|| offer(at, follower, &mut Attempts::default(), WAIT, &stop));
+        let ours = ask(reached, console, &mut Attempts::default(), WAIT, &stop);
+        [ours, theirs.join().unwrap()]
+    })
+}
+
+#[test]
+fn both_screens_show_the_same_code_and_the_right_one_gives_the_keys() {
+    let (console, follower) = (Keys::random().unwrap(), Keys::random().unwrap());
+    let mut codes = Vec::new();
+    for _ in 0..2 {
+        let at = free_address();
+        let [ours, theirs] = both(&console, &follower, at, at).map(Result::unwrap);
+        assert_eq!(ours.code(), theirs.code());
+        let (shown, mut attempts) = (ours.code().to_string(), Attempts::default());
+        assert_eq!(shown.len(), 7);
+        codes.push(shown.clone());
+        assert_eq!(ours.confirm(&shown, &mut attempts).unwrap(), follower.public());
+        assert_eq!(theirs.confirm(&shown.replace(' ', ""), &mut attempts).unwrap(), console.public());
+    }
+    assert_ne!(codes[0], codes[1], "for one time only");
+}
+
+#[test]
+fn lost_datagrams_are_sent_again() {
+    let (console, follower) = (Keys::random().unwrap(), Keys::random().unwrap());
+    let at = free_address();
+    let bad = Settings { loss: Loss::Independent { share: 0.3 }, ..Settings::default() };
+    let home = (Ipv4Addr::LOCALHOST, 0).into();
+    let relay = Relay::start(RelaySettings { at: home, to: at, there: bad, back: bad, seed: 4 }).unwrap();
+    let [ours, theirs] = both(&console, &follower, at, relay.address()).map(Result::unwrap);
+    assert_eq!(ours.code(), theirs.code());
+}
+
+#[test]
+fn a_wrong_code_is_refused_and_the_third_makes_a_pause() {
+    let mut attempts = Attempts::default();
+    for wrong in ["123 457", "12345", "+23456"] {
+        assert!(attempts.may_begin(Instant::now()).is_ok());
+        let pending = Pending { code: Code(123_456), peer: Keys::random().unwrap().public() };
+        assert!(matches!(pending.confirm(wrong, &mut attempts), Err(PairingError::WrongCode)), "{wrong}");
+    }
+    let told = attempts.may_begin(Instant::now()).unwrap_err();
+    assert!(told.to_string().contains("wait 60 s"), "{told}");
+    let stop = AtomicBool::new(false);
+    let keys = Keys::random().unwrap();
+    let told = offer(free_address(), &keys, &mut attempts, WAIT, &stop).unwrap_err();
+    assert!(matches!(told, PairingError::TooMany { .. }));
+    assert!(attempts.may_begin(Instant::now() + PAUSE).is_ok());
+}
+
+#[test]
+fn who_stands_between_is_seen() {
+    // He pairs with both sides by keys of his own: the codes differ.
+    let [console, follower, between] = [0; 3].map(|_| Part::new(&Keys::random().unwrap()).unwrap());
+    assert_ne!(code(&console, &between), code(&between, &follower));
+    // He must promise before he knows the follower's part; another part than promised is told.
+    let at = free_address();
+    let stop = AtomicBool::new(false);
+    let keys = Keys::random().unwrap();
+    let told = scope(|scope| {
+        let theirs = scope.spawn(|| offer(at, &keys, &mut Attempts::default(), WAIT, &stop));
+        let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+        socket.set_read_timeout(Some(Duration::from_millis(100))).unwrap();
+        let mut answer = [0; 2 * LEN];
+        let commitment = datagram(1, COMMIT, &console.commitment());
+        while socket.send_to(&commitment, at).is_err() || socket.recv(&mut answer).is_err() {}
+        socket.send_to(&datagram(1, REVEAL, &between.bytes()), at).unwrap();
+        theirs.join().unwrap()
+    });
+    assert!(matches!(told, Err(PairingError::Contradiction)));
+}
+
+#[test]
+fn nobody_and_called_off_are_told() {
+    let keys = Keys::random().unwrap();
+    let (stop, wait) = (AtomicBool::new(false), Duration::from_millis(50));
+    assert!(matches!(ask(free_address(), &keys, &mut Attempts::default(), wait, &stop), Err(PairingError::Nobody)));
+    stop.store(true, Relaxed);
+    assert!(matches!(offer(free_address(), &keys, &mut Attempts::default(), WAIT, &stop), Err(PairingError::Nobody)));
+}
+
+#[test]
+fn random_bytes_are_no_pairing() {
+    let mut rng = fastrand::Rng::with_seed(8);
+    for _ in 0..5000 {
+        let bytes: Vec<u8> = (0..rng.usize(..2 * LEN)).map(|_| rng.u8(..)).collect();
+        assert!(read(&bytes).is_none());
+    }
+}

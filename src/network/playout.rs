@@ -1,0 +1,328 @@
+//! When a payload is handed over: a delay after it was sent that nearly every payload keeps, and that never steps.
+//!
+//! The delay wanted is the 99.9th percentile of the one-way delays of the last 5 s, and a margin. The delay in force follows it by at
+//! most 1 ms/s. Payloads are handed over in order, each once. One that comes after its time is handed over at once if it is newer than
+//! all before it, and counted as late; one that is not is counted as stale. One that never comes is counted as lost when a newer one is
+//! handed over.
+//!
+//! All of this compares payloads with each other, so that it needs no estimate of the clocks' offset: delays are apparent ones, which
+//! contain it.
+
+use serde::{Deserialize, Serialize};
+
+/// Length of one part of the statistics, s, and their number: 5 s together.
+const PART_S: f64 = 0.5;
+const PARTS: usize = 10;
+/// Largest delays that are kept of each part: enough for the percentile of 16 000 payloads.
+const TOP: usize = 16;
+/// Share of payloads that may come later than the delay wanted.
+const LATE_SHARE: f64 = 1e-3;
+/// What is measured before the first payload is handed over, s and payloads.
+const FIRST_S: f64 = 0.1;
+const FIRST_COUNT: u32 = 20;
+/// After a step of a clock, payloads needed before the delay moves again.
+const AGAIN_COUNT: u32 = 500;
+
+/// When payloads are handed over.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PlayoutSettings {
+    /// Payloads wait for the play-out delay; otherwise each is handed over when it comes, unless a newer one was.
+    pub waits: bool,
+    /// Added to the percentile, s.
+    pub margin_s: f64,
+    /// Fastest change of the delay, s per s.
+    pub rate: f64,
+    /// Payloads that may wait at once; with the rate of the stream this limits the delay.
+    pub room: usize,
+}
+
+impl Default for PlayoutSettings {
+    fn default() -> Self {
+        Self { waits: true, margin_s: 0.5e-3, rate: 1e-3, room: 2048 }
+    }
+}
+
+/// A payload that is handed over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Payload<'a> {
+    /// Its number: that of the first is 0.
+    pub number: u64,
+    /// When it was sent, by their clock, s.
+    pub sent_s: f64,
+    /// How long ago that is, s; wrong by the bound of the clock's estimate at most.
+    pub age_s: f64,
+    /// It came after its time.
+    pub is_late: bool,
+    /// Its content.
+    pub bytes: &'a [u8],
+}
+
+/// What became of the payloads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Handed over.
+    pub delivered: u64,
+    /// Of these, after their time.
+    pub late: u64,
+    /// Never came before a newer one was handed over.
+    pub lost: u64,
+    /// Came for the first time after a newer one had been handed over; they are among the lost.
+    pub stale: u64,
+    /// Came in a later datagram than their own.
+    pub recovered: u64,
+}
+
+/// Largest delays of one part of the statistics.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    /// Descending.
+    top_s: [f64; TOP],
+    least_s: f64,
+    sum_s: f64,
+    count: u32,
+}
+
+const EMPTY: Part = Part { top_s: [f64::NEG_INFINITY; TOP], least_s: f64::INFINITY, sum_s: 0.0, count: 0 };
+
+impl Part {
+    fn add(&mut self, delay_s: f64) {
+        self.count += 1;
+        self.sum_s += delay_s;
+        self.least_s = self.least_s.min(delay_s);
+        let place = self.top_s.iter().position(|&top_s| delay_s > top_s);
+        if let Some(place) = place {
+            self.top_s.copy_within(place..TOP - 1, place + 1);
+            self.top_s[place] = delay_s;
+        }
+    }
+}
+
+/// One-way delays of the last seconds; apparent, that is with the clocks' offset in them, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Delays {
+    /// Least.
+    pub least_s: f64,
+    /// Mean.
+    pub mean_s: f64,
+    /// 99.9th percentile.
+    pub p999_s: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Slot {
+    /// Number of the payload, plus one; 0 if there is none.
+    mark: u64,
+    sent_s: f64,
+    arrived_s: f64,
+    len: usize,
+}
+
+/// Holds payloads until they are due.
+#[derive(Clone, Debug)]
+pub struct Playout {
+    settings: PlayoutSettings,
+    slots: Vec<Slot>,
+    bytes: Vec<u8>,
+    payload_max: usize,
+    /// Number of the next payload to hand over, and one more than the highest that came.
+    next: u64,
+    end: u64,
+    parts: [Part; PARTS],
+    part: usize,
+    part_begin_s: Option<f64>,
+    first_s: Option<f64>,
+    /// Apparent delay in force, s; `None` before the first is handed over.
+    delay_s: Option<f64>,
+    wanted_s: Option<f64>,
+    moved_s: f64,
+    /// Payloads needed before the delay moves.
+    awaited: u32,
+    counts: Counts,
+}
+
+impl Playout {
+    /// Empty, with room for payloads of this length (bytes). All memory is allocated here.
+    pub fn new(settings: PlayoutSettings, payload_max: usize) -> Self {
+        let room = settings.room.clamp(16, 1 << 16);
+        Self {
+            settings,
+            slots: vec![Slot { mark: 0, sent_s: 0.0, arrived_s: 0.0, len: 0 }; room],
+            bytes: vec![0; room * payload_max],
+            payload_max,
+            next: 0,
+            end: 0,
+            parts: [EMPTY; PARTS],
+            part: 0,
+            part_begin_s: None,
+            first_s: None,
+            delay_s: None,
+            wanted_s: None,
+            moved_s: 0.0,
+            awaited: 0,
+            counts: Counts::default(),
+        }
+    }
+
+    /// What became of the payloads.
+    pub const fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Apparent delay in force, s; `None` before the first payload is handed over, and where payloads do not wait.
+    pub fn delay_s(&self) -> Option<f64> {
+        self.delay_s.filter(|_| self.settings.waits)
+    }
+
+    /// Apparent delay wanted, s.
+    pub const fn wanted_s(&self) -> Option<f64> {
+        self.wanted_s
+    }
+
+    /// Number of the payload that came last in order, plus one.
+    pub const fn end(&self) -> u64 {
+        self.end
+    }
+
+    /// One-way delays of the last 5 s.
+    pub fn delays(&self) -> Option<Delays> {
+        let count: u32 = self.parts.iter().map(|part| part.count).sum();
+        let sum_s: f64 = self.parts.iter().map(|part| part.sum_s).sum();
+        let least_s = self.parts.iter().map(|part| part.least_s).fold(f64::INFINITY, f64::min);
+        let p999_s = self.percentile_s(count)?;
+        Some(Delays { least_s, mean_s: sum_s / f64::from(count), p999_s })
+    }
+
+    /// Their clock minus ours has changed by this, s: delays are apparent, and what was measured before means nothing now.
+    pub fn clock_stepped(&mut self, by_s: f64) {
+        self.delay_s = self.delay_s.map(|delay_s| delay_s - by_s);
+        self.wanted_s = self.delay_s;
+        self.parts = [EMPTY; PARTS];
+        self.awaited = AGAIN_COUNT;
+        let room = self.slots.len() as u64;
+        for number in self.next..self.end {
+            let slot = &mut self.slots[(number % room) as usize];
+            slot.sent_s += by_s;
+        }
+    }
+
+    /// Begins anew with the next payload: nothing that has come before is handed over.
+    pub fn begin(&mut self) {
+        self.next = self.end;
+        self.parts = [EMPTY; PARTS];
+        (self.part_begin_s, self.first_s, self.delay_s, self.wanted_s) = (None, None, None, None);
+    }
+
+    /// Takes a payload that has arrived: its number, when it was sent (s, their clock) and when it came (s, ours), and whether it is
+    /// the newest of its datagram. One that came before is ignored.
+    pub fn insert(&mut self, number: u64, sent_s: f64, arrived_s: f64, is_newest: bool, bytes: &[u8]) {
+        let room = self.slots.len() as u64;
+        if bytes.len() > self.payload_max || !(sent_s + arrived_s).is_finite() {
+            return;
+        }
+        let index = (number % room) as usize;
+        if self.slots[index].mark == number + 1 {
+            return;
+        }
+        if number < self.next {
+            // Within the memory of the slots it is known not to have come before.
+            self.counts.stale += u64::from(self.next - number <= room && self.slots[index].mark < number + 1);
+            self.slots[index].mark = self.slots[index].mark.max(number + 1);
+            return;
+        }
+        if number >= self.next.saturating_add(room) {
+            let next = number + 1 - room;
+            self.counts.lost += next - self.next;
+            self.next = next;
+        }
+        self.slots[index] = Slot { mark: number + 1, sent_s, arrived_s, len: bytes.len() };
+        let at = index * self.payload_max;
+        self.bytes[at..at + bytes.len()].copy_from_slice(bytes);
+        self.end = self.end.max(number + 1);
+        self.counts.recovered += u64::from(!is_newest);
+        self.note(arrived_s - sent_s, arrived_s);
+    }
+
+    fn note(&mut self, delay_s: f64, arrived_s: f64) {
+        let begin_s = *self.part_begin_s.get_or_insert(arrived_s);
+        self.first_s.get_or_insert(arrived_s);
+        if arrived_s - begin_s >= PART_S {
+            self.part = (self.part + 1) % PARTS;
+            self.parts[self.part] = EMPTY;
+            self.part_begin_s = Some(arrived_s);
+        }
+        self.parts[self.part].add(delay_s);
+    }
+
+    /// The percentile of this many payloads, s: the largest delays of all parts, merged.
+    fn percentile_s(&self, count: u32) -> Option<f64> {
+        let rank = (f64::from(count) * LATE_SHARE).floor() as usize;
+        let mut taken = [0_usize; PARTS];
+        let mut percentile_s = None;
+        for _ in 0..=rank.min(PARTS * TOP - 1) {
+            let heads = self.parts.iter().zip(&taken).enumerate();
+            let heads = heads.filter_map(|(i, (part, &taken))| Some((i, *part.top_s.get(taken)?)));
+            let (part, delay_s) = heads.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+            taken[part] += 1;
+            percentile_s = Some(delay_s);
+        }
+        percentile_s.filter(|_| count > 0)
+    }
+
+    /// Moves the delay towards the one that is wanted. Call it once per tick, before payloads are taken.
+    pub fn advance(&mut self, now_s: f64) {
+        let passed_s = (now_s - self.moved_s).clamp(0.0, 0.1);
+        self.moved_s = now_s;
+        let count: u32 = self.parts.iter().map(|part| part.count).sum();
+        if count < self.awaited.max(FIRST_COUNT) {
+            return;
+        }
+        self.awaited = 0;
+        let Some(percentile_s) = self.percentile_s(count) else { return };
+        let wanted_s = percentile_s + self.settings.margin_s;
+        self.wanted_s = Some(wanted_s);
+        if let Some(delay_s) = self.delay_s {
+            let most_s = self.settings.rate * passed_s;
+            self.delay_s = Some(delay_s + (wanted_s - delay_s).clamp(-most_s, most_s));
+        } else if self.first_s.is_some_and(|first_s| now_s - first_s >= FIRST_S) {
+            self.delay_s = Some(wanted_s);
+            self.leave_out(now_s - wanted_s);
+        }
+    }
+
+    /// Before the first payload: those that were sent before this (s, their clock) only served to measure.
+    fn leave_out(&mut self, before_s: f64) {
+        let room = self.slots.len() as u64;
+        let is_wanted = |number: &u64| {
+            let slot = &self.slots[(number % room) as usize];
+            slot.mark == number + 1 && slot.sent_s >= before_s
+        };
+        self.next = (self.next..self.end).find(is_wanted).unwrap_or(self.end);
+    }
+
+    /// The next payload that is due; `offset_s` is their clock minus ours.
+    pub fn take(&mut self, now_s: f64, offset_s: f64) -> Option<Payload<'_>> {
+        let delay_s = if self.settings.waits { self.delay_s? } else { f64::NEG_INFINITY };
+        let room = self.slots.len() as u64;
+        // At most all slots, and only after as many were lost.
+        let number = (self.next..self.end).find(|number| self.slots[(number % room) as usize].mark == number + 1)?;
+        let index = (number % room) as usize;
+        let slot = self.slots[index];
+        let due_s = slot.sent_s + delay_s;
+        if due_s > now_s {
+            return None;
+        }
+        let is_late = self.settings.waits && slot.arrived_s > due_s;
+        self.counts.lost += number - self.next;
+        self.counts.delivered += 1;
+        self.counts.late += u64::from(is_late);
+        self.next = number + 1;
+        let at = index * self.payload_max;
+        let age_s = now_s - (slot.sent_s - offset_s);
+        Some(Payload { number, sent_s: slot.sent_s, age_s, is_late, bytes: &self.bytes[at..at + slot.len] })
+    }
+}
+
+#[cfg(test)]
+#[path = "playout_tests.rs"]
+mod tests;

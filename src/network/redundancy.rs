@@ -1,0 +1,232 @@
+//! Every datagram carries the last n payloads, so that a lost one arrives with the next.
+//!
+//! The receiver measures how many datagrams are lost and how often two in a row, and tells the sender. The sender takes the least n at which
+//! a payload is lost with all its copies less often than [`LEFT_OVER`], as far as the datagram and the limit of the rate have room.
+
+use crate::wire::{AGE_MAX_S, COPIES_MAX, Record};
+
+/// Share of payloads that may be lost with all their copies.
+pub const LEFT_OVER: f64 = 1e-4;
+/// Copies without any measured loss: one datagram can always be lost.
+pub const COPIES_MIN: usize = 2;
+/// A datagram counts as lost when this many later ones have come.
+const PATIENCE: u64 = 64;
+/// A run of this many lost ones is an outage, which no copies cure: it does not count for their number.
+const OUTAGE: u32 = 64;
+/// Numbers that are remembered.
+const ROOM: u64 = 1024;
+/// Length of one part of the statistics, s, and their number.
+const PART_S: f64 = 0.5;
+const PARTS: usize = 10;
+/// The last parts that alone can raise the loss: a link that becomes bad is answered within a second.
+const RECENT: usize = 2;
+
+/// Copies needed at this loss: `loss` is the share of datagrams lost, `again` that of those after a lost one.
+///
+/// ```
+/// use nima_network::redundancy::copies_for;
+///
+/// assert_eq!(copies_for(0.0, 0.0), 2);
+/// assert_eq!(copies_for(0.3, 0.3), 8, "0.3^8 = 7e-5");
+/// assert!(copies_for(0.05, 0.9) > 32, "bursts of ten");
+/// ```
+pub fn copies_for(loss: f64, again: f64) -> usize {
+    let again = again.clamp(0.0, 0.99);
+    let mut left = loss.clamp(0.0, 1.0);
+    let mut copies = 1;
+    while (left > LEFT_OVER || copies < COPIES_MIN) && copies < 4 * COPIES_MAX {
+        left *= again;
+        copies += 1;
+    }
+    copies
+}
+
+/// What a sender may need again.
+#[derive(Clone, Debug)]
+pub struct History {
+    /// Content, length and time of sending of each payload.
+    bytes: Vec<u8>,
+    sent: [(usize, f64); COPIES_MAX],
+    payload_max: usize,
+    /// Number of payloads so far.
+    count: u64,
+}
+
+impl History {
+    /// Empty, for payloads of this length (bytes). All memory is allocated here.
+    pub fn new(payload_max: usize) -> Self {
+        Self { bytes: vec![0; payload_max * COPIES_MAX], sent: [(0, 0.0); COPIES_MAX], payload_max, count: 0 }
+    }
+
+    /// Number of payloads so far.
+    pub const fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// Adds a payload; `false` if it is too long.
+    pub fn add(&mut self, bytes: &[u8], now_s: f64) -> bool {
+        if bytes.len() > self.payload_max {
+            return false;
+        }
+        let index = (self.count % COPIES_MAX as u64) as usize;
+        let at = index * self.payload_max;
+        self.bytes[at..at + bytes.len()].copy_from_slice(bytes);
+        self.sent[index] = (bytes.len(), now_s);
+        self.count += 1;
+        true
+    }
+
+    /// Writes the last payloads, newest first, at most this many and as far as there is room; the number of bytes and of payloads.
+    pub fn write(&self, copies: usize, now_s: f64, room: &mut [u8]) -> (usize, usize) {
+        let (mut end, mut written) = (0, 0);
+        for back in 0..(copies.min(COPIES_MAX) as u64).min(self.count) {
+            let index = ((self.count - 1 - back) % COPIES_MAX as u64) as usize;
+            let (len, sent_s) = self.sent[index];
+            let age_s = now_s - sent_s;
+            let record = Record { age_s, bytes: &self.bytes[index * self.payload_max..index * self.payload_max + len] };
+            let Some(bytes) = room.get_mut(end..).and_then(|room| record.write(room)) else { break };
+            if age_s > AGE_MAX_S {
+                break;
+            }
+            end += bytes;
+            written += 1;
+        }
+        (end, written)
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Part {
+    all: u32,
+    lost: u32,
+    /// Lost ones after a lost one.
+    again: u32,
+}
+
+/// Measures which datagrams are lost.
+#[derive(Clone, Debug)]
+pub struct Losses {
+    /// Bit of each number: it came.
+    came: [u64; (ROOM / 64) as usize],
+    /// One more than the highest number that came.
+    end: u64,
+    /// Numbers below are judged.
+    judged: u64,
+    /// Length of the run of lost ones that ends with the last judged one.
+    run: u32,
+    /// How many of them the statistics contain.
+    added: u32,
+    parts: [Part; PARTS],
+    part: usize,
+    part_begin_s: f64,
+    all: u64,
+    lost: u64,
+}
+
+impl Default for Losses {
+    fn default() -> Self {
+        Self {
+            came: [0; (ROOM / 64) as usize],
+            end: 0,
+            judged: 0,
+            run: 0,
+            added: 0,
+            parts: [Part::default(); PARTS],
+            part: 0,
+            part_begin_s: 0.0,
+            all: 0,
+            lost: 0,
+        }
+    }
+}
+
+impl Losses {
+    /// The datagram with this number came.
+    pub fn add(&mut self, number: u64, now_s: f64) {
+        if now_s - self.part_begin_s >= PART_S {
+            self.part = (self.part + 1) % PARTS;
+            self.parts[self.part] = Part::default();
+            self.part_begin_s = now_s;
+        }
+        if number < self.judged {
+            return;
+        }
+        if number >= self.end {
+            // An outage: what lies far behind is lost without a look at each.
+            if number - self.end > ROOM - PATIENCE {
+                self.skip_to(number);
+            }
+            self.end = number + 1;
+            while self.judged + PATIENCE < self.end {
+                self.judge();
+            }
+        }
+        self.came[(number / 64 % (ROOM / 64)) as usize] |= 1 << (number % 64);
+    }
+
+    /// All numbers below this one count as lost or were judged before.
+    fn skip_to(&mut self, number: u64) {
+        while self.judged < self.end {
+            self.judge();
+        }
+        let lost = number - self.judged;
+        self.all += lost;
+        self.lost += lost;
+        self.run = OUTAGE;
+        self.judged = number;
+        self.came = [0; (ROOM / 64) as usize];
+    }
+
+    fn judge(&mut self) {
+        let (word, bit) = ((self.judged / 64 % (ROOM / 64)) as usize, 1 << (self.judged % 64));
+        let is_lost = self.came[word] & bit == 0;
+        self.came[word] &= !bit;
+        self.all += 1;
+        self.lost += u64::from(is_lost);
+        self.run = if is_lost { self.run.saturating_add(1).min(OUTAGE) } else { 0 };
+        let (part, run) = (&mut self.parts[self.part], self.run);
+        if run < OUTAGE {
+            part.all = part.all.saturating_add(1);
+            part.lost = part.lost.saturating_add(u32::from(is_lost));
+            part.again = part.again.saturating_add(u32::from(run > 1));
+        } else {
+            // What the run has added is taken away, once; a run over two parts leaves some.
+            let added = std::mem::take(&mut self.added);
+            part.lost = part.lost.saturating_sub(added);
+            part.again = part.again.saturating_sub(added.saturating_sub(1));
+        }
+        self.added = if is_lost && run < OUTAGE { run } else { 0 };
+        self.judged += 1;
+    }
+
+    fn sum(&self, parts: usize) -> (f64, f64, f64) {
+        let last = (0..parts).map(|back| self.parts[(self.part + PARTS - back) % PARTS]);
+        last.fold((0.0, 0.0, 0.0), |(all, lost, again), part| {
+            (all + f64::from(part.all), lost + f64::from(part.lost), again + f64::from(part.again))
+        })
+    }
+
+    /// Share of datagrams that were lost lately: of the last 5 s or the last second, whichever is worse. And of those after a lost
+    /// one, the share that was lost too.
+    pub fn shares(&self) -> (f64, f64) {
+        let share = |parts| {
+            let (all, lost, _) = self.sum(parts);
+            // Too few to tell a share from.
+            if all < 100.0 { 0.0 } else { lost / all }
+        };
+        let loss = f64::max(share(PARTS), share(RECENT));
+        let (_, lost, again) = self.sum(PARTS);
+        // As if two had been lost alone at this share: one chance run is no burst.
+        let again = if lost == 0.0 { loss } else { (again + 10.0 * loss) / (lost + 10.0) };
+        (loss, again.max(loss).min(1.0))
+    }
+
+    /// All datagrams that should have come, and those that did not.
+    pub const fn totals(&self) -> (u64, u64) {
+        (self.all, self.lost)
+    }
+}
+
+#[cfg(test)]
+#[path = "redundancy_tests.rs"]
+mod tests;

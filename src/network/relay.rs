@@ -1,0 +1,210 @@
+//! A relay between two real ends that makes the line between them bad: on any system, without special rights.
+//!
+//! Consoles send to it instead of to the follower. Each console gets a socket of its own towards the follower, so that the follower tells
+//! them apart. The relay sees encrypted datagrams only, and adds 0.1 to 0.2 ms of its own.
+
+use std::{
+    io,
+    net::SocketAddr,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
+    },
+    thread::{Builder, JoinHandle, sleep},
+    time::{Duration, Instant},
+};
+
+use crate::{
+    impairment::{Line, Settings},
+    socket::Socket,
+};
+
+/// Consoles at once; the one that has been silent longest makes room.
+const CLIENTS_MAX: usize = 8;
+/// How often it looks: while something is under way, and at rest.
+const BUSY: Duration = Duration::from_micros(100);
+const REST: Duration = Duration::from_millis(1);
+/// Without a datagram for this long it rests, s.
+const REST_AFTER_S: f64 = 0.1;
+/// Datagrams taken from a socket before others have their turn.
+const TURN: usize = 64;
+/// Longest datagram.
+const BUFFER_LEN: usize = 2048;
+
+/// Where a relay stands and what it does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RelaySettings {
+    /// It listens here.
+    pub at: SocketAddr,
+    /// The follower's address.
+    pub to: SocketAddr,
+    /// The way to the follower, and the way back.
+    pub there: Settings,
+    /// See above.
+    pub back: Settings,
+    /// The same seed loses the same datagrams.
+    pub seed: u64,
+}
+
+/// What a relay has done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Totals {
+    /// Datagrams to the follower, and of these lost on purpose.
+    pub there: u64,
+    /// See above.
+    pub there_lost: u64,
+    /// Datagrams back, and of these lost on purpose.
+    pub back: u64,
+    /// See above.
+    pub back_lost: u64,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    ends: AtomicBool,
+    totals: [AtomicU64; 4],
+}
+
+/// A relay that works until it is dropped.
+#[derive(Debug)]
+pub struct Relay {
+    address: SocketAddr,
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Relay {
+    /// Opens the sockets and starts the thread.
+    ///
+    /// # Errors
+    /// What the system says, or [`io::ErrorKind::InvalidInput`] with the setting that cannot be.
+    pub fn start(settings: RelaySettings) -> io::Result<Self> {
+        for direction in [&settings.there, &settings.back] {
+            direction.check().map_err(|what| io::Error::new(io::ErrorKind::InvalidInput, what))?;
+        }
+        let socket = Socket::open(settings.at, None)?;
+        let address = socket.address()?;
+        let shared = Arc::new(Shared::default());
+        let theirs = Arc::clone(&shared);
+        let thread = Builder::new()
+            .name("relay".into())
+            .spawn(move || Work { socket, settings, clients: Vec::new(), made: 0 }.run(&theirs))?;
+        Ok(Self { address, shared, thread: Some(thread) })
+    }
+
+    /// Where it listens.
+    pub const fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// What it has done.
+    pub fn totals(&self) -> Totals {
+        let [there, there_lost, back, back_lost] = self.shared.totals.each_ref().map(|total| total.load(Relaxed));
+        Totals { there, there_lost, back, back_lost }
+    }
+}
+
+impl Drop for Relay {
+    fn drop(&mut self) {
+        self.shared.ends.store(true, Relaxed);
+        if let Some(thread) = self.thread.take() {
+            thread.join().ok();
+        }
+    }
+}
+
+/// A console.
+struct Client {
+    address: SocketAddr,
+    socket: Socket,
+    there: Line,
+    back: Line,
+    heard_s: f64,
+}
+
+struct Work {
+    socket: Socket,
+    settings: RelaySettings,
+    clients: Vec<Client>,
+    /// Clients so far: each has seeds of its own.
+    made: u64,
+}
+
+impl Work {
+    fn run(mut self, shared: &Shared) {
+        let (begin, mut busy_s) = (Instant::now(), 0.0);
+        while !shared.ends.load(Relaxed) {
+            let now_s = begin.elapsed().as_secs_f64();
+            if self.take(now_s) {
+                busy_s = now_s;
+            }
+            for client in &mut self.clients {
+                while let Some((_, datagram)) = client.there.receive(now_s) {
+                    client.socket.send(&datagram, self.settings.to);
+                }
+                while let Some((_, datagram)) = client.back.receive(now_s) {
+                    self.socket.send(&datagram, client.address);
+                }
+            }
+            self.count(shared);
+            let is_busy = now_s - busy_s < REST_AFTER_S
+                || self.clients.iter().any(|c| c.there.due_s().or(c.back.due_s()).is_some());
+            sleep(if is_busy { BUSY } else { REST });
+        }
+    }
+
+    /// Takes what has arrived; whether there was any.
+    fn take(&mut self, now_s: f64) -> bool {
+        let (mut buffer, mut any) = ([0; BUFFER_LEN], false);
+        for _ in 0..TURN {
+            let Some(arrival) = self.socket.receive(&mut buffer) else { break };
+            any = true;
+            if let (Some(datagram), Some(client)) = (buffer.get(..arrival.len), self.client(arrival.from, now_s)) {
+                client.heard_s = now_s;
+                client.there.send(now_s, datagram);
+            }
+        }
+        for client in &mut self.clients {
+            for _ in 0..TURN {
+                let Some(arrival) = client.socket.receive(&mut buffer) else { break };
+                any = true;
+                if let Some(datagram) = buffer.get(..arrival.len) {
+                    client.back.send(now_s, datagram);
+                }
+            }
+        }
+        any
+    }
+
+    fn client(&mut self, address: SocketAddr, now_s: f64) -> Option<&mut Client> {
+        let known = self.clients.iter().position(|client| client.address == address);
+        if let Some(at) = known {
+            return self.clients.get_mut(at);
+        }
+        if self.clients.len() == CLIENTS_MAX {
+            let oldest = self.clients.iter().enumerate().min_by(|(_, a), (_, b)| a.heard_s.total_cmp(&b.heard_s));
+            let at = oldest.map(|(at, _)| at)?;
+            self.clients.swap_remove(at);
+        }
+        let RelaySettings { to, there, back, seed, .. } = self.settings;
+        let socket = Socket::open(crate::endpoint::towards(&to), Some(to)).ok()?;
+        let seed = seed.wrapping_add(self.made * 2);
+        self.made += 1;
+        let (there, back) = (Line::new(there, seed), Line::new(back, seed.wrapping_add(1)));
+        self.clients.push(Client { address, socket, there, back, heard_s: now_s });
+        self.clients.last_mut()
+    }
+
+    fn count(&self, shared: &Shared) {
+        let mut totals = [0; 4];
+        for client in &self.clients {
+            let ((there, there_lost), (back, back_lost)) = (client.there.totals(), client.back.totals());
+            for (total, more) in totals.iter_mut().zip([there, there_lost, back, back_lost]) {
+                *total += more;
+            }
+        }
+        for (shared, total) in shared.totals.iter().zip(totals) {
+            shared.store(total, Relaxed);
+        }
+    }
+}

@@ -1,0 +1,338 @@
+//! Both sides of the handshake, without a socket or clock of their own.
+
+use std::net::{IpAddr, SocketAddr};
+
+use snow::{Builder, HandshakeState, StatelessTransportState};
+
+use super::cookie::{COOKIE_LEN, Cookies};
+use crate::{
+    control::Refusal,
+    keys::{KeyError, Keys, Peers, PublicKey},
+    rate::Bucket,
+    wire::{self, HANDSHAKE_LEN, HANDSHAKE_MAX, HELLO_LEN, Kind, Unreadable},
+};
+
+/// The protocol, as the Noise framework names it.
+pub const NOISE: &str = "Noise_IK_25519_ChaChaPoly_BLAKE2s";
+/// Both sides mix this into the handshake, so that another version fails also where its bytes look alike.
+const PROLOGUE: &[u8] = b"nima network 1";
+/// What each side tells within the handshake: the number by which it knows the session.
+const NUMBER_LEN: usize = 4;
+/// Handshakes that are computed in a second: in all, and for one address.
+const PER_S: f64 = 32.0;
+const PER_S_ADDRESS: f64 = 4.0;
+/// Answers to strangers in a second: cookies and refusals.
+const ANSWERS_PER_S: f64 = 2000.0;
+/// Addresses that are remembered for their rate.
+const ADDRESSES: usize = 64;
+/// A question is asked again after this, s; each time twice as long, up to the second figure.
+const AGAIN_S: f64 = 0.1;
+const AGAIN_MAX_S: f64 = 1.0;
+
+/// What a handshake gives.
+#[derive(Debug)]
+pub(crate) struct Agreed {
+    /// Keys of the session.
+    pub(crate) keys: StatelessTransportState,
+    /// The other side.
+    pub(crate) peer: PublicKey,
+    /// Its number of the session, and ours.
+    pub(crate) theirs: u32,
+    pub(crate) ours: u32,
+}
+
+/// What came of a datagram of a handshake. An answer's length is that of what was written to `out`.
+#[derive(Debug)]
+pub struct Heard {
+    /// Length of the answer, bytes; 0 for none.
+    pub answer: usize,
+    /// Why it leads no further.
+    pub trouble: Option<Trouble>,
+    pub(crate) agreed: Option<Box<Agreed>>,
+}
+
+/// Why a datagram of a handshake leads no further.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trouble {
+    /// Cut, or not expected now.
+    Malformed,
+    /// Of another version, which was told to its sender.
+    ForeignVersion,
+    /// Beyond the limits of the rate.
+    Flooded,
+    /// A cookie that is not ours, a key that is not known, a message that cannot be decrypted.
+    Refused,
+    /// The other side refuses a session.
+    TheyRefuse(Refusal),
+}
+
+impl Heard {
+    const fn trouble(trouble: Trouble) -> Self {
+        Self { answer: 0, trouble: Some(trouble), agreed: None }
+    }
+
+    /// Whether a session was made.
+    pub const fn is_agreed(&self) -> bool {
+        self.agreed.is_some()
+    }
+}
+
+fn number() -> Result<[u8; NUMBER_LEN], KeyError> {
+    let mut bytes = [0; NUMBER_LEN];
+    getrandom::fill(&mut bytes).map_err(|_| KeyError::Random)?;
+    Ok(bytes)
+}
+
+fn builder(keys: &Keys) -> Result<Builder<'_>, snow::Error> {
+    Builder::new(NOISE.parse()?).local_private_key(keys.private())?.prologue(PROLOGUE)
+}
+
+/// Writes a datagram of a handshake; its length.
+fn write(out: &mut [u8; HANDSHAKE_MAX], kind: Kind, token: u64, content: &[u8]) -> usize {
+    let end = HANDSHAKE_LEN + content.len();
+    out[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(kind, token));
+    match out.get_mut(HANDSHAKE_LEN..end) {
+        Some(room) => room.copy_from_slice(content),
+        None => return 0,
+    }
+    end
+}
+
+/// The follower's side.
+#[derive(Debug)]
+pub struct Reception {
+    keys: Keys,
+    peers: Peers,
+    cookies: Cookies,
+    all: Bucket,
+    answers: Bucket,
+    addresses: Vec<(IpAddr, Bucket)>,
+    /// No more consoles are admitted now.
+    pub is_full: bool,
+}
+
+impl Reception {
+    /// Admits these machines.
+    ///
+    /// # Errors
+    /// [`KeyError::Random`] if the system gives no random numbers.
+    pub fn new(keys: Keys, peers: Peers, now_s: f64) -> Result<Self, KeyError> {
+        Ok(Self {
+            keys,
+            peers,
+            cookies: Cookies::new(now_s)?,
+            all: Bucket::new(PER_S, PER_S),
+            answers: Bucket::new(ANSWERS_PER_S, ANSWERS_PER_S / 10.0),
+            addresses: Vec::with_capacity(ADDRESSES),
+            is_full: false,
+        })
+    }
+
+    /// Number of addresses that it remembers anything of.
+    pub fn remembered(&self) -> usize {
+        self.addresses.len()
+    }
+
+    /// Takes a datagram of a handshake that came from this address; writes the answer to `out`.
+    pub fn hear(&mut self, datagram: &[u8], from: SocketAddr, now_s: f64, out: &mut [u8; HANDSHAKE_MAX]) -> Heard {
+        let Some(token) = wire::token(datagram) else { return Heard::trouble(Trouble::Malformed) };
+        let kind = wire::kind(datagram);
+        if matches!(kind, Ok(Kind::Hello) | Err(Unreadable::ForeignVersion(_))) {
+            // The answer is shorter than the question, so that it is no use to send it to somebody else.
+            if datagram.len() < HELLO_LEN {
+                return Heard::trouble(Trouble::Malformed);
+            }
+            if !self.answers.spend(1.0, now_s) {
+                return Heard::trouble(Trouble::Flooded);
+            }
+        }
+        match kind {
+            Ok(Kind::Hello) => {
+                let cookie = self.cookies.make(from, token, now_s);
+                Heard { answer: write(out, Kind::Cookie, token, &cookie), trouble: None, agreed: None }
+            }
+            Ok(Kind::Initiation) => self.initiate(&datagram[HANDSHAKE_LEN..], token, from, now_s, out),
+            Err(Unreadable::ForeignVersion(_)) => {
+                let answer = write(out, Kind::Refusal, token, &Refusal::Version(wire::VERSION).bytes());
+                Heard { answer, ..Heard::trouble(Trouble::ForeignVersion) }
+            }
+            _ => Heard::trouble(Trouble::Malformed),
+        }
+    }
+
+    fn initiate(
+        &mut self,
+        content: &[u8],
+        token: u64,
+        from: SocketAddr,
+        now_s: f64,
+        out: &mut [u8; HANDSHAKE_MAX],
+    ) -> Heard {
+        let Some((cookie, message)) = content.split_at_checked(COOKIE_LEN) else {
+            return Heard::trouble(Trouble::Malformed);
+        };
+        if !self.cookies.is_ours(from, token, cookie) {
+            return Heard::trouble(Trouble::Refused);
+        }
+        if !self.may_compute(from.ip(), now_s) {
+            return Heard::trouble(Trouble::Flooded);
+        }
+        if self.is_full {
+            let answer = write(out, Kind::Refusal, token, &Refusal::Full.bytes());
+            return Heard { answer, ..Heard::trouble(Trouble::Refused) };
+        }
+        if let Some((agreed, response, len)) = self.agree(message) {
+            let answer = write(out, Kind::Response, token, &response[..len]);
+            Heard { answer, trouble: None, agreed: Some(Box::new(agreed)) }
+        } else {
+            let answer = write(out, Kind::Refusal, token, &Refusal::Key.bytes());
+            Heard { answer, ..Heard::trouble(Trouble::Refused) }
+        }
+    }
+
+    fn agree(&self, message: &[u8]) -> Option<(Agreed, [u8; HANDSHAKE_MAX], usize)> {
+        let mut noise = builder(&self.keys).ok()?.build_responder().ok()?;
+        let mut theirs = [0; HANDSHAKE_MAX];
+        let len = noise.read_message(message, &mut theirs).ok()?;
+        let theirs: [u8; NUMBER_LEN] = theirs[..len].try_into().ok()?;
+        let peer = PublicKey::new(noise.get_remote_static()?.try_into().ok()?);
+        self.peers.with_key(&peer)?;
+        let ours = number().ok()?;
+        let mut response = [0; HANDSHAKE_MAX];
+        let len = noise.write_message(&ours, &mut response).ok()?;
+        let keys = noise.into_stateless_transport_mode().ok()?;
+        let agreed = Agreed { keys, peer, theirs: u32::from_le_bytes(theirs), ours: u32::from_le_bytes(ours) };
+        Some((agreed, response, len))
+    }
+
+    /// Whether another handshake of this address may be computed now.
+    fn may_compute(&mut self, ip: IpAddr, now_s: f64) -> bool {
+        let known = self.addresses.iter().position(|(known, _)| *known == ip);
+        let index = known.unwrap_or_else(|| {
+            if self.addresses.len() == ADDRESSES {
+                self.addresses.remove(0);
+            }
+            self.addresses.push((ip, Bucket::new(PER_S_ADDRESS, 2.0 * PER_S_ADDRESS)));
+            self.addresses.len() - 1
+        });
+        let own = self.addresses.get_mut(index).is_some_and(|(_, bucket)| bucket.spend(1.0, now_s));
+        own && self.all.spend(1.0, now_s)
+    }
+}
+
+/// What a console waits for.
+#[derive(Debug)]
+enum Waits {
+    Cookie,
+    Response { noise: Box<HandshakeState>, ours: u32, sent: Box<[u8; HANDSHAKE_MAX]>, len: usize },
+}
+
+/// The console's side: one attempt after the other until a session is made.
+#[derive(Debug)]
+pub struct Approach {
+    keys: Keys,
+    follower: PublicKey,
+    token: u64,
+    waits: Waits,
+    next_s: f64,
+    pause_s: f64,
+}
+
+impl Approach {
+    /// To the follower with this key.
+    ///
+    /// # Errors
+    /// [`KeyError::Random`] if the system gives no random numbers.
+    pub fn new(keys: Keys, follower: PublicKey) -> Result<Self, KeyError> {
+        let mut this = Self { keys, follower, token: 0, waits: Waits::Cookie, next_s: f64::MIN, pause_s: AGAIN_S };
+        this.begin_again()?;
+        Ok(this)
+    }
+
+    fn begin_again(&mut self) -> Result<(), KeyError> {
+        let mut token = [0; 8];
+        getrandom::fill(&mut token).map_err(|_| KeyError::Random)?;
+        (self.token, self.waits) = (u64::from_le_bytes(token), Waits::Cookie);
+        Ok(())
+    }
+
+    /// What is to be sent now: the question again, or one with a new number after an answer has failed to come. 0 for nothing.
+    pub fn due(&mut self, now_s: f64, out: &mut [u8; HANDSHAKE_MAX]) -> usize {
+        if now_s < self.next_s {
+            return 0;
+        }
+        // The same initiation again as long as the follower still knows the cookie: its response may have been lost. Then from the start.
+        self.next_s = now_s + self.pause_s;
+        self.pause_s = (2.0 * self.pause_s).min(AGAIN_MAX_S);
+        if self.pause_s >= AGAIN_MAX_S && self.begin_again().is_err() {
+            return 0;
+        }
+        match &self.waits {
+            Waits::Cookie => write(out, Kind::Hello, self.token, &[0; HELLO_LEN - HANDSHAKE_LEN]),
+            Waits::Response { sent, len, .. } => {
+                out.copy_from_slice(&sent[..]);
+                *len
+            }
+        }
+    }
+
+    /// Takes a datagram of a handshake; writes the answer to `out`.
+    pub fn hear(&mut self, datagram: &[u8], now_s: f64, out: &mut [u8; HANDSHAKE_MAX]) -> Heard {
+        if wire::token(datagram) != Some(self.token) {
+            return Heard::trouble(Trouble::Malformed);
+        }
+        let content = &datagram[HANDSHAKE_LEN..];
+        match (wire::kind(datagram), &mut self.waits) {
+            (Ok(Kind::Cookie), Waits::Cookie) => match self.initiate(content, out) {
+                Some(answer) => {
+                    (self.next_s, self.pause_s) = (now_s + AGAIN_S, AGAIN_S);
+                    Heard { answer, trouble: None, agreed: None }
+                }
+                None => Heard::trouble(Trouble::Malformed),
+            },
+            (Ok(Kind::Response), Waits::Response { .. }) => match self.finish(content) {
+                Some(agreed) => {
+                    // Time for the session to be taken over, before another is asked for.
+                    (self.next_s, self.pause_s) = (now_s + AGAIN_MAX_S, AGAIN_S);
+                    Heard { answer: 0, trouble: None, agreed: Some(Box::new(agreed)) }
+                }
+                None => Heard::trouble(Trouble::Refused),
+            },
+            (Ok(Kind::Refusal), _) => {
+                let refusal = content.first_chunk().and_then(|&bytes| Refusal::from_bytes(bytes));
+                (self.next_s, self.pause_s) = (now_s + AGAIN_MAX_S, AGAIN_MAX_S);
+                Heard::trouble(refusal.map_or(Trouble::Malformed, Trouble::TheyRefuse))
+            }
+            _ => Heard::trouble(Trouble::Malformed),
+        }
+    }
+
+    fn initiate(&mut self, cookie: &[u8], out: &mut [u8; HANDSHAKE_MAX]) -> Option<usize> {
+        if cookie.len() != COOKIE_LEN {
+            return None;
+        }
+        let remote = self.follower;
+        let noise = builder(&self.keys).ok()?.remote_public_key(remote.bytes()).ok()?;
+        let mut noise = noise.build_initiator().ok()?;
+        let ours = number().ok()?;
+        let mut content = [0; HANDSHAKE_MAX];
+        content[..COOKIE_LEN].copy_from_slice(cookie);
+        let len = COOKIE_LEN + noise.write_message(&ours, &mut content[COOKIE_LEN..]).ok()?;
+        let answer = write(out, Kind::Initiation, self.token, &content[..len]);
+        let ours = u32::from_le_bytes(ours);
+        self.waits = Waits::Response { noise: Box::new(noise), ours, sent: Box::new(*out), len: answer };
+        Some(answer)
+    }
+
+    fn finish(&mut self, message: &[u8]) -> Option<Agreed> {
+        let Waits::Response { noise, ours, .. } = &mut self.waits else { return None };
+        let (mut theirs, ours) = ([0; HANDSHAKE_MAX], *ours);
+        // A message that fails leaves the state as it was: the true one may still come.
+        let len = noise.read_message(message, &mut theirs).ok()?;
+        let theirs: [u8; NUMBER_LEN] = theirs[..len].try_into().ok()?;
+        let Waits::Response { noise, .. } = std::mem::replace(&mut self.waits, Waits::Cookie) else { return None };
+        let keys = noise.into_stateless_transport_mode().ok()?;
+        self.begin_again().ok()?;
+        Some(Agreed { keys, peer: self.follower, theirs: u32::from_le_bytes(theirs), ours })
+    }
+}

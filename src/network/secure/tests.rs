@@ -1,0 +1,173 @@
+use std::net::{Ipv4Addr, SocketAddr};
+
+use super::*;
+use crate::{
+    control::Refusal,
+    keys::{Keys, Peers},
+    wire::{self, HANDSHAKE_LEN, HANDSHAKE_MAX, HELLO_LEN, Kind, VERSION},
+};
+
+type Datagram = [u8; HANDSHAKE_MAX];
+
+/// A follower that knows one console, that console, and one that it does not know.
+fn machines() -> (Reception, Approach, Approach) {
+    let (follower, console, stranger) = (Keys::random().unwrap(), Keys::random().unwrap(), Keys::random().unwrap());
+    let mut peers = Peers::default();
+    peers.add("console", console.public()).unwrap();
+    let key = follower.public();
+    let reception = Reception::new(follower, peers, 0.0).unwrap();
+    (reception, Approach::new(console, key).unwrap(), Approach::new(stranger, key).unwrap())
+}
+
+fn from(number: u32) -> SocketAddr {
+    (Ipv4Addr::from(0x0a00_0000 + number), 4000).into()
+}
+
+/// Lets them talk at `now_s`; the datagrams that were sent, and what the console was told in the end.
+fn talk(
+    reception: &mut Reception,
+    console: &mut Approach,
+    from: SocketAddr,
+    now_s: f64,
+) -> (usize, bool, Option<Trouble>) {
+    let (mut there, mut back): (Datagram, Datagram) = ([0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX]);
+    let mut len = console.due(now_s, &mut there);
+    let mut sent = 0;
+    while len > 0 {
+        sent += 1;
+        let heard = reception.hear(&there[..len], from, now_s, &mut back);
+        assert!(heard.answer <= len, "nobody gets more than he sent");
+        if heard.answer == 0 {
+            return (sent, false, heard.trouble);
+        }
+        sent += 1;
+        let told = console.hear(&back[..heard.answer], now_s, &mut there);
+        if heard.is_agreed() && told.is_agreed() {
+            let (ours, theirs) = (heard.agreed.unwrap(), told.agreed.unwrap());
+            assert_eq!((ours.ours, ours.theirs), (theirs.theirs, theirs.ours));
+            return (sent, true, None);
+        }
+        if told.trouble.is_some() {
+            return (sent, false, told.trouble);
+        }
+        len = told.answer;
+    }
+    (sent, false, None)
+}
+
+#[test]
+fn a_session_takes_two_round_trips() {
+    let (mut reception, mut console, _) = machines();
+    assert_eq!(talk(&mut reception, &mut console, from(1), 0.0), (4, true, None));
+    // And again, later.
+    assert_eq!(talk(&mut reception, &mut console, from(1), 2.0), (4, true, None));
+}
+
+#[test]
+fn a_stranger_is_told_so_and_leaves_nothing() {
+    let (mut reception, _, mut stranger) = machines();
+    assert_eq!(talk(&mut reception, &mut stranger, from(1), 0.0), (4, false, Some(Trouble::TheyRefuse(Refusal::Key))));
+    let (_, mut console, _) = machines();
+    let told = talk(&mut reception, &mut console, from(2), 0.0);
+    assert_eq!(told, (4, false, Some(Trouble::TheyRefuse(Refusal::Key))), "another follower's key");
+}
+
+#[test]
+fn another_version_is_told_so() {
+    let (mut reception, mut console, _) = machines();
+    let (mut there, mut back) = ([0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX]);
+    let len = console.due(0.0, &mut there);
+    there[0] = VERSION + 1;
+    let heard = reception.hear(&there[..len], from(1), 0.0, &mut back);
+    assert_eq!(heard.trouble, Some(Trouble::ForeignVersion));
+    let told = console.hear(&back[..heard.answer], 0.0, &mut there);
+    assert_eq!(told.trouble, Some(Trouble::TheyRefuse(Refusal::Version(VERSION))));
+}
+
+#[test]
+fn who_is_full_says_so() {
+    let (mut reception, mut console, _) = machines();
+    reception.is_full = true;
+    let told = talk(&mut reception, &mut console, from(1), 0.0);
+    assert_eq!(told.2, Some(Trouble::TheyRefuse(Refusal::Full)));
+}
+
+#[test]
+fn lost_datagrams_are_asked_for_again() {
+    let (mut reception, mut console, _) = machines();
+    let mut rng = fastrand::Rng::with_seed(2);
+    let (mut there, mut back) = ([0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX]);
+    let mut now_s = 0.0;
+    let agreed = (0..200).any(|_| {
+        now_s += 0.1;
+        let mut len = console.due(now_s, &mut there);
+        while len > 0 && rng.bool() {
+            let answer = reception.hear(&there[..len], from(1), now_s, &mut back).answer;
+            if answer == 0 || rng.bool() {
+                break;
+            }
+            let told = console.hear(&back[..answer], now_s, &mut there);
+            if told.is_agreed() {
+                return true;
+            }
+            len = told.answer;
+        }
+        false
+    });
+    assert!(agreed && now_s < 15.0, "{now_s}");
+}
+
+#[test]
+fn a_flood_of_half_open_handshakes_costs_no_memory_and_few_key_agreements() {
+    let (mut reception, mut console, mut stranger) = machines();
+    let mut out = [0; HANDSHAKE_MAX];
+    let (mut answers, mut flooded) = (0, 0);
+    for i in 0..50_000_u32 {
+        let mut hello = [0; HELLO_LEN];
+        hello[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(Kind::Hello, u64::from(i)));
+        let heard = reception.hear(&hello, from(i), f64::from(i) * 1e-5, &mut out);
+        assert!(!heard.is_agreed());
+        answers += u32::from(heard.answer > 0);
+        flooded += u32::from(heard.trouble == Some(Trouble::Flooded));
+        // And initiations with cookies that were made up.
+        let mut initiation = [7; 200];
+        initiation[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(Kind::Initiation, u64::from(i)));
+        let heard = reception.hear(&initiation, from(i), f64::from(i) * 1e-5, &mut out);
+        assert_eq!((heard.answer, heard.trouble), (0, Some(Trouble::Refused)));
+    }
+    assert_eq!(answers + flooded, 50_000);
+    assert!(answers < 1500, "half a second at 2000 per second, and what was saved up: {answers}");
+    assert_eq!(reception.remembered(), 0, "no state");
+    // Who can receive is limited by his address: eight at once, then four per second.
+    let computed = (0..1000).filter(|&i| {
+        let told = talk(&mut reception, &mut stranger, from(7), 10.0 + f64::from(i) * 1.001);
+        told.2 == Some(Trouble::TheyRefuse(Refusal::Key))
+    });
+    assert!(computed.count() > 100);
+    assert_eq!(reception.remembered(), 1);
+    assert!(talk(&mut reception, &mut console, from(8), 2000.0).1, "the console comes in all the same");
+}
+
+#[test]
+fn random_and_mutated_datagrams_lead_to_nothing() {
+    let (mut reception, mut console, _) = machines();
+    let mut rng = fastrand::Rng::with_seed(11);
+    let (mut there, mut back, mut waste) = ([0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX]);
+    let hello = console.due(0.0, &mut there);
+    let cookie = reception.hear(&there[..hello], from(1), 0.0, &mut back).answer;
+    let initiation = console.hear(&back[..cookie], 0.0, &mut there).answer;
+    for i in 0..2000_u32 {
+        let mut mutated = there;
+        let at = rng.usize(..initiation);
+        mutated[at] ^= 1 << rng.u32(..8);
+        let heard = reception.hear(&mutated[..initiation], from(1), f64::from(i), &mut waste);
+        assert!(!heard.is_agreed(), "byte {at}");
+        let cut = rng.usize(..initiation);
+        assert!(!reception.hear(&there[..cut], from(1), f64::from(i), &mut waste).is_agreed());
+        assert!(!console.hear(&mutated[..cut], f64::from(i), &mut waste).is_agreed());
+        assert!(
+            !reception.hear(&there[..initiation], from(2), f64::from(i), &mut waste).is_agreed(),
+            "another address"
+        );
+    }
+}

@@ -1,0 +1,205 @@
+//! A UDP socket that never waits, and tells how long a datagram has lain in it.
+
+use std::{
+    io::{self, ErrorKind},
+    net::{SocketAddr, UdpSocket},
+};
+
+use socket2::{Domain, Protocol, Socket as Maker, Type};
+
+/// Buffers of the system, bytes: more than a second of two arms.
+const BUFFER_LEN: usize = 1 << 20;
+/// Marks datagrams as urgent for networks that heed it: expedited forwarding (RFC 3246).
+const EXPEDITED: u32 = 0xb8;
+
+/// A datagram that has arrived.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arrival {
+    /// Its length, bytes; more than the buffer's if it was cut.
+    pub(crate) len: usize,
+    pub(crate) from: SocketAddr,
+    /// How long it has lain in the socket, s; 0 where the system does not tell.
+    pub(crate) age_s: f64,
+}
+
+#[derive(Debug)]
+pub(crate) struct Socket {
+    socket: UdpSocket,
+    to: Option<SocketAddr>,
+}
+
+impl Socket {
+    /// Bound to this address; with `to`, for datagrams from and to this one alone.
+    pub(crate) fn open(at: SocketAddr, to: Option<SocketAddr>) -> io::Result<Self> {
+        let socket = Maker::new(Domain::for_address(at), Type::DGRAM, Some(Protocol::UDP))?;
+        socket.set_nonblocking(true)?;
+        // What the system does not grant is not needed.
+        socket.set_recv_buffer_size(BUFFER_LEN).ok();
+        socket.set_send_buffer_size(BUFFER_LEN).ok();
+        if at.is_ipv4() {
+            socket.set_tos_v4(EXPEDITED).ok();
+        }
+        stamps::switch_on(&socket);
+        socket.bind(&at.into())?;
+        if let Some(to) = to {
+            socket.connect(&to.into())?;
+        }
+        Ok(Self { socket: socket.into(), to })
+    }
+
+    pub(crate) fn try_clone(&self) -> io::Result<Self> {
+        Ok(Self { socket: self.socket.try_clone()?, to: self.to })
+    }
+
+    pub(crate) fn address(&self) -> io::Result<SocketAddr> {
+        self.socket.local_addr()
+    }
+
+    /// The next datagram; `None` if none is there.
+    pub(crate) fn receive(&self, buffer: &mut [u8]) -> Option<Arrival> {
+        // An error tells that an earlier datagram of ours was not taken; at most some in a row.
+        for _ in 0..4 {
+            match stamps::receive(&self.socket, buffer) {
+                Ok(arrival) => return Some(arrival),
+                Err(error) if error.kind() == ErrorKind::WouldBlock => return None,
+                Err(_) => {}
+            }
+        }
+        None
+    }
+
+    /// Whether the system has taken it.
+    pub(crate) fn send(&self, datagram: &[u8], to: SocketAddr) -> bool {
+        match self.to {
+            Some(_) => self.socket.send(datagram).is_ok(),
+            None => self.socket.send_to(datagram, to).is_ok(),
+        }
+    }
+}
+
+/// The kernel stamps each datagram when it comes, so that its delay does not depend on when somebody looks.
+#[cfg(target_os = "linux")]
+#[expect(unsafe_code, reason = "std receives no time stamps")]
+mod stamps {
+    use std::{
+        io,
+        mem::{size_of, zeroed},
+        net::{Ipv4Addr, Ipv6Addr, SocketAddr, SocketAddrV4, SocketAddrV6, UdpSocket},
+        os::fd::AsRawFd as _,
+        time::{Duration, SystemTime, UNIX_EPOCH},
+    };
+
+    use super::Arrival;
+
+    /// A stamp older than this is none, s.
+    const AGE_MAX_S: f64 = 1.0;
+
+    pub(super) fn switch_on(socket: &socket2::Socket) {
+        let on: libc::c_int = 1;
+        let len = size_of::<libc::c_int>() as libc::socklen_t;
+        // SAFETY: the pointer and the length are those of `on`. Without stamps, ages are 0.
+        unsafe {
+            libc::setsockopt(socket.as_raw_fd(), libc::SOL_SOCKET, libc::SO_TIMESTAMPNS, (&raw const on).cast(), len);
+        }
+    }
+
+    pub(super) fn receive(socket: &UdpSocket, buffer: &mut [u8]) -> io::Result<Arrival> {
+        // SAFETY: all of these are valid when they are zero.
+        let (mut name, mut message): (libc::sockaddr_storage, libc::msghdr) = unsafe { (zeroed(), zeroed()) };
+        let mut control = [0_u64; 16];
+        let mut part = libc::iovec { iov_base: buffer.as_mut_ptr().cast(), iov_len: buffer.len() };
+        message.msg_name = (&raw mut name).cast();
+        message.msg_namelen = size_of::<libc::sockaddr_storage>() as libc::socklen_t;
+        message.msg_iov = &raw mut part;
+        message.msg_iovlen = 1;
+        message.msg_control = control.as_mut_ptr().cast();
+        message.msg_controllen = size_of::<[u64; 16]>() as _;
+        // SAFETY: every pointer in the message is to memory of the stated length that lives through the call. `MSG_TRUNC` asks for the
+        // true length of a datagram that was cut; no more than the buffer is written.
+        let len = unsafe { libc::recvmsg(socket.as_raw_fd(), &raw mut message, libc::MSG_TRUNC) };
+        let Ok(len) = usize::try_from(len) else { return Err(io::Error::last_os_error()) };
+        let from = address(&name).ok_or(io::ErrorKind::InvalidData)?;
+        Ok(Arrival { len, from, age_s: stamp(&message).map_or(0.0, age_s) })
+    }
+
+    fn age_s(stamp: Duration) -> f64 {
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let age_s = now.saturating_sub(stamp).as_secs_f64();
+        if age_s < AGE_MAX_S { age_s } else { 0.0 }
+    }
+
+    /// When the datagram came, since 1970.
+    fn stamp(message: &libc::msghdr) -> Option<Duration> {
+        // SAFETY: the message is as `recvmsg` left it, with its control data alive; the macro reads within them.
+        let first = unsafe { libc::CMSG_FIRSTHDR(message).as_ref() }?;
+        if (first.cmsg_level, first.cmsg_type) != (libc::SOL_SOCKET, libc::SCM_TIMESTAMPNS) {
+            return None;
+        }
+        // SAFETY: a header of this type is followed by a `timespec`, which need not be aligned.
+        let time = unsafe { libc::CMSG_DATA(first).cast::<libc::timespec>().read_unaligned() };
+        Some(Duration::new(time.tv_sec.try_into().ok()?, time.tv_nsec.try_into().ok()?))
+    }
+
+    fn address(name: &libc::sockaddr_storage) -> Option<SocketAddr> {
+        match libc::c_int::from(name.ss_family) {
+            libc::AF_INET => {
+                // SAFETY: the family says that it is this structure, which is smaller than the storage.
+                let v4 = unsafe { &*(&raw const *name).cast::<libc::sockaddr_in>() };
+                let ip = Ipv4Addr::from(u32::from_be(v4.sin_addr.s_addr));
+                Some(SocketAddrV4::new(ip, u16::from_be(v4.sin_port)).into())
+            }
+            libc::AF_INET6 => {
+                // SAFETY: as above.
+                let v6 = unsafe { &*(&raw const *name).cast::<libc::sockaddr_in6>() };
+                let ip = Ipv6Addr::from(v6.sin6_addr.s6_addr);
+                Some(SocketAddrV6::new(ip, u16::from_be(v6.sin6_port), v6.sin6_flowinfo, v6.sin6_scope_id).into())
+            }
+            _ => None,
+        }
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+mod stamps {
+    use std::{io, net::UdpSocket};
+
+    use super::Arrival;
+
+    pub(super) fn switch_on(_: &socket2::Socket) {}
+
+    pub(super) fn receive(socket: &UdpSocket, buffer: &mut [u8]) -> io::Result<Arrival> {
+        let (len, from) = socket.recv_from(buffer)?;
+        Ok(Arrival { len, from, age_s: 0.0 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{thread::sleep, time::Duration};
+
+    use super::*;
+
+    #[test]
+    fn a_datagram_comes_with_its_sender_its_true_length_and_its_age() {
+        for home in ["127.0.0.1:0", "[::1]:0"] {
+            let Ok(one) = Socket::open(home.parse().unwrap(), None) else { continue };
+            let two = Socket::open(home.parse().unwrap(), Some(one.address().unwrap())).unwrap();
+            let mut buffer = [0; 60];
+            let mut age_s = 0.0;
+            // The first socket of a system that wants stamps gets them a little later.
+            for _ in 0..50 {
+                assert!(two.send(&[7; 100], one.address().unwrap()));
+                sleep(Duration::from_millis(20));
+                let arrival = one.receive(&mut buffer).unwrap();
+                assert_eq!((arrival.from, buffer), (two.address().unwrap(), [7; 60]));
+                assert!(!cfg!(target_os = "linux") || arrival.len == 100, "longer than the buffer");
+                age_s = arrival.age_s;
+                if age_s > 0.019 {
+                    break;
+                }
+            }
+            assert!(!cfg!(target_os = "linux") || (0.019..1.0).contains(&age_s), "{age_s}");
+            assert!(one.receive(&mut buffer).is_none());
+        }
+    }
+}

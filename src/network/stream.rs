@@ -1,0 +1,357 @@
+//! One session's stream: payloads to encrypted datagrams and back, without a socket, thread or clock of its own.
+//!
+//! The endpoint feeds it from a socket; a study feeds it from a virtual clock and an impaired line.
+
+use snow::StatelessTransportState;
+
+use crate::{
+    clock::{Clock, Exchange, Step},
+    figures::{Copies, Figures, Limit, Meter},
+    keys::KeyError,
+    playout::{Payload, Playout, PlayoutSettings},
+    rate::Bucket,
+    redundancy::{History, Losses, copies_for},
+    replay::{Refused, Window},
+    secure,
+    wire::{self, DATAGRAM_MAX, HEAD_LEN, Head, OUTER_LEN, PAYLOAD_MAX, RECORD_LEN, TAG_LEN, UDP_LEN},
+};
+
+/// An echo is used if it is no older than this, s.
+const EXCHANGE_MAX_S: f64 = 30.0;
+
+/// What a stream is made with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StreamSettings {
+    /// Longest payload, bytes; at most [`PAYLOAD_MAX`].
+    pub payload_max: usize,
+    /// Most that is sent, bit/s, with the headers of IPv4 and UDP. 1 Mbit/s per arm.
+    pub rate_max_bit_s: f64,
+    /// When payloads are handed over.
+    pub playout: PlayoutSettings,
+}
+
+impl Default for StreamSettings {
+    fn default() -> Self {
+        Self { payload_max: 256, rate_max_bit_s: 1e6, playout: PlayoutSettings::default() }
+    }
+}
+
+/// What came of sending a payload.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sent {
+    /// A datagram of this length, bytes.
+    Datagram(usize),
+    /// The rate's limit leaves no room now: the payload goes with the next datagram.
+    Held,
+    /// The payload is longer than the settings allow.
+    TooLong,
+}
+
+/// Why a datagram of a session was dropped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unaccepted {
+    /// Its encryption is not that of this session.
+    Forged,
+    /// It came before.
+    Replayed,
+    /// It is older than the window.
+    Old,
+    /// Authentic, but it cannot be read.
+    Malformed,
+}
+
+/// What an accepted datagram said, besides payloads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accepted {
+    /// Newer than all before it.
+    pub is_newest: bool,
+    /// Its byte of control.
+    pub(crate) control: u8,
+    /// It proved that a clock has stepped.
+    pub step: Option<Step>,
+}
+
+/// Both directions of one session.
+#[derive(Debug)]
+pub struct Stream {
+    keys: StatelessTransportState,
+    /// Number of the session at the other side.
+    session: u32,
+    counter: u64,
+    window: Window,
+    clock: Clock,
+    playout: Playout,
+    history: History,
+    losses: Losses,
+    bucket: Bucket,
+    /// Loss of what we send, as the other side tells: share, and share after a lost one.
+    told_loss: (f64, f64),
+    /// The newest datagram received: when it was sent (µs, their clock) and when it came (s, ours).
+    newest: Option<(u64, f64)>,
+    copies: Copies,
+    sent: Meter,
+    received: Meter,
+    held: u64,
+    plain: [u8; DATAGRAM_MAX],
+}
+
+/// µs of a time, as it is sent.
+fn micros(now_s: f64) -> u64 {
+    (now_s * 1e6).round().clamp(0.0, 281_474_976_710_655.0) as u64
+}
+
+fn seconds(us: u64) -> f64 {
+    us as f64 * 1e-6
+}
+
+fn share(byte: u8) -> f64 {
+    f64::from(byte) / 255.0
+}
+
+fn byte(share: f64) -> u8 {
+    (share * 255.0).ceil().clamp(0.0, 255.0) as u8
+}
+
+impl Stream {
+    /// A stream with the keys of a handshake; `session` is its number at the other side. All memory is allocated here.
+    pub(crate) fn new(keys: StatelessTransportState, session: u32, settings: &StreamSettings) -> Self {
+        let payload_max = settings.payload_max.min(PAYLOAD_MAX);
+        Self {
+            keys,
+            session,
+            counter: 0,
+            window: Window::default(),
+            clock: Clock::default(),
+            playout: Playout::new(settings.playout, payload_max),
+            history: History::new(payload_max),
+            losses: Losses::default(),
+            bucket: Bucket::of_bits(settings.rate_max_bit_s, DATAGRAM_MAX + UDP_LEN),
+            told_loss: (0.0, 0.0),
+            newest: None,
+            copies: Copies::default(),
+            sent: Meter::default(),
+            received: Meter::default(),
+            held: 0,
+            plain: [0; DATAGRAM_MAX],
+        }
+    }
+
+    /// Both ends of a session, for a virtual clock: there is no network between them but what the caller makes.
+    ///
+    /// # Errors
+    /// [`KeyError::Random`] if the system gives no random numbers.
+    ///
+    /// ```
+    /// use nima_network::{stream::{Sent, Stream, StreamSettings}, wire::DATAGRAM_MAX};
+    ///
+    /// let (mut console, mut follower) = Stream::pair(&StreamSettings::default())?;
+    /// let mut datagram = [0; DATAGRAM_MAX];
+    /// let mut got = 0;
+    /// for tick in 0..1000 {
+    ///     let now_s = f64::from(tick) * 1e-3;
+    ///     if let Sent::Datagram(len) = console.send(now_s, Some(b"hello"), 0, &mut datagram) {
+    ///         follower.receive(&datagram[..len], now_s).expect("authentic");
+    ///     }
+    ///     follower.advance(now_s);
+    ///     while let Some(payload) = follower.take(now_s) {
+    ///         assert_eq!(payload.bytes, b"hello");
+    ///         got += 1;
+    ///     }
+    /// }
+    /// assert!(got > 850, "the first tenth of a second only measures: {got}");
+    /// # Ok::<(), nima_network::keys::KeyError>(())
+    /// ```
+    pub fn pair(settings: &StreamSettings) -> Result<(Self, Self), KeyError> {
+        let [one, other] = secure::both_ends()?;
+        Ok((Self::new(one.keys, one.theirs, settings), Self::new(other.keys, other.theirs, settings)))
+    }
+
+    /// Makes a datagram with this payload and the last ones before it; without a payload, one that keeps the session alive.
+    /// `now_s` is the time at which it is sent, s.
+    pub fn send(&mut self, now_s: f64, payload: Option<&[u8]>, control: u8, out: &mut [u8; DATAGRAM_MAX]) -> Sent {
+        if let Some(payload) = payload
+            && !self.history.add(payload, now_s)
+        {
+            return Sent::TooLong;
+        }
+        let frame = OUTER_LEN + HEAD_LEN + TAG_LEN;
+        let allowed = self.bucket.level(now_s) as usize;
+        let Some(room) = allowed.checked_sub(UDP_LEN + frame) else { return self.hold(payload) };
+        let is_limited = room < DATAGRAM_MAX - frame;
+        let wanted = copies_for(self.told_loss.0, self.told_loss.1);
+        let end = HEAD_LEN + room.min(DATAGRAM_MAX - frame);
+        let (records, count) = self.history.write(wanted, now_s, &mut self.plain[HEAD_LEN..end]);
+        if payload.is_some() && count == 0 {
+            return self.hold(payload);
+        }
+        let limit = if count >= wanted || self.history.count() < wanted as u64 {
+            Limit::None
+        } else if is_limited {
+            Limit::Rate
+        } else {
+            Limit::Datagram
+        };
+        if payload.is_some() {
+            self.copies = Copies { wanted, used: count, limit };
+        }
+        let sent_us = micros(now_s);
+        let head = Head {
+            sent_us,
+            echo: self
+                .newest
+                .map(|(sent_us, came_s)| (sent_us as u32, micros((now_s - came_s).clamp(0.0, 4000.0)) as u32)),
+            loss: byte(self.losses.shares().0),
+            loss_again: byte(self.losses.shares().1),
+            control,
+            newest: self.history.count().saturating_sub(1) as u32,
+            count: count as u8,
+        };
+        self.plain[..HEAD_LEN].copy_from_slice(&head.bytes());
+        out[..OUTER_LEN].copy_from_slice(&wire::outer(self.session, self.counter));
+        let plain = &self.plain[..HEAD_LEN + records];
+        // It fails only for datagrams that are too long, and these are not.
+        let Ok(sealed) = self.keys.write_message(self.counter, plain, &mut out[OUTER_LEN..]) else { return Sent::Held };
+        self.counter += 1;
+        self.bucket.spend((OUTER_LEN + sealed + UDP_LEN) as f64, now_s);
+        self.sent.add(OUTER_LEN + sealed + UDP_LEN, now_s);
+        Sent::Datagram(OUTER_LEN + sealed)
+    }
+
+    const fn hold(&mut self, payload: Option<&[u8]>) -> Sent {
+        self.held += payload.is_some() as u64;
+        Sent::Held
+    }
+
+    /// Takes a datagram of this session that came at `arrived_s` (s, our clock).
+    ///
+    /// # Errors
+    /// [`Unaccepted`] with the cause; nothing has changed then.
+    pub fn receive(&mut self, datagram: &[u8], arrived_s: f64) -> Result<Accepted, Unaccepted> {
+        let Some((_, low, sealed)) = wire::open_outer(datagram) else { return Err(Unaccepted::Malformed) };
+        if sealed.len() < HEAD_LEN + TAG_LEN || datagram.len() > DATAGRAM_MAX {
+            return Err(Unaccepted::Malformed);
+        }
+        let number = wire::whole(self.window.next(), low);
+        let refused = |refused| match refused {
+            Refused::Replayed => Unaccepted::Replayed,
+            Refused::Old => Unaccepted::Old,
+        };
+        self.window.check(number).map_err(refused)?;
+        let mut plain = [0; DATAGRAM_MAX];
+        let len = self.keys.read_message(number, sealed, &mut plain).map_err(|_| Unaccepted::Forged)?;
+        let is_newest = number >= self.window.next();
+        self.window.accept(number).map_err(refused)?;
+        let Some((head, records)) = Head::from_bytes(&plain[..len]) else { return Err(Unaccepted::Malformed) };
+        self.received.add(datagram.len() + UDP_LEN, arrived_s);
+        self.losses.add(number, arrived_s);
+        let step = self.compare_clocks(&head, arrived_s);
+        if is_newest {
+            self.newest = Some((head.sent_us, arrived_s));
+            self.told_loss = (share(head.loss), share(head.loss_again));
+        }
+        self.take_payloads(&head, records, arrived_s);
+        Ok(Accepted { is_newest, control: head.control, step })
+    }
+
+    fn compare_clocks(&mut self, head: &Head, arrived_s: f64) -> Option<Step> {
+        let (echo_us, held_us) = head.echo?;
+        let origin_s = seconds(wire::whole(micros(arrived_s), echo_us));
+        let sent_s = seconds(head.sent_us);
+        if !(0.0..EXCHANGE_MAX_S).contains(&(arrived_s - origin_s + 1e-6)) {
+            return None;
+        }
+        let received_s = sent_s - seconds(u64::from(held_us));
+        let step = self.clock.add(&Exchange { origin_s, received_s, sent_s, arrived_s })?;
+        self.playout.clock_stepped(step.by_s);
+        Some(step)
+    }
+
+    fn take_payloads(&mut self, head: &Head, mut records: &[u8], arrived_s: f64) {
+        if head.count == 0 {
+            return;
+        }
+        let newest = wire::whole(self.playout.end(), head.newest);
+        let sent_s = seconds(head.sent_us);
+        for back in 0..u64::from(head.count) {
+            let (Some((record, rest)), Some(number)) = (wire::record(records), newest.checked_sub(back)) else {
+                return;
+            };
+            records = rest;
+            self.playout.insert(number, sent_s - record.age_s, arrived_s, back == 0, record.bytes);
+        }
+    }
+
+    /// Begins anew with the next payload of the other side.
+    pub fn begin(&mut self) {
+        self.playout.begin();
+    }
+
+    /// Moves the play-out delay; once per tick, before payloads are taken.
+    pub fn advance(&mut self, now_s: f64) {
+        self.playout.advance(now_s);
+    }
+
+    /// The next payload that is due.
+    pub fn take(&mut self, now_s: f64) -> Option<Payload<'_>> {
+        let offset_s = self.clock.estimate(now_s).map_or(0.0, |estimate| estimate.offset_s);
+        self.playout.take(now_s, offset_s)
+    }
+
+    /// When the newest datagram came, s.
+    pub fn heard_s(&self) -> Option<f64> {
+        self.newest.map(|(_, came_s)| came_s)
+    }
+
+    /// The clock of the other side.
+    pub const fn clock(&self) -> &Clock {
+        &self.clock
+    }
+
+    /// Number of payloads given to [`Stream::send`].
+    pub const fn payloads(&self) -> u64 {
+        self.history.count()
+    }
+
+    /// What is measured.
+    pub fn figures(&self, now_s: f64) -> Figures {
+        let clock = self.clock.estimate(now_s);
+        let offset_s = clock.map_or(0.0, |clock| clock.offset_s);
+        let (datagrams, lost) = self.losses.totals();
+        Figures {
+            clock,
+            steps: self.clock.steps(),
+            one_way: self.playout.delays().map(|delays| delays.shifted(offset_s)),
+            playout_s: self.playout.delay_s().map(|delay_s| delay_s + offset_s),
+            playout_wanted_s: self.playout.wanted_s().map(|wanted_s| wanted_s + offset_s),
+            loss: self.losses.shares().0,
+            loss_there: self.told_loss.0,
+            datagrams_expected: datagrams,
+            datagrams_lost: lost,
+            copies: self.copies,
+            counts: self.playout.counts(),
+            held: self.held,
+            sent: self.sent,
+            received: self.received,
+        }
+    }
+}
+
+/// Longest payload that can be sent with this many copies at this rate of payloads (1/s) within a limit (bit/s), bytes; `None` if none can.
+///
+/// ```
+/// use nima_network::stream::payload_room;
+///
+/// assert_eq!(payload_room(1, 1000.0, 1e6), Some(43));
+/// assert_eq!(payload_room(8, 1000.0, 1e6), Some(1));
+/// assert_eq!(payload_room(8, 1000.0, 4e6), Some(48));
+/// assert_eq!(payload_room(8, 2000.0, 1e6), None);
+/// ```
+pub fn payload_room(copies: usize, payloads_per_s: f64, rate_max_bit_s: f64) -> Option<usize> {
+    let datagram = ((rate_max_bit_s / 8.0 / payloads_per_s) as usize).min(DATAGRAM_MAX + UDP_LEN);
+    let records = datagram.checked_sub(UDP_LEN + OUTER_LEN + HEAD_LEN + TAG_LEN)?;
+    (records / copies.max(1)).checked_sub(RECORD_LEN)
+}
+
+#[cfg(test)]
+#[path = "stream_tests.rs"]
+mod tests;

@@ -8,7 +8,7 @@ use std::{
 use zenoh::{
     Config, Session, Wait as _,
     pubsub::{Publisher, Subscriber},
-    qos::{CongestionControl, Priority, Reliability},
+    qos::{CongestionControl, Priority},
 };
 
 use crate::{Engine, Outcome, PORT, THERE, now_ns};
@@ -47,7 +47,6 @@ impl Zenoh {
                 .express(true)
                 .priority(Priority::RealTime)
                 .congestion_control(CongestionControl::Drop)
-                .reliability(Reliability::BestEffort)
                 .wait();
             publisher = Some(made.map_err(|error| error.to_string())?);
         } else {

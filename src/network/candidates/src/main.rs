@@ -85,7 +85,6 @@ fn sender(mut engine: Box<dyn Engine>, seconds: f64) -> Outcome<()> {
             return Err("nobody answers".into());
         }
     }
-    be_urgent();
     let (begin, before_s, mut wake) = (Instant::now(), processor_s(), Instant::now());
     let (mut costs_us, mut number, mut payload) = (Vec::with_capacity(100_000), 0_u64, [0; LEN]);
     while begin.elapsed().as_secs_f64() < seconds {
@@ -110,7 +109,6 @@ fn sender(mut engine: Box<dyn Engine>, seconds: f64) -> Outcome<()> {
 fn receiver(mut engine: Box<dyn Engine>, seconds: f64) -> Outcome<()> {
     let (mut delays_us, mut last) = (Vec::with_capacity(100_000), Instant::now());
     let (begin, mut start) = (Instant::now(), None);
-    be_urgent();
     while begin.elapsed().as_secs_f64() < seconds + 12.0 {
         engine.poll(&mut |payload, seen_ns| {
             if let Some(Ok(sent)) = payload.get(8..16).map(TryInto::try_into) {
@@ -185,6 +183,11 @@ fn run(hosts: &Hosts, name: &str, seconds: f64, folder: &Path) -> Outcome<[Vec<f
 fn main() -> Outcome<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match words[..] {
+        // The threads that an engine starts inherit the priority.
+        ["sender" | "receiver", ..] => be_urgent(),
+        _ => {}
+    }
     match words[..] {
         ["sender", name, seconds, folder] => return sender(engine(name, true, folder.as_ref())?, seconds.parse()?),
         ["receiver", name, seconds, folder] => return receiver(engine(name, false, folder.as_ref())?, seconds.parse()?),

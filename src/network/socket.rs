@@ -1,8 +1,9 @@
-//! A UDP socket that never waits, and tells how long a datagram has lain in it.
+//! A UDP socket that never waits, and tells when a datagram came.
 
 use std::{
     io::{self, ErrorKind},
     net::{SocketAddr, UdpSocket},
+    time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
 use socket2::{Domain, Protocol, Socket as Maker, Type};
@@ -18,8 +19,23 @@ pub(crate) struct Arrival {
     /// Its length, bytes; more than the buffer's if it was cut.
     pub(crate) len: usize,
     pub(crate) from: SocketAddr,
-    /// How long it has lain in the socket, s; 0 where the system does not tell.
-    pub(crate) age_s: f64,
+    /// When it came to this machine, since 1970; `None` where the system does not tell.
+    pub(crate) stamp: Option<Duration>,
+}
+
+impl Arrival {
+    /// When it came, s, by the clock that showed `now_s` at `looked` (since 1970).
+    pub(crate) fn came_s(&self, now_s: f64, looked: Duration) -> f64 {
+        let Some(stamp) = self.stamp else { return now_s };
+        let age_s = looked.as_secs_f64() - stamp.as_secs_f64();
+        // What came just now is younger than the look; what is older than this shows that the system's clock was set.
+        if (-0.01..1.0).contains(&age_s) { now_s - age_s } else { now_s }
+    }
+}
+
+/// Time since 1970: that of the stamps.
+pub(crate) fn system_time() -> Duration {
+    SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default()
 }
 
 #[derive(Debug)]
@@ -86,13 +102,10 @@ mod stamps {
         mem::{size_of, zeroed},
         net::{Ipv4Addr, Ipv6Addr, SocketAddr, SocketAddrV4, SocketAddrV6, UdpSocket},
         os::fd::AsRawFd as _,
-        time::{Duration, SystemTime, UNIX_EPOCH},
+        time::Duration,
     };
 
     use super::Arrival;
-
-    /// A stamp older than this is none, s.
-    const AGE_MAX_S: f64 = 1.0;
 
     pub(super) fn switch_on(socket: &socket2::Socket) {
         let on: libc::c_int = 1;
@@ -119,13 +132,7 @@ mod stamps {
         let len = unsafe { libc::recvmsg(socket.as_raw_fd(), &raw mut message, libc::MSG_TRUNC) };
         let Ok(len) = usize::try_from(len) else { return Err(io::Error::last_os_error()) };
         let from = address(&name).ok_or(io::ErrorKind::InvalidData)?;
-        Ok(Arrival { len, from, age_s: stamp(&message).map_or(0.0, age_s) })
-    }
-
-    fn age_s(stamp: Duration) -> f64 {
-        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let age_s = now.saturating_sub(stamp).as_secs_f64();
-        if age_s < AGE_MAX_S { age_s } else { 0.0 }
+        Ok(Arrival { len, from, stamp: stamp(&message) })
     }
 
     /// When the datagram came, since 1970.
@@ -169,13 +176,13 @@ mod stamps {
 
     pub(super) fn receive(socket: &UdpSocket, buffer: &mut [u8]) -> io::Result<Arrival> {
         let (len, from) = socket.recv_from(buffer)?;
-        Ok(Arrival { len, from, age_s: 0.0 })
+        Ok(Arrival { len, from, stamp: None })
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::{thread::sleep, time::Duration};
+    use std::thread::sleep;
 
     use super::*;
 
@@ -193,7 +200,7 @@ mod tests {
                 let arrival = one.receive(&mut buffer).unwrap();
                 assert_eq!((arrival.from, buffer), (two.address().unwrap(), [7; 60]));
                 assert!(!cfg!(target_os = "linux") || arrival.len == 100, "longer than the buffer");
-                age_s = arrival.age_s;
+                age_s = -arrival.came_s(0.0, system_time());
                 if age_s > 0.019 {
                     break;
                 }

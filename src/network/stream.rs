@@ -92,6 +92,8 @@ pub struct Stream {
     sent: Meter,
     received: Meter,
     held: u64,
+    /// Payloads that no datagram has carried yet.
+    waiting: usize,
     plain: [u8; DATAGRAM_MAX],
 }
 
@@ -132,6 +134,7 @@ impl Stream {
             sent: Meter::default(),
             received: Meter::default(),
             held: 0,
+            waiting: 0,
             plain: [0; DATAGRAM_MAX],
         }
     }
@@ -169,16 +172,18 @@ impl Stream {
     /// Makes a datagram with this payload and the last ones before it; without a payload, one that keeps the session alive.
     /// `now_s` is the time at which it is sent, s.
     pub fn send(&mut self, now_s: f64, payload: Option<&[u8]>, control: u8, out: &mut [u8; DATAGRAM_MAX]) -> Sent {
-        if let Some(payload) = payload
-            && !self.history.add(payload, now_s)
-        {
-            return Sent::TooLong;
+        if let Some(payload) = payload {
+            if !self.history.add(payload, now_s) {
+                return Sent::TooLong;
+            }
+            self.waiting += 1;
         }
         let frame = OUTER_LEN + HEAD_LEN + TAG_LEN;
         let allowed = self.bucket.level(now_s) as usize;
         let Some(room) = allowed.checked_sub(UDP_LEN + frame) else { return self.hold(payload) };
         let is_limited = room < DATAGRAM_MAX - frame;
-        let wanted = copies_for(self.told_loss.0, self.told_loss.1);
+        // Those that were held have not been sent at all.
+        let wanted = copies_for(self.told_loss.0, self.told_loss.1).max(self.waiting);
         let end = HEAD_LEN + room.min(DATAGRAM_MAX - frame);
         let (records, count) = self.history.write(wanted, now_s, &mut self.plain[HEAD_LEN..end]);
         if payload.is_some() && count == 0 {
@@ -212,6 +217,7 @@ impl Stream {
         // It fails only for datagrams that are too long, and these are not.
         let Ok(sealed) = self.keys.write_message(self.counter, plain, &mut out[OUTER_LEN..]) else { return Sent::Held };
         self.counter += 1;
+        self.waiting = self.waiting.saturating_sub(count);
         self.bucket.spend((OUTER_LEN + sealed + UDP_LEN) as f64, now_s);
         self.sent.add(OUTER_LEN + sealed + UDP_LEN, now_s);
         Sent::Datagram(OUTER_LEN + sealed)
@@ -225,7 +231,7 @@ impl Stream {
     /// Takes a datagram of this session that came at `arrived_s` (s, our clock).
     ///
     /// # Errors
-    /// [`Unaccepted`] with the cause; nothing has changed then.
+    /// [`Unaccepted`] with the cause; its payloads are not taken then.
     pub fn receive(&mut self, datagram: &[u8], arrived_s: f64) -> Result<Accepted, Unaccepted> {
         let Some((_, low, sealed)) = wire::open_outer(datagram) else { return Err(Unaccepted::Malformed) };
         if sealed.len() < HEAD_LEN + TAG_LEN || datagram.len() > DATAGRAM_MAX {

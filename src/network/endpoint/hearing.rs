@@ -42,7 +42,7 @@ impl Endpoint {
             return;
         };
         let Some(session) = self.sessions[at].as_mut() else { return };
-        let accepted = match session.stream.receive(datagram, self.now_s - arrival.age_s) {
+        let accepted = match session.stream.receive(datagram, arrival.came_s(self.now_s, self.looked)) {
             Ok(accepted) => accepted,
             Err(cause) => {
                 *match cause {

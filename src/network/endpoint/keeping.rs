@@ -3,7 +3,8 @@
 use std::sync::atomic::Ordering::Relaxed;
 
 use super::{
-    ALIVE_S, ALIVE_WAITING_S, CONFIRM_S, CONSOLES_MAX, Endpoint, SESSIONS, clerk::News, config::Wish, session::Session,
+    ALIVE_S, ALIVE_WAITING_S, CONFIRM_S, CONSOLES_MAX, Endpoint, SEEK_AFTER_S, SESSIONS, clerk::News, config::Wish,
+    session::Session,
 };
 use crate::{
     control::{FromConsole, FromFollower},
@@ -25,6 +26,11 @@ impl Endpoint {
     fn opened(&mut self, mut session: Box<Session>) {
         (session.opened_s, session.heard_s) = (self.now_s, self.now_s);
         if !self.is_follower {
+            if self.session().is_some_and(|old| self.now_s - old.heard_s < SEEK_AFTER_S) {
+                // The old one has come back meanwhile, and goes on where it was.
+                drop(self.clerk.free(session));
+                return;
+            }
             if let Some(old) = self.active {
                 self.end(old);
             }

@@ -18,6 +18,7 @@ use std::{
     io,
     net::{Ipv4Addr, Ipv6Addr, SocketAddr},
     sync::atomic::Ordering::Relaxed,
+    time::Duration,
 };
 
 pub use self::config::{Config, Control, LinkState, OpenError, Outcome, Role};
@@ -33,7 +34,7 @@ use crate::{
     keys::PublicKey,
     playout::Payload,
     secure::{Approach, Reception},
-    socket::Socket,
+    socket::{Socket, system_time},
     stream::Sent,
     wire::DATAGRAM_MAX,
 };
@@ -76,7 +77,9 @@ pub struct Endpoint {
     wish: Wish,
     answer: Option<(u8, bool)>,
     dropped: Dropped,
+    /// The caller's time of the last poll, s, and the system's at that moment.
     now_s: f64,
+    looked: Duration,
     /// When the active session was last heard, s; also after it has ended.
     heard_s: Option<f64>,
     is_closed: bool,
@@ -118,6 +121,7 @@ impl Endpoint {
             answer: None,
             dropped: Dropped::default(),
             now_s: 0.0,
+            looked: Duration::ZERO,
             heard_s: None,
             is_closed: false,
             jumped: None,
@@ -137,7 +141,7 @@ impl Endpoint {
 
     /// Takes what has arrived and sends what keeps the session alive; once per tick. Gives the payloads that are due at `now_s`.
     pub fn poll(&mut self, now_s: f64) -> Received<'_> {
-        self.now_s = now_s;
+        (self.now_s, self.looked) = (now_s, system_time());
         self.take_news();
         self.hear();
         self.look_after_sessions();

@@ -2,7 +2,7 @@
 
 use nima_machine::{
     config::{ConfigError, RigConfig},
-    rig::{SensorPlace, Settings, Side},
+    rig::{ArmSet, SensorPlace, Settings, Side},
 };
 
 use super::Scene;
@@ -39,7 +39,11 @@ impl Scene {
     pub fn measures_at_wrist(&self, rig: &RigConfig, side: Side) -> bool {
         match &rig.devices {
             // Also for emulated devices: a scene that says nothing of a wrist gets the paper's there.
-            Some(devices) => devices.arm(side).is_some_and(|arm| arm.sensor_at == SensorPlace::Wrist),
+            // What is at another machine is measured there.
+            Some(devices) => {
+                let at_wrist = |arm: &ArmSet| arm.sensor_at == SensorPlace::Wrist;
+                devices.ends.have_follower() && devices.arm(side).is_some_and(at_wrist)
+            }
             None => self.has(rig, side) && self.wrist.is_some(),
         }
     }

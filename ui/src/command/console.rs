@@ -10,13 +10,14 @@ use clap::Args;
 use nima_machine::config::SchedulingClass;
 use nima_world::Plan;
 
-use super::{output, setup::Setup};
+use super::{network::ToFollower, output, setup::Setup};
 use crate::{
     console::{
         self, Begun, Options, app::start_recorded, in_force::InForce, pictures::Album, roles::Role, sessions::Sessions,
         wizards::Which,
     },
     emulators::Emulators,
+    line::Line,
     live::Live,
     telling::tell,
 };
@@ -27,6 +28,8 @@ pub(super) struct Arguments {
     setup: Setup,
     #[command(flatten)]
     live: Live,
+    #[command(flatten)]
+    network: ToFollower,
     /// Start in this view (default: the one used last)
     #[arg(long)]
     role: Option<Role>,
@@ -72,9 +75,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let (mut rig, scene) = arguments.setup.load()?;
     rig.scheduling = arguments.scheduling.unwrap_or(rig.scheduling);
+    let line = arguments.network.open(&mut rig)?;
     let leave = arguments.setup.leave()?;
     let choice = arguments.setup.choice();
-    let emulators = Emulators::start(&choice.rig, &choice.scene, rig.devices.as_ref())?;
+    // The emulators of the whole rig are the follower's.
+    let emulated = rig.devices.as_ref().filter(|_| line.is_none());
+    let emulators = Emulators::start(&choice.rig, &choice.scene, emulated)?;
     let mut in_force = InForce::load(None, &rig, &scene);
     let (rig, calibrations) = (in_force.with_checked(rig.clone()), in_force.calibrations(&rig));
     let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
@@ -90,7 +96,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         "live viewing shows what is recorded, and there is no folder for sessions: set NIMA_DATA_DIR"
     );
     let mut sessions = Sessions::of_user(folder, live);
-    let handle = start_recorded(&plan, &mut sessions)?;
+    let reports = line.as_ref().map(Line::reports);
+    let handle = start_recorded(&plan, &mut sessions, line)?;
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),
@@ -108,7 +115,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(folder) = &arguments.pictures {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
     }
-    console::run(Begun { choice, emulators, handle, rig, scene, sessions }, options)?;
+    console::run(Begun { choice, emulators, handle, rig, scene, sessions, reports }, options)?;
     if leave.is_asked() {
         tell("nima: ended as asked: force and drives are off");
     }

@@ -8,9 +8,12 @@ mod emulate;
 mod ending;
 mod evaluate;
 mod export;
+mod follower;
 mod identify;
 mod motion;
+mod network;
 pub(crate) mod output;
+mod pair;
 mod replay;
 mod report;
 mod run;
@@ -44,6 +47,10 @@ enum Command {
     Console(console::Arguments),
     /// Run the same control loop without a window, then print its timing and errors
     Run(run::Arguments),
+    /// Run the arm and its sensor here for a console at another machine (`nima console --follower HOST`)
+    Follower(follower::Arguments),
+    /// Pair this machine with another one, once, by a code that both show
+    Pair(pair::Arguments),
     /// Replay a recorded session through the same loop and compare every tick, or change one thing in it
     Replay(replay::Arguments),
     /// Write a recorded session as a table, or a stretch of it as a session of its own
@@ -103,6 +110,8 @@ pub fn main() -> ExitCode {
     let result = match command {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Follower(arguments) => follower::run(arguments),
+        Command::Pair(arguments) => pair::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Sessions(arguments) => sessions::run(&arguments),

@@ -15,8 +15,9 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_core::{calibration::gravity::Drift, impedance::Mode};
 use nima_machine::{
-    config::SchedulingClass,
+    config::{RigConfig, SchedulingClass},
     messages::{Command, Tick},
+    rig::Ends,
     runtime::{self, Assembly, Summary, Tap},
 };
 use nima_recording::store::WristId;
@@ -32,6 +33,7 @@ use self::{
 };
 use super::{
     ending::Reasons,
+    network::ToFollower,
     output,
     setup::Setup,
     truth::{self, Comparison},
@@ -40,15 +42,16 @@ use crate::{
     console::in_force::InForce,
     emulators::Emulators,
     leaving::Leave,
+    line::{Line, LinkFigures, LinkNews},
     live::{Live, Server},
     telling::tell,
-    words::{Remedy as _, drift as drift_in_words},
+    words::{Remedy as _, drift as drift_in_words, link_rows},
 };
 
 /// True forces at the tips that emulators tell in a second.
 const TRUTH_HZ: u32 = 200;
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "switches of a command")]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -70,7 +73,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     compare: bool,
     /// Run on a virtual clock, as fast as this computer can
-    #[arg(long = "virtual", conflicts_with = "live")]
+    #[arg(long = "virtual", conflicts_with_all = ["live", "follower"])]
     virtual_clock: bool,
     /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
     #[arg(long, value_name = "CLASS")]
@@ -80,9 +83,24 @@ pub(super) struct Arguments {
     record: Option<PathBuf>,
     #[command(flatten)]
     live: Live,
+    #[command(flatten)]
+    network: ToFollower,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
+}
+
+impl Arguments {
+    /// Of the machine with the arm: what is rendered, and how, is the console's.
+    pub(super) fn of_follower(
+        setup: Setup,
+        seconds: Option<f64>,
+        scheduling: Option<SchedulingClass>,
+        record: Option<PathBuf>,
+        json: bool,
+    ) -> Self {
+        Self { setup, seconds, scheduling, record, json, ..Self::default() }
+    }
 }
 
 /// A finite number of seconds above zero.
@@ -94,6 +112,14 @@ pub(super) fn positive_seconds(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    run_with(arguments, |rig| arguments.network.open(rig))
+}
+
+/// The same with the line to another machine that `open` gives, which changes the rig to what is at this one.
+pub(super) fn run_with(
+    arguments: &Arguments,
+    open: impl FnOnce(&mut RigConfig) -> anyhow::Result<Option<Line>>,
+) -> anyhow::Result<()> {
     let (mut rig, scene) = arguments.setup.load()?;
     rig.mode = arguments.mode.unwrap_or(rig.mode);
     rig.delay_s = arguments.delay_ms.map_or(rig.delay_s, |delay_ms| delay_ms * 1e-3);
@@ -104,8 +130,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.virtual_clock && rig.devices.is_some() {
         bail!("rig \"{}\" has devices, which need the real clock: remove --virtual", rig.name);
     }
+    let line = open(&mut rig)?;
+    let here = line.as_ref().map_or(Ends::Both, Line::here);
     let leave = arguments.setup.leave()?;
-    let emulators = Emulators::start(arguments.setup.rig(), arguments.setup.scene(), rig.devices.as_ref())?;
+    // The emulators of the whole rig are the follower's.
+    let emulated = rig.devices.as_ref().filter(|_| here.have_follower());
+    let emulators = Emulators::start(arguments.setup.rig(), arguments.setup.scene(), emulated)?;
     if let Some(emulators) = &emulators {
         emulators.tell_truth(TRUTH_HZ);
     }
@@ -114,6 +144,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     // With a calibrated wrist sensor the bias is checked before the tool may touch anything. Only rigs that cannot hurt
     // anybody engage automatically.
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
+    let by_itself = by_itself && here.have_leader();
     let engage = by_itself && in_force.drift().is_none() && !in_force.is_waiting();
     let rig = in_force.with_checked(rig);
     let plan = Plan { rig, scene, calibrations, engage };
@@ -124,6 +155,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         emulators,
         comparison: Comparison::default(),
         lacking: None,
+        link: LinkNews::default(),
     };
     if !plan.may_engage() {
         bail!(
@@ -140,7 +172,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             if leave.is_asked() || recording.is_over() { Some(Command::Shutdown) } else { command }
         })
     } else {
-        on_the_real_clock(&plan, tap, &mut start, &mut recording, &leave, arguments)?
+        on_the_real_clock(&plan, (tap, line), &mut start, &mut recording, &leave, arguments)?
     };
     let recorded = recording.end();
     drop(start.emulators.take());
@@ -155,12 +187,15 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             summary: &summary,
             tip_error,
             recorded: recorded.as_ref().ok().and_then(Option::as_ref),
+            link: start.link.newest().map(LinkFigures::from),
         })?;
     } else {
         let bias =
             drift.map_or_else(String::new, |drift| format!("\nbias of the wrist sensor: {}", drift_in_words(drift)));
         let kept = recorded.as_ref().ok().and_then(Option::as_ref).map_or_else(String::new, Recorded::in_words);
-        output::line(&(in_words(&plan, &summary) + &truth::in_words(&tip_error) + &bias + &kept))?;
+        let rows = start.link.newest().map(link_rows).unwrap_or_default();
+        let link = rows.iter().fold(String::new(), |all, [name, value]| all + "\n" + name + ": " + value);
+        output::line(&(in_words(&plan, &summary) + &truth::in_words(&tip_error) + &bias + &link + &kept))?;
     }
     recorded?;
     // Without its calibrations an emulated rig does what it can, and has said what it lacks.
@@ -177,6 +212,8 @@ struct Told<'a> {
     tip_error: Vec<TipError>,
     #[serde(skip_serializing_if = "Option::is_none")]
     recorded: Option<&'a Recorded>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    link: Option<LinkFigures>,
 }
 
 /// Engages after the bias of the wrist sensor has been checked, whatever the result.
@@ -188,6 +225,7 @@ struct Start {
     comparison: Comparison,
     /// What was told to be missing.
     lacking: Option<String>,
+    link: LinkNews,
 }
 
 impl Start {
@@ -228,13 +266,18 @@ impl Start {
 
 fn on_the_real_clock(
     plan: &Plan,
-    tap: Option<Tap>,
+    (tap, line): (Option<Tap>, Option<Line>),
     start: &mut Start,
     recording: &mut Recording,
     leave: &Leave,
     arguments: &Arguments,
 ) -> anyhow::Result<Summary> {
-    let handle = runtime::start(Assembly { tap, ..plan.assembly()? })?;
+    let assembly = Assembly { tap, ..plan.assembly()? };
+    let reports = line.as_ref().map(Line::reports);
+    let handle = runtime::start(match line {
+        Some(line) => line.join(assembly),
+        None => assembly,
+    })?;
     let ender = handle.ender();
     leave.at_once(move || ender.end());
     let mut status = StatusLine::new(!arguments.json);
@@ -257,6 +300,9 @@ fn on_the_real_clock(
             }
         });
         if let Some(words) = recording.newly_over() {
+            status.tell(&words);
+        }
+        if let Some(words) = reports.as_ref().and_then(|reports| start.link.hear(reports)) {
             status.tell(&words);
         }
         troubles.look(&handle, &status);

@@ -50,7 +50,7 @@ use super::{
     theme,
     wizards::Wizards,
 };
-use crate::{console::text, emulators::Emulators};
+use crate::{console::text, emulators::Emulators, line::Line};
 use checking::Checking;
 use listing::Listing;
 use starting::Starting;
@@ -115,9 +115,12 @@ pub struct ConsoleApp {
 }
 
 /// Starts the loop of a plan, recorded if sessions are.
-pub(crate) fn start_recorded(plan: &Plan, sessions: &mut Sessions) -> Result<Handle, StartError> {
-    let assembly = plan.assembly()?;
-    runtime::start(Assembly { tap: sessions.begin(plan), ..assembly })
+pub(crate) fn start_recorded(plan: &Plan, sessions: &mut Sessions, line: Option<Line>) -> Result<Handle, StartError> {
+    let assembly = Assembly { tap: sessions.begin(plan), ..plan.assembly()? };
+    runtime::start(match line {
+        Some(line) => line.join(assembly),
+        None => assembly,
+    })
 }
 
 impl ConsoleApp {
@@ -260,7 +263,7 @@ impl ConsoleApp {
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
         let started = match self.simulated_speed {
             Some(speed) => nima_world::start_simulated(&plan, speed),
-            None => start_recorded(&plan, &mut self.sessions),
+            None => start_recorded(&plan, &mut self.sessions, None),
         };
         let started = started.map_err(|error| text::calibrations::not_started_again(&error));
         let rough_edges = self.live.rough_edges;

@@ -9,6 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use crossbeam_channel::Receiver;
 use nalgebra::Vector3;
 use nima_core::{
     impedance::{Mode, SLOTS},
@@ -19,9 +20,11 @@ use nima_devices::Standing;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Fault, LoopState, Refusal, Scheduling, Tick, attention},
-    rig::{Gauges, Healths, Roster, SIDES, Side},
+    rig::{DEVICES_MAX, Gauges, Healths, Roster, SIDES, Side},
 };
 use nima_world::scene::Scene;
+
+use crate::{line::LineReport, words::link_trouble};
 
 use super::{
     activity::Activity,
@@ -52,6 +55,13 @@ const READINGS_EVERY: Duration = Duration::from_millis(100);
 const BLOCKS_KEPT: usize = 40;
 /// How long a refused command is displayed.
 const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
+
+/// A line that carries nothing, as a device that is missing: behind the last place of a roster.
+fn missing_line(line: &LineReport) -> Option<Missing> {
+    let [cause, cure] = link_trouble(line.state)?;
+    let was_there = line.figures.counts.delivered > 0;
+    Some(Missing { place: DEVICES_MAX, name: text::link::LINK.to_owned(), was_there, cause, cure })
+}
 
 /// What is on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,6 +130,10 @@ pub struct Live {
     pub roster: Roster,
     /// Health of the devices, in the same order.
     pub healths: Healths,
+    /// What was last told of the line to the machine with the arm, if it is at another one.
+    pub(crate) line: Option<LineReport>,
+    /// Where that is told.
+    pub(crate) line_reports: Option<Receiver<LineReport>>,
     /// What the devices have delivered in the last seconds, oldest first.
     pub blocks: VecDeque<Box<Gauges>>,
     /// Number of such blocks since the loop began.
@@ -171,6 +185,8 @@ impl Live {
             bias_moved_n: None,
             is_unchecked: false,
             roster: Roster::new(),
+            line: None,
+            line_reports: None,
             healths: Healths::default(),
             blocks: VecDeque::with_capacity(BLOCKS_KEPT + 1),
             blocks_counted: 0,
@@ -308,8 +324,12 @@ impl Live {
         self.stiffness.iter().filter_map(ContactStiffness::n_m).max_by(f64::total_cmp)
     }
 
-    /// Devices that are wanted and do not deliver, in the order of the roster.
+    /// What is wanted and does not deliver: the line to the other machine, then devices in the order of the roster.
     pub fn missing(&self) -> impl Iterator<Item = Missing> {
+        self.line.iter().filter_map(missing_line).chain(self.missing_devices())
+    }
+
+    fn missing_devices(&self) -> impl Iterator<Item = Missing> {
         self.roster.iter().zip(&self.healths.devices).enumerate().filter_map(|(place, (entry, health))| {
             let was_there = match health.standing {
                 Standing::Connected | Standing::Closed => return None,

@@ -41,6 +41,7 @@ pub mod theme;
 pub mod widgets;
 pub mod wizards;
 
+use crossbeam_channel::Receiver;
 use std::{path::PathBuf, time::Duration};
 
 use nima_machine::{config::RigConfig, runtime::Handle};
@@ -51,6 +52,7 @@ use start::Choice;
 
 pub use app::ConsoleApp;
 
+use crate::line::LineReport;
 use crate::{emulators::Emulators, leaving::Leave};
 
 /// Options of the window, for screenshots and tests. By default it stays open until it is closed.
@@ -89,6 +91,8 @@ pub(crate) struct Begun {
     pub(crate) rig: RigConfig,
     pub(crate) scene: Scene,
     pub(crate) sessions: Sessions,
+    /// Reports of the line to the machine with the arm, if it is at another one.
+    pub(crate) reports: Option<Receiver<LineReport>>,
 }
 
 /// Opens the console for a running loop; returns when the window is closed and the loop has ended.
@@ -115,9 +119,12 @@ pub(crate) fn run(begun: Begun, options: Options) -> anyhow::Result<()> {
 
 /// The console with the user's settings; screenshots use the defaults and do not change the settings.
 fn console(cc: &eframe::CreationContext<'_>, begun: Begun, options: Options) -> ConsoleApp {
-    let Begun { choice, emulators, handle, rig, scene, sessions } = begun;
+    let Begun { choice, emulators, handle, rig, scene, sessions, reports } = begun;
     let settings = if options.pictures.is_some() { Kept::default() } else { Kept::of_user() };
-    let app = ConsoleApp::new(cc, handle, rig, scene).with_choice(choice, emulators).with_sessions(sessions);
+    let app = ConsoleApp::new(cc, handle, rig, scene)
+        .with_choice(choice, emulators)
+        .with_sessions(sessions)
+        .with_line(reports);
     app.with_settings(settings).with_options(options)
 }
 

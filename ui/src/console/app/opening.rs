@@ -2,12 +2,15 @@
 
 use std::path::Path;
 
+use crossbeam_channel::Receiver;
+
 use super::{ConsoleApp, WARM_UP};
 use crate::{
     console::{
         Options, frames::Meter, in_force::InForce, pictures::Photographer, screenshot, sessions::Sessions,
         settings::Kept, wizards::Wizards,
     },
+    line::LineReport,
     telling::tell,
 };
 
@@ -62,6 +65,13 @@ impl ConsoleApp {
     #[must_use]
     pub(crate) fn with_sessions(mut self, sessions: Sessions) -> Self {
         self.sessions = sessions;
+        self
+    }
+
+    /// Shows what is told of the line to the machine with the arm.
+    #[must_use]
+    pub(crate) fn with_line(mut self, reports: Option<Receiver<LineReport>>) -> Self {
+        self.live.line_reports = reports;
         self
     }
 

@@ -25,6 +25,9 @@ impl Live {
             self.roster.clone_from(handle.roster());
             self.activity = Activity::of(&self.roster);
         }
+        if let Some(report) = self.line_reports.as_ref().and_then(|reports| reports.try_iter().last()) {
+            self.line = Some(report);
+        }
         if let Some(healths) = handle.healths() {
             self.healths = healths;
         }

@@ -25,6 +25,7 @@ pub(super) mod gates;
 pub(super) mod gravity;
 pub(super) mod help;
 pub(super) mod horizon;
+pub(super) mod link;
 pub(super) mod menu;
 pub(super) mod overview;
 pub(super) mod past;

@@ -1,0 +1,41 @@
+//! `nima follower`: the arm and its sensor at this machine, for a console at another one.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use nima_machine::config::SchedulingClass;
+
+use super::{network, run, setup::Setup};
+use crate::telling::tell;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    setup: Setup,
+    /// Address of this machine at which to listen; without one only consoles on this machine reach it
+    #[arg(long, value_name = "ADDRESS[:PORT]")]
+    listen: Option<String>,
+    /// Seconds to run (default: until Ctrl-C)
+    #[arg(long, value_name = "S", value_parser = run::positive_seconds, allow_negative_numbers = true)]
+    seconds: Option<f64>,
+    /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
+    #[arg(long, value_name = "CLASS")]
+    scheduling: Option<SchedulingClass>,
+    /// Record the session of this machine into a new file
+    #[arg(long, value_name = "FILE.mcap")]
+    record: Option<PathBuf>,
+    /// Print the results as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: Arguments) -> anyhow::Result<()> {
+    let at = network::listening(arguments.listen.as_deref())?;
+    let Arguments { setup, seconds, scheduling, record, json, .. } = arguments;
+    let run = run::Arguments::of_follower(setup, seconds, scheduling, record, json);
+    run::run_with(&run, |rig| {
+        let line = network::listen(rig, Some(at))?;
+        tell(format_args!("the follower listens at {at}"));
+        Ok(Some(line))
+    })
+}

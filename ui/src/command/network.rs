@@ -1,0 +1,128 @@
+//! Opens the line to another machine for the commands that run a loop.
+
+use std::net::{Ipv4Addr, SocketAddr, ToSocketAddrs as _};
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use nima_machine::{
+    config::RigConfig,
+    remote::at_follower,
+    rig::{Ends, Side},
+};
+use nima_network::{
+    endpoint::{Config, Endpoint, PORT, Role},
+    keys::{Keys, Peers, PublicKey},
+    stream::StreamSettings,
+    wire::PAYLOAD_MAX,
+};
+
+use crate::line::Line;
+
+/// The option of a command whose arm may be at another machine.
+#[derive(Debug, Default, Args)]
+pub(super) struct ToFollower {
+    /// The arm and its sensor are at this machine, where `nima follower` runs; here are the handle and the screen
+    #[arg(long, value_name = "HOST[:PORT]")]
+    follower: Option<String>,
+}
+
+impl ToFollower {
+    /// Opens the line, if one is asked for; changes the rig to what is here.
+    pub(super) fn open(&self, rig: &mut RigConfig) -> anyhow::Result<Option<Line>> {
+        let Some(host) = &self.follower else { return Ok(None) };
+        let follower = address(host)?;
+        let (keys, peers) = own_keys()?;
+        let paired = peers.list().iter().find(|peer| peer.name == name_of(host)).map(|peer| peer.key);
+        // A follower of the same user on the same machine has the same key.
+        let key = paired.or_else(|| follower.ip().is_loopback().then(|| keys.public()));
+        let Some(key) = key else {
+            bail!("this machine is not paired with {host}: run `nima pair {host}` here and `nima pair --offer` there");
+        };
+        here(rig, Ends::Leader);
+        open(rig, Role::Console { follower, key }, keys, Ends::Leader).map(Some)
+    }
+}
+
+/// Opens the follower's end at this address; changes the rig to what is here.
+pub(super) fn listen(rig: &mut RigConfig, at: Option<SocketAddr>) -> anyhow::Result<Line> {
+    let (keys, mut consoles) = own_keys()?;
+    // The same user's console on this machine.
+    let own: PublicKey = keys.public();
+    if consoles.with_key(&own).is_none() {
+        consoles.add("this machine", own)?;
+    }
+    *rig = at_follower(rig);
+    here(rig, Ends::Follower);
+    open(rig, Role::Follower { at, consoles }, keys, Ends::Follower)
+}
+
+fn here(rig: &mut RigConfig, ends: Ends) {
+    if let Some(devices) = &mut rig.devices {
+        devices.ends = ends;
+    }
+}
+
+fn open(rig: &RigConfig, role: Role, keys: Keys, ends: Ends) -> anyhow::Result<Line> {
+    // 1 Mbit/s for each arm.
+    let arms = match &rig.devices {
+        Some(devices) => Side::ALL.into_iter().filter(|side| devices.arm(*side).is_some()).count(),
+        None => 2,
+    };
+    let stream =
+        StreamSettings { payload_max: PAYLOAD_MAX, rate_max_bit_s: 1e6 * arms as f64, ..StreamSettings::default() };
+    let endpoint = Endpoint::open(Config { stream, ..Config::new(role, keys) })?;
+    Ok(Line::new(endpoint, ends))
+}
+
+/// The folder of this machine's key and of the machines that it is paired with.
+pub(super) fn folder() -> anyhow::Result<std::path::PathBuf> {
+    let store = nima_recording::store::Store::of_user()?;
+    let folder = store.folder().parent().context("no folder for your files was found; set NIMA_DATA_DIR")?;
+    let folder = folder.join("network");
+    std::fs::create_dir_all(&folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
+    Ok(folder)
+}
+
+/// This machine's key, and the machines that it is paired with.
+pub(super) fn own_keys() -> anyhow::Result<(Keys, Peers)> {
+    let folder = folder()?;
+    Ok((Keys::open(&folder)?, Peers::open(&folder)?))
+}
+
+/// The name by which a paired machine is found again: as it was addressed, without the port.
+pub(super) fn name_of(host: &str) -> &str {
+    if host.parse::<std::net::Ipv6Addr>().is_ok() {
+        return host;
+    }
+    host.rsplit_once(':').map_or(host, |(name, _)| name)
+}
+
+/// The address of a host, with the usual port unless it names one.
+pub(super) fn address(host: &str) -> anyhow::Result<SocketAddr> {
+    let with_port = host.to_socket_addrs();
+    let mut found = with_port.or_else(|_| (host, PORT).to_socket_addrs()).with_context(|| {
+        format!(
+            "cannot find the machine \"{host}\": give its name or address, and a port after a colon if it is not {PORT}"
+        )
+    })?;
+    found.next().with_context(|| format!("the machine \"{host}\" has no address"))
+}
+
+/// Where a follower listens: this address, with the usual port unless it names one; loopback if there is none.
+pub(super) fn listening(at: Option<&str>) -> anyhow::Result<SocketAddr> {
+    at.map_or_else(|| Ok((Ipv4Addr::LOCALHOST, PORT).into()), address)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_host_may_name_its_port() {
+        assert_eq!(address("127.0.0.1").unwrap(), SocketAddr::from(([127, 0, 0, 1], PORT)));
+        assert_eq!(address("127.0.0.1:99").unwrap(), SocketAddr::from(([127, 0, 0, 1], 99)));
+        assert_eq!((name_of("theatre-2:99"), name_of("theatre-2"), name_of("::1")), ("theatre-2", "theatre-2", "::1"));
+        assert!(address("no such host").unwrap_err().to_string().contains("no such host"));
+        assert_eq!(listening(None).unwrap(), SocketAddr::from(([127, 0, 0, 1], PORT)));
+    }
+}

@@ -156,14 +156,16 @@ fn rms_n(errors: &[f64]) -> f64 {
 /// force.
 fn over_a_network(delay_s: f64, mode: Mode) -> [f64; 2] {
     let mut bench = Bench::engaged(delay_s, mode);
-    let (mut felt_n, mut tip_n) = (Vec::new(), Vec::new());
+    let (mut felt_n, mut tip_n, mut hand_n) = (Vec::new(), Vec::new(), 0.0_f64);
     for _ in 0..20_000 {
         bench.run(1);
         felt_n.push(bench.leader.tick.unwrap().asked_n[mode.index()]);
         tip_n.push(bench.follower.tick.unwrap().measured_n);
+        hand_n = hand_n.max(bench.leader.tick.unwrap().rendered_n.norm());
     }
     let ahead = (delay_s * 1e3).round() as usize;
     let errors: Vec<f64> = felt_n.iter().zip(&tip_n[ahead..]).skip(4000).map(|(a, b)| (a - b).norm()).collect();
+    assert!(hand_n > 0.5, "{hand_n} N at the hand");
     [rms_n(&errors), tip_n.iter().map(Vector3::norm).fold(0.0, f64::max)]
 }
 

@@ -38,6 +38,9 @@ pub struct FarLeader<R, W> {
     wire: W,
     rate_hz: f64,
     heard: Option<Heard>,
+    /// The hands as the loop here sees them, m: they move as the commands do, and only while these are to be followed, so that a new
+    /// beginning is no jump.
+    hands_m: [Vector3<f64>; SIDES],
     /// What this machine's pairs were last.
     states: [Option<LoopState>; SIDES],
     inputs: [Option<Inputs>; SIDES],
@@ -62,6 +65,7 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
             wire,
             rate_hz,
             heard: None,
+            hands_m: [Vector3::new(0.0, 0.0, 0.0); SIDES],
             states: [None; SIDES],
             inputs: [None; SIDES],
             commands: [None; COMMANDS_MAX],
@@ -97,7 +101,19 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
         self.heard = newest;
         self.commands = [None; COMMANDS_MAX];
         if let Some(heard) = newest.filter(|heard| heard.at_s >= now_s) {
+            self.move_hands(&heard.message, before.map(|heard| heard.message).as_ref());
             self.follow(&heard.message, before.map(|heard| heard.message).as_ref());
+        }
+    }
+
+    fn move_hands(&mut self, now: &LeaderMessage, before: Option<&LeaderMessage>) {
+        for side in Side::ALL.map(Side::index) {
+            let told = now.sides[side].zip(before.and_then(|before| before.sides[side]));
+            if let Some((now, before)) = told
+                && [now.intent, before.intent] == [Intent::Follow; 2]
+            {
+                self.hands_m[side] += now.tip_m - before.tip_m;
+            }
         }
     }
 
@@ -154,7 +170,7 @@ impl<R: Rig, W: Wire> Rig for FarLeader<R, W> {
         let mut inputs = [None; SIDES];
         for side in Side::ALL.map(Side::index) {
             let told = heard.and_then(|heard| heard.message.sides[side]);
-            inputs[side] = self.inputs[side].zip(told).map(|(here, told)| join(&here, &told));
+            inputs[side] = self.inputs[side].zip(told).map(|(here, told)| join(&here, &told, self.hands_m[side]));
             if let (Some(inputs), Some(heard)) = (&mut inputs[side], heard) {
                 inputs.silent_s = now_s - heard.at_s;
             }
@@ -207,9 +223,9 @@ impl<R: Rig, W: Wire> Rig for FarLeader<R, W> {
     }
 }
 
-fn join(here: &Inputs, told: &LeaderSide) -> Inputs {
+fn join(here: &Inputs, told: &LeaderSide, position_m: Vector3<f64>) -> Inputs {
     Inputs {
-        hand: Hand { position_m: told.tip_m, orientation: told.world_from_jaws },
+        hand: Hand { position_m, orientation: told.world_from_jaws },
         gripper_rad: told.gripper_rad,
         view: View::Fixed,
         // The follower moves only while the operator's pair is engaged; who holds the handle is judged there.

@@ -75,7 +75,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let (mut rig, scene) = arguments.setup.load()?;
     rig.scheduling = arguments.scheduling.unwrap_or(rig.scheduling);
-    let line = arguments.network.open(&mut rig)?;
+    let line = arguments.network.open(&mut rig, &scene)?;
     let leave = arguments.setup.leave()?;
     let choice = arguments.setup.choice();
     // The emulators of the whole rig are the follower's.

@@ -33,8 +33,8 @@ pub(super) fn run(arguments: Arguments) -> anyhow::Result<()> {
     let at = network::listening(arguments.listen.as_deref())?;
     let Arguments { setup, seconds, scheduling, record, json, .. } = arguments;
     let run = run::Arguments::of_follower(setup, seconds, scheduling, record, json);
-    run::run_with(&run, |rig| {
-        let line = network::listen(rig, Some(at))?;
+    run::run_with(&run, |rig, scene| {
+        let line = network::listen(rig, scene, at)?;
         tell(format_args!("the follower listens at {at}"));
         Ok(Some(line))
     })

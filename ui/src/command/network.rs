@@ -16,6 +16,8 @@ use nima_network::{
     wire::PAYLOAD_MAX,
 };
 
+use nima_world::scene::Scene;
+
 use crate::line::Line;
 
 /// The option of a command whose arm may be at another machine.
@@ -28,7 +30,7 @@ pub(super) struct ToFollower {
 
 impl ToFollower {
     /// Opens the line, if one is asked for; changes the rig to what is here.
-    pub(super) fn open(&self, rig: &mut RigConfig) -> anyhow::Result<Option<Line>> {
+    pub(super) fn open(&self, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Option<Line>> {
         let Some(host) = &self.follower else { return Ok(None) };
         let follower = address(host)?;
         let (keys, peers) = own_keys()?;
@@ -39,12 +41,12 @@ impl ToFollower {
             bail!("this machine is not paired with {host}: run `nima pair {host}` here and `nima pair --offer` there");
         };
         here(rig, Ends::Leader);
-        open(rig, Role::Console { follower, key }, keys, Ends::Leader).map(Some)
+        open(arms(rig, scene), Role::Console { follower, key }, keys, Ends::Leader).map(Some)
     }
 }
 
 /// Opens the follower's end at this address; changes the rig to what is here.
-pub(super) fn listen(rig: &mut RigConfig, at: Option<SocketAddr>) -> anyhow::Result<Line> {
+pub(super) fn listen(rig: &mut RigConfig, scene: &Scene, at: SocketAddr) -> anyhow::Result<Line> {
     let (keys, mut consoles) = own_keys()?;
     // The same user's console on this machine.
     let own: PublicKey = keys.public();
@@ -53,7 +55,7 @@ pub(super) fn listen(rig: &mut RigConfig, at: Option<SocketAddr>) -> anyhow::Res
     }
     *rig = at_follower(rig);
     here(rig, Ends::Follower);
-    open(rig, Role::Follower { at, consoles }, keys, Ends::Follower)
+    open(arms(rig, scene), Role::Follower { at: Some(at), consoles }, keys, Ends::Follower)
 }
 
 fn here(rig: &mut RigConfig, ends: Ends) {
@@ -62,12 +64,12 @@ fn here(rig: &mut RigConfig, ends: Ends) {
     }
 }
 
-fn open(rig: &RigConfig, role: Role, keys: Keys, ends: Ends) -> anyhow::Result<Line> {
+fn arms(rig: &RigConfig, scene: &Scene) -> usize {
+    Side::ALL.into_iter().filter(|side| scene.has(rig, *side)).count()
+}
+
+fn open(arms: usize, role: Role, keys: Keys, ends: Ends) -> anyhow::Result<Line> {
     // 1 Mbit/s for each arm.
-    let arms = match &rig.devices {
-        Some(devices) => Side::ALL.into_iter().filter(|side| devices.arm(*side).is_some()).count(),
-        None => 2,
-    };
     let stream =
         StreamSettings { payload_max: PAYLOAD_MAX, rate_max_bit_s: 1e6 * arms as f64, ..StreamSettings::default() };
     let endpoint = Endpoint::open(Config { stream, ..Config::new(role, keys) })?;

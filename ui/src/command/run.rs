@@ -22,7 +22,7 @@ use nima_machine::{
 };
 use nima_recording::store::WristId;
 use nima_session::outlet::Destination;
-use nima_world::{Plan, emulated::TipError};
+use nima_world::{Plan, emulated::TipError, scene::Scene};
 use serde::Serialize;
 
 use self::{
@@ -112,13 +112,13 @@ pub(super) fn positive_seconds(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    run_with(arguments, |rig| arguments.network.open(rig))
+    run_with(arguments, |rig, scene| arguments.network.open(rig, scene))
 }
 
 /// The same with the line to another machine that `open` gives, which changes the rig to what is at this one.
 pub(super) fn run_with(
     arguments: &Arguments,
-    open: impl FnOnce(&mut RigConfig) -> anyhow::Result<Option<Line>>,
+    open: impl FnOnce(&mut RigConfig, &Scene) -> anyhow::Result<Option<Line>>,
 ) -> anyhow::Result<()> {
     let (mut rig, scene) = arguments.setup.load()?;
     rig.mode = arguments.mode.unwrap_or(rig.mode);
@@ -130,7 +130,7 @@ pub(super) fn run_with(
     if arguments.virtual_clock && rig.devices.is_some() {
         bail!("rig \"{}\" has devices, which need the real clock: remove --virtual", rig.name);
     }
-    let line = open(&mut rig)?;
+    let line = open(&mut rig, &scene)?;
     let here = line.as_ref().map_or(Ends::Both, Line::here);
     let leave = arguments.setup.leave()?;
     // The emulators of the whole rig are the follower's.

@@ -72,7 +72,10 @@ fn engine(name: &str, sends: bool, folder: &Path) -> Outcome<Box<dyn Engine>> {
 }
 
 fn quantile(sorted: &[f64], share: f64) -> f64 {
-    sorted.get(((sorted.len() as f64 * share) as usize).min(sorted.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
+    sorted
+        .get(((sorted.len() as f64 * share) as usize).min(sorted.len().saturating_sub(1)))
+        .copied()
+        .unwrap_or(f64::NAN)
 }
 
 /// The process on the sender's host: prints median and 99th percentile of what sending took (us), its load (%), and payloads sent.
@@ -190,7 +193,9 @@ fn main() -> Outcome<()> {
     }
     match words[..] {
         ["sender", name, seconds, folder] => return sender(engine(name, true, folder.as_ref())?, seconds.parse()?),
-        ["receiver", name, seconds, folder] => return receiver(engine(name, false, folder.as_ref())?, seconds.parse()?),
+        ["receiver", name, seconds, folder] => {
+            return receiver(engine(name, false, folder.as_ref())?, seconds.parse()?);
+        }
         _ => {}
     }
     let seconds = words.first().map_or(Ok(8.0), |word| word.parse())?;
@@ -205,7 +210,16 @@ fn main() -> Outcome<()> {
             match run(&hosts, name, seconds, &folder) {
                 Ok([there, here]) => println!(
                     "| {name} | {} | {} | {} | {} | {} | {} | {}, {} | {} of {} |",
-                    there[1], there[2], there[3], there[4], here[0], here[1], here[2], there[5], here[3] - there[0], here[3]
+                    there[1],
+                    there[2],
+                    there[3],
+                    there[4],
+                    here[0],
+                    here[1],
+                    here[2],
+                    there[5],
+                    here[3] - there[0],
+                    here[3]
                 ),
                 Err(error) => println!("| {name} | {error} |"),
             }

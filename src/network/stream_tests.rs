@@ -280,7 +280,7 @@ fn figures_of_lines() {
     for overtakes in [false, true] {
         println!("datagrams may overtake each other: {overtakes}");
         for (name, delay_s, jitter, loss) in lines {
-            let settings = Settings { delay_s, jitter, loss, overtakes, ..Settings::default() };
+            let settings = Settings { delay_s, jitter, overtakes, loss, ..Settings::default() };
             let mut link = Link::new(settings, stream(4e6), 40);
             link.run(60.0);
             let before = link.figures(0).counts;

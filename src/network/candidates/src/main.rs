@@ -1,7 +1,7 @@
 //! What the stream between two machines could be made of, compared in one loop: raw UDP, the link of `nima-network` (UDP with snow),
 //! quinn-proto and zenoh. Two processes in two network namespaces, 1 kHz, real-time priority. Needs root, and Linux.
 //!
-//! `cargo run --release -- [seconds] [rounds]`
+//! `cargo run --release -- [seconds] [rounds] [engine ...]`
 
 mod datagrams;
 mod own;
@@ -206,7 +206,7 @@ fn main() -> Outcome<()> {
     let hosts = Hosts::new()?;
     println!("| engine | p50 us | p99 | p99.9 | max | send us p50 | p99 | load of sender, receiver % | lost |");
     for _ in 0..rounds {
-        for name in ENGINES {
+        for name in ENGINES.into_iter().filter(|name| words.len() < 3 || words[2..].contains(name)) {
             match run(&hosts, name, seconds, &folder) {
                 Ok([there, here]) => println!(
                     "| {name} | {} | {} | {} | {} | {} | {} | {}, {} | {} of {} |",

@@ -170,7 +170,7 @@ impl Stream {
     }
 
     /// Makes a datagram with this payload and the last ones before it; without a payload, one that keeps the session alive.
-    /// `now_s` is the time at which it is sent, s.
+    /// `now_s` is the time at which it is sent, s; `control` is the endpoints' byte about who holds the follower, 0 for nothing.
     pub fn send(&mut self, now_s: f64, payload: Option<&[u8]>, control: u8, out: &mut [u8; DATAGRAM_MAX]) -> Sent {
         if let Some(payload) = payload {
             if !self.history.add(payload, now_s) {

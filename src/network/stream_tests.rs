@@ -256,3 +256,48 @@ fn figures_of_a_hundred_million_forged_datagrams() {
 fn fuzz_datagrams() {
     nima_testing::fuzz::rounds(|seed| assert_eq!(attack(20_000, seed), 0));
 }
+
+/// What to expect of a line: prints the table of docs/network.md.
+#[test]
+#[ignore = "ten seconds: ./dev figures"]
+fn figures_of_lines() {
+    let bursts = |burst_s| Loss::Bursts { share: 0.05, burst_s };
+    let pareto = Jitter::Pareto { mean_s: 2e-3, shape: 3.0 };
+    let normal = |deviation_s| Jitter::Normal { deviation_s };
+    let lines = [
+        ("one room", 0.2e-3, normal(0.05e-3), Loss::None),
+        ("one building", 2e-3, normal(0.5e-3), Loss::Independent { share: 0.001 }),
+        ("10 ms", 10e-3, normal(1e-3), Loss::Independent { share: 0.01 }),
+        ("50 ms", 50e-3, normal(5e-3), Loss::Independent { share: 0.01 }),
+        ("150 ms", 150e-3, normal(5e-3), Loss::Independent { share: 0.05 }),
+        ("50 ms, long tail", 50e-3, pareto, Loss::Independent { share: 0.01 }),
+        ("50 ms, 10 % lost", 50e-3, normal(1e-3), Loss::Independent { share: 0.1 }),
+        ("50 ms, 30 % lost", 50e-3, normal(1e-3), Loss::Independent { share: 0.3 }),
+        ("50 ms, 30 % lost, jitter 20 ms", 50e-3, normal(20e-3), Loss::Independent { share: 0.3 }),
+        ("50 ms, 5 % lost in bursts of 10 ms", 50e-3, normal(1e-3), bursts(10e-3)),
+        ("50 ms, 5 % lost in bursts of 50 ms", 50e-3, normal(1e-3), bursts(50e-3)),
+    ];
+    for overtakes in [false, true] {
+        println!("datagrams may overtake each other: {overtakes}");
+        for (name, delay_s, jitter, loss) in lines {
+            let settings = Settings { delay_s, jitter, overtakes, loss, ..Settings::default() };
+            let mut link = Link::new(settings, stream(4e6), 40);
+            link.run(60.0);
+            let before = link.figures(0).counts;
+            link.run(60.0);
+            let figures = link.figures(0);
+            let (all, lost) = (figures.counts.delivered - before.delivered, figures.counts.lost - before.lost);
+            let late = (figures.counts.late - before.late) as f64 / all as f64 * 100.0;
+            let error_s = figures.clock.map_or(f64::NAN, |clock| (clock.offset_s - link.offset_s).abs());
+            println!(
+                "| {name} | {:.1} | {late:.2} | {:.3} | {} | {:.2} | {:.2} |",
+                figures.playout_s.unwrap_or(f64::NAN) * 1e3,
+                lost as f64 / (all + lost) as f64 * 100.0,
+                figures.copies.used,
+                figures.sent.rate_bit_s * 1e-6,
+                error_s * 1e3,
+            );
+            assert!(all > 30_000 && figures.steps == 0, "{name}: {figures:?}");
+        }
+    }
+}

@@ -83,20 +83,23 @@ impl Kind {
 pub enum Unreadable {
     /// Not of this protocol, cut, or with numbers that contradict each other.
     Malformed,
-    /// Of another version of this protocol.
+    /// Of a handshake of another version of this protocol.
     ForeignVersion(u8),
+    /// As long and of the kind as one of a session, but of another version. It is never answered.
+    ForeignData(u8),
 }
 
 /// Version and kind of a datagram.
 ///
 /// # Errors
-/// [`Unreadable`] if it is none of this version. Only a datagram with [`MAGIC`] is said to be of another version: random bytes are not.
+/// [`Unreadable`] if it is none of this version. Only a datagram with [`MAGIC`] is of a handshake of another version: random bytes are not.
 pub fn kind(datagram: &[u8]) -> Result<Kind, Unreadable> {
     let [version, kind, ..] = *datagram else { return Err(Unreadable::Malformed) };
     let kind = Kind::ALL.into_iter().find(|known| known.number() == kind);
     match kind {
-        Some(Kind::Data) if version == VERSION && datagram.len() >= OUTER_LEN + TAG_LEN + HEAD_LEN => Ok(Kind::Data),
-        Some(Kind::Data) => Err(Unreadable::Malformed),
+        Some(Kind::Data) if datagram.len() < OUTER_LEN + TAG_LEN + HEAD_LEN => Err(Unreadable::Malformed),
+        Some(Kind::Data) if version != VERSION => Err(Unreadable::ForeignData(version)),
+        Some(Kind::Data) => Ok(Kind::Data),
         _ if datagram.get(2..TOKEN_AT) != Some(&MAGIC) || datagram.len() < HANDSHAKE_LEN => Err(Unreadable::Malformed),
         // A refusal can be read in every version.
         Some(Kind::Refusal) => Ok(Kind::Refusal),
@@ -287,6 +290,11 @@ mod tests {
         assert_eq!(kind(b"GET / HTTP/1.1\r\n\r\n"), Err(Unreadable::Malformed));
         assert_eq!(kind(&[]), Err(Unreadable::Malformed));
         assert_eq!(kind(&outer(1, 2)), Err(Unreadable::Malformed), "nothing behind it");
+        let mut data = [0; 100];
+        data[..OUTER_LEN].copy_from_slice(&outer(1, 2));
+        assert_eq!(kind(&data), Ok(Kind::Data));
+        data[0] = VERSION + 1;
+        assert_eq!(kind(&data), Err(Unreadable::ForeignData(VERSION + 1)));
     }
 
     #[test]

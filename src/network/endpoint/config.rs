@@ -15,7 +15,7 @@ pub enum Role {
     Follower {
         /// Where it listens; `None` for [`PORT`](super::PORT) of loopback, so that nobody outside can reach it.
         at: Option<SocketAddr>,
-        /// The consoles that it admits.
+        /// The consoles that it admits; one that is paired later is admitted when the endpoint is opened anew.
         consoles: Peers,
     },
     /// The end with the handle.

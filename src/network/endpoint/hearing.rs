@@ -24,6 +24,7 @@ impl Endpoint {
         match wire::kind(datagram) {
             Ok(Kind::Data) => self.take_data(arrival),
             Ok(Kind::Pairing) | Err(Unreadable::Malformed) => self.dropped.malformed += 1,
+            Err(Unreadable::ForeignData(_)) => self.dropped.foreign_version += 1,
             // The thread answers a foreign version.
             Ok(_) | Err(Unreadable::ForeignVersion(_)) => {
                 if !self.clerk.give(datagram, arrival.from) {

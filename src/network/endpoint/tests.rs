@@ -127,7 +127,7 @@ fn two_loops_exchange_payloads_at_a_thousand_per_second() {
             let mut wake = begin;
             while begin.elapsed() < Duration::from_secs(3) {
                 end.tick(begin.elapsed().as_secs_f64());
-                wake += TICK;
+                wake = (wake + TICK).max(Instant::now());
                 sleep(wake.saturating_duration_since(Instant::now()));
             }
             let figures = end.endpoint.figures();
@@ -305,6 +305,7 @@ fn a_flood_of_handshakes_and_noise_does_not_stop_the_stream() {
     judged(|| {
         let (time, mut far, mut near, ..) = pair();
         let address = far.endpoint.address().unwrap();
+        let number = far.endpoint.session().map(|session| session.ours).unwrap();
         let ends = AtomicBool::new(false);
         let sent = scope(|scope| {
             let flood = scope.spawn(|| {
@@ -317,8 +318,10 @@ fn a_flood_of_handshakes_and_noise_does_not_stop_the_stream() {
                         let mut datagram = [0; HELLO_LEN];
                         let kind = if rng.bool() { Kind::Hello } else { Kind::Initiation };
                         datagram[..wire::HANDSHAKE_LEN].copy_from_slice(&wire::handshake(kind, rng.u64(..)));
+                        // Some as if they were of a session, and of these some of the one that is open.
                         if rng.u32(..4) == 0 {
-                            datagram[..wire::OUTER_LEN].copy_from_slice(&wire::outer(rng.u32(..), rng.u64(..)));
+                            let session = if rng.u32(..8) == 0 { number } else { rng.u32(..) };
+                            datagram[..wire::OUTER_LEN].copy_from_slice(&wire::outer(session, rng.u64(..)));
                         }
                         sent += u64::from(sockets[rng.usize(..16)].send_to(&datagram, address).is_ok());
                     }
@@ -337,6 +340,7 @@ fn a_flood_of_handshakes_and_noise_does_not_stop_the_stream() {
             dropped.flooded + dropped.refused > sent / 4 && dropped.unknown_session > sent / 8,
             "{dropped:?} of {sent}"
         );
+        assert!(dropped.forged > 100, "{dropped:?}");
         assert!(figures.counts.lost < 20 && figures.counts.delivered > 800, "{:?}", figures.counts);
         assert_eq!(far.endpoint.sessions.iter().flatten().count(), 1, "no state");
     });

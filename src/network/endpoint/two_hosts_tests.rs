@@ -100,7 +100,7 @@ fn one_host() {
         if !told.ends_with(word) {
             told.push_str(word);
         }
-        wake += TICK;
+        wake = (wake + TICK).max(Instant::now());
         sleep(wake.saturating_duration_since(Instant::now()));
     }
     let (figures, dropped) = (end.figures(), end.dropped());

@@ -66,6 +66,19 @@ impl Packed {
         Some(packed)
     }
 
+    /// Takes the parameters of this slot out of the parcel: they are too old to make a force of.
+    pub fn forget(slot: u8, parcel: &mut Parcel) {
+        match Mode::ALL.get(usize::from(slot)) {
+            Some(Mode::Literal) => parcel.literal = LiteralModel::NONE,
+            Some(Mode::Linear) => parcel.linear = LiteralModel::NONE,
+            Some(Mode::Anchored) => parcel.anchored = AnchoredModel::NONE,
+            Some(Mode::Matched) => parcel.matched = MatchedModel::NONE,
+            Some(Mode::Nima) => parcel.nima = MatchedModel::NONE,
+            Some(_) => {}
+            None => parcel.baseline = BaselineModel::Nothing,
+        }
+    }
+
     /// Puts the parameters into the parcel. Returns false, and changes nothing, if they make no sense or are not finite.
     pub fn put_into(&self, parcel: &mut Parcel) -> bool {
         let mut row = Reader { rest: self.used() };
@@ -251,7 +264,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::impedance::{Baseline, Identifier, Sample, Settings};
+    use crate::impedance::{Baseline, Identifier, SLOTS, Sample, Settings};
 
     /// Parcels of two seconds of pressing, every rendering computed.
     fn parcels(baseline: Baseline) -> Vec<Parcel> {
@@ -298,6 +311,8 @@ mod tests {
                 assert!(Packed::of(&parcel, turn).unwrap().put_into(&mut arrived), "turn {turn}");
             }
             assert!(close(&parcel, &arrived), "{baseline:?}");
+            (0..SLOTS as u8).for_each(|slot| Packed::forget(slot, &mut arrived));
+            assert_eq!(arrived, Parcel { modes: parcel.modes, ..Parcel::BLANK });
         }
     }
 

@@ -385,7 +385,7 @@ impl<L: Link> Pair<L> {
         tip_command_m: Option<Vector3<f64>>,
     ) -> Vector3<f64> {
         if let Some(command_m) = tip_command_m {
-            let follower_m = self.tracking.step(&command_m, &seen.tip_m, self.far.behind);
+            let follower_m = self.tracking.step(&command_m, &seen.tip_m, self.ticks_behind(seen.silent_s));
             return match self.settings.own_motion {
                 OwnMotion::Follower => follower_m,
                 OwnMotion::Handle => *handle_m,

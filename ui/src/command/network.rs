@@ -69,9 +69,9 @@ fn arms(rig: &RigConfig, scene: &Scene) -> usize {
 }
 
 fn open(arms: usize, role: Role, keys: Keys, ends: Ends) -> anyhow::Result<Line> {
-    // 1 Mbit/s for each arm.
+    // For each arm 2 Mbit/s: what two copies of each message take. A line with less room than that holds fewer.
     let stream =
-        StreamSettings { payload_max: PAYLOAD_MAX, rate_max_bit_s: 1e6 * arms as f64, ..StreamSettings::default() };
+        StreamSettings { payload_max: PAYLOAD_MAX, rate_max_bit_s: 2e6 * arms as f64, ..StreamSettings::default() };
     let endpoint = Endpoint::open(Config { stream, ..Config::new(role, keys) })?;
     Ok(Line::new(endpoint, ends))
 }

@@ -195,7 +195,13 @@ pub(super) fn run_with(
         let kept = recorded.as_ref().ok().and_then(Option::as_ref).map_or_else(String::new, Recorded::in_words);
         let rows = start.link.newest().map(link_rows).unwrap_or_default();
         let link = rows.iter().fold(String::new(), |all, [name, value]| all + "\n" + name + ": " + value);
-        output::line(&(in_words(&plan, &summary) + &truth::in_words(&tip_error) + &bias + &link + &kept))?;
+        output::line(
+            &(in_words(&plan, &summary, start.link.newest().is_some())
+                + &truth::in_words(&tip_error)
+                + &bias
+                + &link
+                + &kept),
+        )?;
     }
     recorded?;
     // Without its calibrations an emulated rig does what it can, and has said what it lacks.

@@ -1,6 +1,6 @@
 //! A pair whose follower is at another machine: force and parameters come identified over a network.
 
-use nima_core::impedance::{Parcel, Report};
+use nima_core::impedance::{Packed, Parcel, Report, SLOTS};
 
 use super::Pair;
 use crate::{
@@ -8,6 +8,10 @@ use crate::{
     rig::Identified,
     teleop::Link,
 };
+
+/// Parameters that were not renewed for so long make no force, s: a matched model remembers some seconds, and a renewal comes every
+/// 20 ms.
+const PARAMETERS_OLD_S: f64 = 0.3;
 
 /// What the other machine has told.
 #[derive(Clone, Debug)]
@@ -20,6 +24,8 @@ pub(super) struct Far {
     pub(super) report: Report,
     /// Ticks from a command to the answer to it.
     pub(super) behind: usize,
+    /// When the parameters of each slot last came, s.
+    renewed_s: [f64; SLOTS],
     /// Why that machine is stopped.
     pub(super) stop: Option<FarStop>,
     source: ForceSource,
@@ -33,6 +39,7 @@ impl Far {
             parcel: Parcel::BLANK,
             report: Report::BLANK,
             behind: 0,
+            renewed_s: [f64::NEG_INFINITY; SLOTS],
             stop: None,
             source: ForceSource::AtTip,
         })
@@ -56,7 +63,18 @@ impl<L: Link> Pair<L> {
             (parcel.t_s, parcel.force_n) = (identified.t_s, identified.force_n);
             (parcel.fresh, parcel.resting) = (identified.fresh, identified.resting);
             parcel.modes = identified.modes;
-            identified.packed.put_into(parcel);
+            let packed = &identified.packed;
+            if packed.put_into(parcel)
+                && let Some(renewed_s) = far.renewed_s.get_mut(usize::from(packed.slot))
+            {
+                *renewed_s = identified.t_s;
+            }
+            // Parameters that are lost again and again are no parameters: the force is then reflected as it came.
+            for (slot, renewed_s) in far.renewed_s.iter().enumerate() {
+                if identified.t_s - renewed_s > PARAMETERS_OLD_S {
+                    Packed::forget(slot as u8, parcel);
+                }
+            }
             let report = &mut far.report;
             (report.t_s, report.modes, report.resting) = (parcel.t_s, parcel.modes, parcel.resting);
             (report.paper_degree, report.degree) = (parcel.literal.degree, parcel.anchored.degree);

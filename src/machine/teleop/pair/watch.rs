@@ -34,7 +34,7 @@ impl<L: Link> Pair<L> {
             world_from_s1: inputs.sensed.wrist().and_then(|sample| sample.world_from_s1),
             tip_m: inputs.tip_m,
             hand_m: inputs.hand.position_m,
-            command_m: self.command_in_force(),
+            command_m: self.command_in_force(inputs.silent_s),
             hand_force_n: self.hand_force_n,
             guided: self.guide_m.is_some(),
         });
@@ -54,12 +54,17 @@ impl<L: Link> Pair<L> {
     }
 
     /// The command that the follower had when the tip was measured, m.
-    fn command_in_force(&self) -> Option<Vector3<f64>> {
-        match self.far.behind {
+    fn command_in_force(&self, silent_s: f64) -> Option<Vector3<f64>> {
+        match self.ticks_behind(silent_s) {
             0 => self.command_m,
             // The newest one is of the tick before.
             behind => self.command_m.and_then(|_| self.tracking.command_m(behind - 1)),
         }
+    }
+
+    /// Ticks since the command was given that was in force when the tip was measured; `silent_s` is how long nothing came.
+    pub(super) fn ticks_behind(&self, silent_s: f64) -> usize {
+        self.far.behind + (silent_s * self.rate_hz).round() as usize
     }
 
     /// Time must advance by whole periods: one plus the number missed. Otherwise it is a fault, and the identification

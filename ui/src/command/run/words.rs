@@ -6,12 +6,12 @@ use nima_machine::runtime::{ArmEnd, CauseAndCure, DeviceFigures, Summary};
 use nima_world::Plan;
 
 /// The figures of a run, for a terminal.
-pub(super) fn in_words(plan: &Plan, summary: &Summary) -> String {
+pub(super) fn in_words(plan: &Plan, summary: &Summary, is_measured: bool) -> String {
     let times =
         |q: &Quantiles| format!("p50 {:7.1}   p99 {:7.1}   p99.9 {:7.1}   max {:7.1}", q.p50, q.p99, q.p999, q.max);
     let mut text = format!(
         "{} on \"{}\", {} clock: {:.1} s, {} ticks, {} missed, {:.1} times real time\n\
-         link delay {:.0} ms, mode {}\n\
+         {}, mode {}\n\
          wake-up us  {}\n\
          work us     {}\n\
          rig us      {}\n\
@@ -24,7 +24,11 @@ pub(super) fn in_words(plan: &Plan, summary: &Summary) -> String {
         summary.ticks,
         summary.missed,
         summary.speed,
-        plan.rig.delay_s * 1e3,
+        if is_measured {
+            "link over a network".to_owned()
+        } else {
+            format!("link delay {:.0} ms", plan.rig.delay_s * 1e3)
+        },
         plan.rig.mode,
         times(&summary.wake_us),
         times(&summary.work_us),

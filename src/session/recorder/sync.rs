@@ -3,37 +3,46 @@
 use std::{
     fs::File,
     io,
-    path::Path,
-    sync::Arc,
     thread::{Builder, JoinHandle},
     time::Duration,
 };
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
-use super::{RecordError, Shared};
+use super::RecordError;
 
 /// The file is synchronised with the disk this often.
 const SYNC_EVERY: Duration = Duration::from_secs(1);
 
 /// The thread that writes the file to the disk each second, so that the loss of power costs no more.
-pub(super) struct Sync {
+#[derive(Debug)]
+pub(crate) struct Sync {
     ends: Option<Sender<()>>,
+    failure: Receiver<io::Error>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Sync {
-    pub(super) fn start(path: &Path, file: File, shared: &Arc<Shared>) -> Result<Self, RecordError> {
-        let (ends, asked) = bounded(1);
-        let (path, told) = (path.to_owned(), Arc::clone(shared));
+    pub(crate) fn start(file: File) -> Result<Self, RecordError> {
+        let ((ends, asked), (tell, failure)) = (bounded(1), bounded(1));
         let run = move || {
-            if let Err(source) = sync(&file, &asked) {
-                told.trouble.set(RecordError::System { path, source }).ok();
+            if let Err(error) = sync(&file, &asked) {
+                tell.send(error).ok();
             }
         };
         let thread = Builder::new().name("recorder-sync".to_owned()).spawn(run);
         let thread = thread.map_err(RecordError::Thread)?;
-        Ok(Self { ends: Some(ends), thread: Some(thread) })
+        Ok(Self { ends: Some(ends), failure, thread: Some(thread) })
+    }
+
+    /// Why the disk has not taken what was written; told once.
+    pub(crate) fn failed(&self) -> Option<io::Error> {
+        self.failure.try_recv().ok()
+    }
+
+    /// Ends it without waiting for the disk.
+    pub(crate) fn leave(mut self) {
+        drop(self.thread.take());
     }
 }
 

@@ -118,6 +118,8 @@ pub struct Live {
     pub is_unchecked: bool,
     /// The devices of the rig; empty if everything is simulated.
     pub roster: Roster,
+    /// Of a recorded session: its devices, and how each was at that moment.
+    pub devices_then: Vec<(String, Standing)>,
     /// Health of the devices, in the same order.
     pub healths: Healths,
     /// What the devices have delivered in the last seconds, oldest first.
@@ -171,6 +173,7 @@ impl Live {
             bias_moved_n: None,
             is_unchecked: false,
             roster: Roster::new(),
+            devices_then: Vec::new(),
             healths: Healths::default(),
             blocks: VecDeque::with_capacity(BLOCKS_KEPT + 1),
             blocks_counted: 0,

@@ -41,7 +41,7 @@ fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Optio
 /// All ticks of the right arm, and of the left.
 fn replayed(path: &Path) -> Vec<[Option<Tick>; 2]> {
     let mut all = Vec::new();
-    let outcome = replay(Recorded::open(path).unwrap().journal().unwrap(), |moment| all.push(moment.ticks)).unwrap();
+    let outcome = replay(Recorded::open(path).unwrap().journal().unwrap(), |moment| all.push(*moment.ticks)).unwrap();
     assert!(outcome.closed && outcome.differs.is_none());
     all
 }

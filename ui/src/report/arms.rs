@@ -44,7 +44,11 @@ fn seconds(session: &Figures, arm: &ArmFigures) -> String {
     let mut rows: Vec<_> = arm.seconds.iter().zip(&plots::STATE).filter_map(of).collect();
     let unknown_s = session.length_s - total_s;
     if unknown_s > 0.05 {
-        rows.push(vec!["not recorded".to_owned(), format!("{unknown_s:.1} s"), String::new()]);
+        rows.push(vec![
+            format!("<span class=\"key gap\"></span>{}", plots::NOT_RECORDED),
+            format!("{unknown_s:.1} s"),
+            String::new(),
+        ]);
     }
     table(&["state", "time", "share"], &rows)
 }

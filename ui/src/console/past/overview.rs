@@ -105,3 +105,35 @@ impl Bucket {
         self.state = self.state.into_iter().chain(other.state).max_by_key(|state| attention(*state));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nima_devices::Loss;
+    use nima_machine::rig::{DeviceEvent, SIDES};
+
+    use super::*;
+
+    #[test]
+    fn a_moment_has_the_devices_and_calibrations_that_it_had() {
+        let device =
+            |t_s, device, standing| Event::Device(DeviceEvent { t_s, device, standing, of_side: [true, false] });
+        let frame = |t_s, events, in_force| Frame { t_s, in_force, events, ticks: [None; SIDES] };
+        let mut parts = [Overview::default(), Overview::default()];
+        parts[0].take(&frame(1.0, vec![device(1.0, 0, Standing::Connected)], Vec::new()));
+        parts[0].take(&frame(2.0, vec![device(2.0, 1, Standing::Connected)], vec![(Side::Right, 4)]));
+        parts[1].take(&frame(3.0, vec![device(3.0, 0, Standing::Lost(Loss::Silent))], vec![(Side::Left, 5)]));
+        let mut whole = Overview::default();
+        for part in parts {
+            whole.add(part);
+        }
+        let standing = |t_s| [0, 1].map(|device| whole.standing(device, t_s));
+        assert_eq!(standing(0.5), [Standing::Closed; 2]);
+        assert_eq!(standing(2.0), [Standing::Connected; 2]);
+        assert_eq!(standing(9.0), [Standing::Lost(Loss::Silent), Standing::Connected]);
+        assert_eq!(
+            [1.9, 2.0, 9.0].map(|t_s| whole.calibrations(Side::Right, t_s)),
+            [None, Some((2.0, 4)), Some((2.0, 4))]
+        );
+        assert_eq!(whole.calibrations(Side::Left, 2.9), None);
+    }
+}

@@ -238,6 +238,27 @@ fn what_is_no_session_is_refused_in_one_line() {
     }
 }
 
+#[test]
+fn a_window_that_is_closed_while_a_stretch_is_saved_leaves_no_half_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "bimanual", 20.0, |_| None);
+    let mut past = open(&path);
+    until(&mut past, "open", |past| past.about.is_some());
+    past.stretch_s = [Some(0.0), Some(19.5)];
+    past.save(&Context::default());
+    let named = |ending: &str| {
+        let names = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+        names.filter(|name| name.to_string_lossy().ends_with(ending)).count()
+    };
+    let began = Instant::now();
+    while named(".part") == 0 && named(".mcap") == 1 && began.elapsed() < TIMEOUT {
+        thread::yield_now();
+    }
+    drop(past);
+    assert_eq!(named(".part"), 0, "{} sessions", named(".mcap"));
+}
+
 /// Prints how long it takes until a random moment is on the screen, and until every figure is as it was.
 #[test]
 #[ignore = "needs a long session: NIMA_SESSION=FILE"]

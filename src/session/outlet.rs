@@ -1,7 +1,7 @@
 //! Where the topics of a session go: into its file, and to those who watch while it happens.
 //!
-//! When the file can no longer be written, the recording goes on in a second place, if there is one, with all that is not in the first
-//! file yet; those who watch go on getting everything.
+//! When the file can no longer be written, the recording goes on in a second place, if there is one, with all that the first
+//! disk has not confirmed; those who watch go on getting everything.
 
 mod rescue;
 

@@ -169,7 +169,8 @@ fn a_recording_goes_on_in_its_second_place_and_nothing_is_missing() {
     assert_eq!(all.len() as u64, summary.ticks, "every tick is plotted in one of them");
     // The second alone: its times are those of the session, and it says where it comes from.
     let about = other.about().unwrap();
-    assert!(about.stretch_from_s.is_some_and(|from_s| from_s > 0.9 && from_s < about.seconds), "{about:?}");
+    // It begins with what the first disk has not confirmed, which may be everything.
+    assert!(about.stretch_from_s.is_some_and(|from_s| from_s < about.seconds - 1.0), "{about:?}");
     let tables = other.reader().metadata().unwrap();
     let (_, table) = tables.iter().find(|(name, _)| name == "cut").unwrap();
     assert!(table["session"] == "session.mcap" && table["why"].contains("session.mcap"), "{table:?}");

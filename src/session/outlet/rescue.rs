@@ -1,7 +1,7 @@
-//! A recording whose file fails: what is not in that file yet, and the second place, where it goes on.
+//! A recording whose file fails: what the disk has not confirmed yet, and the second place, where it goes on.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, VecDeque},
     mem::take,
     path::{Path, PathBuf},
 };
@@ -23,6 +23,19 @@ pub(crate) struct Trouble {
     pub(crate) to: Option<PathBuf>,
 }
 
+/// Most bytes that are kept of what the disk has not confirmed: far more than it usually has not.
+const MOST_BYTES: usize = 256 << 20;
+
+/// A message that may not be on the disk.
+#[derive(Debug)]
+struct Unwritten {
+    /// Chunks of the file before it.
+    chunks: u32,
+    channel: usize,
+    time_ns: u64,
+    data: Vec<u8>,
+}
+
 /// What a recording needs to go on elsewhere.
 #[derive(Debug)]
 pub(crate) struct Rescue {
@@ -32,10 +45,10 @@ pub(crate) struct Rescue {
     started_ns: u64,
     tables: Vec<(String, BTreeMap<String, String>)>,
     attached: Vec<(u64, Attached)>,
-    /// Messages that are in no chunk of the file yet: channel, time (ns), data.
-    unwritten: Vec<(usize, u64, Vec<u8>)>,
-    /// Chunks in the file.
-    chunks: u32,
+    /// Messages that the disk has not confirmed yet, oldest first.
+    unwritten: VecDeque<Unwritten>,
+    /// Their bytes.
+    bytes: usize,
     sync: Option<Sync>,
     troubles: Vec<Trouble>,
 }
@@ -49,8 +62,8 @@ impl Rescue {
             started_ns,
             tables: Vec::new(),
             attached: Vec::new(),
-            unwritten: Vec::new(),
-            chunks: 0,
+            unwritten: VecDeque::new(),
+            bytes: 0,
             sync: None,
             troubles: Vec::new(),
         }
@@ -79,11 +92,14 @@ impl Rescue {
         if self.second.is_none() {
             return;
         }
-        if self.chunks != chunks {
-            self.chunks = chunks;
-            self.unwritten.clear();
+        let on_disk = self.sync.as_ref().map_or(0, |sync| sync.written(chunks));
+        let is_old = |bytes: usize, first: &Unwritten| first.chunks < on_disk || bytes > MOST_BYTES;
+        while let Some(first) = self.unwritten.front().filter(|first| is_old(self.bytes, first)) {
+            self.bytes -= first.data.len();
+            self.unwritten.pop_front();
         }
-        self.unwritten.push((channel, log_time_ns, data.to_vec()));
+        self.bytes += data.len();
+        self.unwritten.push_back(Unwritten { chunks, channel, time_ns: log_time_ns, data: data.to_vec() });
     }
 
     pub(super) fn metadata(&mut self, name: &str, entries: &BTreeMap<String, String>) {
@@ -112,7 +128,7 @@ impl Rescue {
             self.file = Some(to.clone());
             self.synchronise(&writer).map(|()| writer)
         });
-        self.unwritten = Vec::new();
+        (self.unwritten, self.bytes) = (VecDeque::new(), 0);
         match begun {
             Ok(writer) => {
                 self.troubles.push(Trouble { why, to: Some(to) });
@@ -128,7 +144,7 @@ impl Rescue {
 
     fn begin(&self, to: &Path, why: &RecordError, channels: &mut [Known]) -> Result<Writer, WriteError> {
         let mut writer = Writer::create(to, &self.program)?;
-        let from_ns = self.unwritten.first().map_or(self.started_ns, |(_, time_ns, _)| *time_ns);
+        let from_ns = self.unwritten.front().map_or(self.started_ns, |first| first.time_ns);
         let name = self.file.as_deref().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
         let mut table = cut::table(&name, self.started_ns, &(from_ns..u64::MAX), cut::Kept::GoesOn, None);
         table.insert(cut::WHY.to_owned(), why.to_string());
@@ -143,7 +159,7 @@ impl Rescue {
             known.of_file = Some(writer.channel(&known.topic, known.encoding.clone())?);
         }
         let id = |channel: usize| channels.get(channel).and_then(|known| known.of_file);
-        for (channel, time_ns, data) in &self.unwritten {
+        for Unwritten { channel, time_ns, data, .. } in &self.unwritten {
             if let Some(id) = id(*channel) {
                 writer.message(id, *time_ns, data)?;
             }

@@ -64,7 +64,7 @@ fn forces(arm: &ArmFigures) -> String {
         "peak (N)",
         "at",
         "mean (N)",
-        "integral (N s)",
+        "integral (N&nbsp;s)",
         "sd on principal axes (N)",
         "force volume (N<sup>3</sup>)",
         "rate RMS (N/s)",
@@ -77,7 +77,7 @@ fn force(name: &str, of: &ForceFigures) -> Vec<String> {
     vec![
         name.to_owned(),
         digits(of.peak_n),
-        time(of.peak_at_s),
+        time(of.peak_at_s).replace(' ', "&nbsp;"),
         digits(of.mean_n),
         digits(of.integral_n_s),
         of.principal_sd_n.map(digits).join(", "),

@@ -380,4 +380,21 @@ mod tests {
         assert!(trouble.contains("sessions"), "{trouble}");
         assert_eq!(sessions.shown(), None);
     }
+
+    #[test]
+    fn what_cannot_be_recorded_in_the_usual_folder_is_recorded_in_the_second_and_that_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("sessions"), "a file").unwrap();
+        let second = folder.path().join("second");
+        let mut sessions = Sessions::of_user(Some(folder.path()), Some(&second), None);
+        let tap = sessions.begin(&plan());
+        let handle = start(Assembly { tap, ..plan().assembly().unwrap() }).unwrap();
+        sessions.toggle_kept();
+        let path = sessions.shown().unwrap().path;
+        assert!(path.starts_with(&second), "{}", path.display());
+        assert!(sessions.trouble().unwrap().contains("it goes on in"), "{:?}", sessions.trouble());
+        handle.stop_and_join().unwrap();
+        sessions.end();
+        assert!(replay(Recorded::open(&path).unwrap().journal().unwrap(), |_| ()).unwrap().closed);
+    }
 }

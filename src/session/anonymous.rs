@@ -95,8 +95,7 @@ pub fn write(
             topic.pass(&mut out, since(message.log_time_ns(), begin_ns), &message, known)?;
         }
     }
-    let written = out.file.map(Writer::finish).transpose()?;
-    let messages = written.map_or(0, |written| written.messages);
+    let messages = out.finish()?;
     // When it was written tells when it was looked at.
     let times = fs::FileTimes::new().set_modified(UNIX_EPOCH).set_accessed(UNIX_EPOCH);
     fs::File::options().write(true).open(to).and_then(|file| file.set_times(times)).map_err(CutError::Times)?;

@@ -19,7 +19,10 @@ use crate::{plotted, recorder::JOURNAL_TOPIC};
 pub(crate) const TABLE: &str = "cut";
 /// In it: when the session began, ns, so that times stay those of the whole session.
 pub(crate) const BEGINNING: &str = "session_begins_ns";
-const SESSION: &str = "session";
+/// In it: the name of that session.
+pub(crate) const SESSION: &str = "session";
+/// In it, of a file in the second place: why the recording did not stay in the first.
+pub(crate) const WHY: &str = "why";
 
 /// Why a stretch cannot be cut out.
 #[derive(Debug, thiserror::Error)]
@@ -54,6 +57,8 @@ pub enum Kept {
     Yes,
     /// The stretch does not begin with the first tick.
     LeftOut,
+    /// It goes on behind that of the file before.
+    GoesOn,
     /// There was none.
     None,
 }
@@ -63,6 +68,7 @@ impl Kept {
         match self {
             Self::Yes => "kept up to the end of the stretch",
             Self::LeftOut => "left out: it can be replayed from its beginning only",
+            Self::GoesOn => "goes on behind that of the session before",
             Self::None => "none",
         }
     }
@@ -128,7 +134,7 @@ fn journal(reader: &Reader, start_ns: u64) -> Result<Kept, ReadError> {
 }
 
 /// The table of a stretch of the session with this name.
-fn table(
+pub(crate) fn table(
     name: &str,
     begin_ns: u64,
     times_ns: &Range<u64>,

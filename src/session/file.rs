@@ -1,7 +1,8 @@
 //! The journal in a session file.
 
-use std::{ops::Range, path::Path};
+use std::{iter, ops::Range, path::Path, sync::Arc, thread::Builder};
 
+use crossbeam_channel::bounded;
 use nima_recording::{
     messages::foxglove::{Level, Log},
     session::{ReadError, Reader},
@@ -13,11 +14,14 @@ use crate::{
     journal::{Message, Start, decode},
     plotted,
     recorder::JOURNAL_TOPIC,
-    replay::{Cursor, Journal, Keyframe, Messages, ReplayError},
+    replay::{Cursor, Journal, Keyframe, Messages, ReplayError, decoded},
 };
 
 /// A session file.
-pub struct Recorded(Reader);
+pub struct Recorded(Arc<Reader>);
+
+/// Messages of the journal that are read before the loop needs them: a second of the session.
+const AHEAD: usize = 5;
 
 /// The chunk of a keyframe's last block is found by its time; rounding must not miss it.
 const MARGIN_NS: u64 = 1_000_000;
@@ -72,11 +76,11 @@ impl Recorded {
     /// # Errors
     /// [`ReadError`] if it is no session file, or damaged.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
-        Reader::open(path).map(Self)
+        Reader::open(path).map(|reader| Self(Arc::new(reader)))
     }
 
     /// The file.
-    pub const fn reader(&self) -> &Reader {
+    pub fn reader(&self) -> &Reader {
         &self.0
     }
 
@@ -142,15 +146,48 @@ impl Recorded {
     ///
     /// # Errors
     /// [`ReplayError`] if it has none, or its beginning cannot be read.
-    pub fn journal(&self) -> Result<Journal<impl Iterator<Item = Result<Vec<u8>, ReplayError>> + '_>, ReplayError> {
-        let messages = self.0.messages(&[JOURNAL_TOPIC], 0..u64::MAX);
-        Journal::open(messages.map(|message| Ok(message?.data().to_vec())))
+    pub fn journal(&self) -> Result<Journal<Messages>, ReplayError> {
+        self.journal_with(&[])
+    }
+
+    /// Its journal with that of the files in which the recording went on, in their order.
+    ///
+    /// # Errors
+    /// As [`Recorded::journal`].
+    pub fn journal_with(&self, others: &[Self]) -> Result<Journal<Messages>, ReplayError> {
+        let files = iter::once(self).chain(others).map(|file| Arc::clone(&file.0));
+        Journal::open(ahead(files.collect(), 0, 0)).map_err(|error| match (error, self.goes_on_from()) {
+            (ReplayError::Missing { .. } | ReplayError::NoStart, Some(first)) => ReplayError::GoesOn { first },
+            (error, _) => error,
+        })
+    }
+
+    /// The file in which its recording began, if this is the second place.
+    fn goes_on_from(&self) -> Option<String> {
+        let tables = self.0.metadata().ok()?;
+        let (_, table) = tables.into_iter().find(|(name, table)| name == cut::TABLE && table.contains_key(cut::WHY))?;
+        table.get(cut::SESSION).cloned()
     }
 
     /// A loop at this keyframe of its journal, which begins like this. `begin_ns` is when the session began.
-    pub fn cursor(&self, start: &Start, keyframe: Keyframe, begin_ns: u64) -> Cursor<Messages<'_>> {
+    pub fn cursor(&self, start: &Start, keyframe: Keyframe, begin_ns: u64) -> Cursor<Messages> {
         let from_ns = (begin_ns + (keyframe.t_s() * 1e9) as u64).saturating_sub(MARGIN_NS);
-        let messages = self.0.messages(&[JOURNAL_TOPIC], from_ns..u64::MAX);
-        keyframe.cursor(start.clone(), messages.map(|message| Ok(message?.data().to_vec())))
+        let messages = ahead(vec![Arc::clone(&self.0)], from_ns, keyframe.read());
+        keyframe.cursor(start.clone(), messages)
+    }
+}
+
+/// The messages of a journal in these files from this time on, behind the first `read`. A thread of its own reads and decodes them, while
+/// the loop is fed from those before. It ends when nobody takes any more.
+fn ahead(files: Vec<Arc<Reader>>, from_ns: u64, read: u64) -> Messages {
+    let (send, receive) = bounded(AHEAD);
+    let go_ahead = move || {
+        let messages = files.iter().flat_map(|file| file.messages(&[JOURNAL_TOPIC], from_ns..u64::MAX));
+        let mut messages = decoded(messages.map(|message| Ok(message?.data().to_vec())), read);
+        while messages.next().is_some_and(|message| send.send(message).is_ok()) {}
+    };
+    match Builder::new().name("journal".to_owned()).spawn(go_ahead) {
+        Ok(_) => Box::new(receive.into_iter()),
+        Err(error) => Box::new(iter::once(Err(ReplayError::Thread(error)))),
     }
 }

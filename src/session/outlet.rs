@@ -1,14 +1,25 @@
 //! Where the topics of a session go: into its file, and to those who watch while it happens.
+//!
+//! When the file can no longer be written, the recording goes on in a second place, if there is one, with all that the first
+//! disk has not confirmed; those who watch go on getting everything.
 
-use std::{fmt::Debug, path::Path};
+mod rescue;
+
+use std::{collections::BTreeMap, fmt::Debug, path::Path};
 
 use nima_recording::session::{ChannelId, Encoding, WriteError, Writer};
 
-/// Where a recorder writes to. With neither, it only empties the tap.
+use crate::recorder::{Attached, RecordError};
+use rescue::Rescue;
+pub(crate) use rescue::Trouble;
+
+/// Where a recorder writes to. With nothing, it only empties the tap.
 #[derive(Debug, Default)]
 pub struct Destination<'a> {
     /// A new session file.
     pub file: Option<&'a Path>,
+    /// Another one, which is begun when the first can no longer be written.
+    pub second: Option<&'a Path>,
     /// Those who watch.
     pub audience: Option<Box<dyn Audience>>,
 }
@@ -16,7 +27,7 @@ pub struct Destination<'a> {
 impl<'a> Destination<'a> {
     /// A file alone.
     pub fn file(path: &'a Path) -> Self {
-        Self { file: Some(path), audience: None }
+        Self { file: Some(path), ..Self::default() }
     }
 }
 
@@ -34,43 +45,98 @@ pub trait Audience: Send + Debug {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Channel(usize);
 
+/// A channel, as the file and as the audience know it.
+struct Known {
+    topic: String,
+    encoding: Encoding,
+    of_file: Option<ChannelId>,
+    /// `None`: it is in the file alone.
+    of_audience: Option<usize>,
+}
+
 /// The file, if there is one, and the audience, if there is one.
 pub(crate) struct Outlet {
-    /// What only the file gets is written here.
-    pub(crate) file: Option<Writer>,
-    /// Of the file, by number.
-    channels: Vec<Option<ChannelId>>,
+    file: Option<Writer>,
+    channels: Vec<Known>,
     audience: Option<Box<dyn Audience>>,
+    /// What becomes of a recording whose file fails; without it, the caller is told.
+    rescue: Option<Rescue>,
 }
 
 impl Outlet {
-    pub(crate) fn create(to: Destination<'_>, program: &str) -> Result<Self, WriteError> {
-        let file = to.file.map(|path| Writer::create(path, program)).transpose()?;
-        Ok(Self { file, channels: Vec::new(), audience: to.audience })
+    /// Begins the file. Where it fails later, the recording goes on as far as it can, and [`Outlet::troubles`] tells.
+    pub(crate) fn create(to: Destination<'_>, program: &str, started_ns: u64) -> Result<Self, RecordError> {
+        let Destination { file: path, second, audience } = to;
+        let mut rescue = Rescue::new(path, second, program, started_ns);
+        let file = path.map(|path| Writer::create(path, program)).transpose()?;
+        if let Some(file) = &file {
+            rescue.synchronise(file)?;
+        }
+        Ok(Self { file, channels: Vec::new(), audience, rescue: Some(rescue) })
     }
 
     /// A file alone, which was begun before.
     pub(crate) const fn of(file: Writer) -> Self {
-        Self { file: Some(file), channels: Vec::new(), audience: None }
+        Self { file: Some(file), channels: Vec::new(), audience: None, rescue: None }
     }
 
+    /// Whether anybody takes what is written.
+    pub(crate) const fn is_heard(&self) -> bool {
+        self.file.is_some() || self.audience.is_some()
+    }
+
+    /// A channel of the file and of those who watch.
     pub(crate) fn channel(&mut self, topic: &str, encoding: Encoding) -> Result<Channel, WriteError> {
         if let Some(audience) = &mut self.audience {
             audience.channel(topic, &encoding);
         }
-        let of_file = self.file.as_mut().map(|file| file.channel(topic, encoding)).transpose()?;
-        self.channels.push(of_file);
+        let heard = self.channels.iter().filter(|known| known.of_audience.is_some()).count();
+        self.add(topic, encoding, Some(heard))
+    }
+
+    /// A channel of the file alone.
+    pub(crate) fn channel_of_file(&mut self, topic: &str, encoding: Encoding) -> Result<Channel, WriteError> {
+        self.add(topic, encoding, None)
+    }
+
+    fn add(&mut self, topic: &str, encoding: Encoding, of_audience: Option<usize>) -> Result<Channel, WriteError> {
+        let of_file = self.file.as_mut().map(|file| file.channel(topic, encoding.clone())).transpose()?;
+        self.channels.push(Known { topic: topic.to_owned(), encoding, of_file, of_audience });
         Ok(Channel(self.channels.len() - 1))
     }
 
     pub(crate) fn message(&mut self, channel: Channel, log_time_ns: u64, data: &[u8]) -> Result<(), WriteError> {
-        if let Some(audience) = &mut self.audience {
-            audience.message(channel.0, log_time_ns, data);
+        let Some(Known { of_file, of_audience, .. }) = self.channels.get(channel.0) else { return Ok(()) };
+        if let (Some(audience), Some(number)) = (&mut self.audience, of_audience) {
+            audience.message(*number, log_time_ns, data);
         }
-        match (&mut self.file, self.channels.get(channel.0)) {
-            (Some(file), Some(Some(id))) => file.message(*id, log_time_ns, data),
-            _ => Ok(()),
+        let (Some(file), Some(id)) = (&mut self.file, of_file) else { return Ok(()) };
+        let written = file.message(*id, log_time_ns, data);
+        if let Some(rescue) = &mut self.rescue {
+            rescue.message(file.chunks(), channel.0, log_time_ns, data);
         }
+        self.or_rescue(written)
+    }
+
+    /// Writes named values into the file.
+    pub(crate) fn metadata(&mut self, name: &str, entries: &BTreeMap<String, String>) -> Result<(), WriteError> {
+        let Some(file) = &mut self.file else { return Ok(()) };
+        let written = file.metadata(name, entries);
+        if let Some(rescue) = &mut self.rescue {
+            rescue.metadata(name, entries);
+        }
+        self.or_rescue(written)
+    }
+
+    /// Writes a whole file into the file.
+    pub(crate) fn attachment(&mut self, time_ns: u64, attached: &Attached) -> Result<(), WriteError> {
+        let Some(file) = &mut self.file else { return Ok(()) };
+        let Attached { name, media_type, data } = attached;
+        let written = file.attachment(name, media_type, time_ns, data);
+        if let Some(rescue) = &mut self.rescue {
+            rescue.attachment(time_ns, attached);
+        }
+        self.or_rescue(written)
     }
 
     /// Bytes in the file.
@@ -80,6 +146,41 @@ impl Outlet {
 
     /// Closes the chunk of the file now.
     pub(crate) fn flush(&mut self) -> Result<(), WriteError> {
-        self.file.as_mut().map_or(Ok(()), Writer::flush)
+        let written = self.file.as_mut().map_or(Ok(()), Writer::flush);
+        self.or_rescue(written)
+    }
+
+    /// Ends the file; how many messages are in it.
+    pub(crate) fn finish(mut self) -> Result<u64, WriteError> {
+        let Some(file) = self.file.take() else { return Ok(0) };
+        Ok(file.finish()?.messages)
+    }
+
+    /// Looks whether the disk has taken what was written; to be called now and then.
+    pub(crate) fn look(&mut self) {
+        if let Some(error) = self.rescue.as_ref().and_then(Rescue::unsynchronised) {
+            self.rescue(error);
+        }
+    }
+
+    /// What has gone wrong since the last call: why, and where the recording goes on.
+    pub(crate) fn troubles(&mut self) -> Vec<Trouble> {
+        self.rescue.as_mut().map(Rescue::troubles).unwrap_or_default()
+    }
+
+    fn or_rescue(&mut self, written: Result<(), WriteError>) -> Result<(), WriteError> {
+        match written {
+            Err(error) if self.rescue.is_some() => {
+                self.rescue(error.into());
+                Ok(())
+            }
+            written => written,
+        }
+    }
+
+    /// The file has failed: goes on in the second place, or without a file.
+    fn rescue(&mut self, why: RecordError) {
+        let Some(rescue) = &mut self.rescue else { return };
+        self.file = rescue.go_on(why, &mut self.channels);
     }
 }

@@ -1,18 +1,17 @@
 //! Records a session: a thread of its own writes what passes the tap of a loop into a session file.
 //!
-//! The loop never waits for it. Whatever goes wrong, a full disk or a folder that is gone, is told at once by
-//! [`Recorder::trouble`]; then the recording has ended, and what was written stays readable.
+//! The loop never waits for it. Whatever goes wrong, a full disk or a folder that is gone, is told at once, and what was written stays
+//! readable. The recording goes on in a second place if there is one ([`Recorder::moved`]); else it has ended ([`Recorder::trouble`]). A
+//! disk that is too slow is told by [`Progress`].
 
+mod shared;
 mod sync;
 
 use std::{
     collections::BTreeMap,
     io,
-    path::{Path, PathBuf},
-    sync::{
-        Arc, OnceLock,
-        atomic::{AtomicBool, AtomicU64, Ordering},
-    },
+    path::PathBuf,
+    sync::{Arc, atomic::Ordering},
     thread::{Builder, JoinHandle},
     time::Duration,
 };
@@ -24,14 +23,16 @@ use nima_machine::{
     runtime::{Entry, Next, Operation, Passed, Stepped, TapEnd},
     teleop::{Calibrations, Origin},
 };
-use nima_recording::session::{ChannelId, Encoding, WriteError, Writer};
+use nima_recording::session::{Encoding, WriteError};
 
-use self::sync::Sync;
+use self::shared::Shared;
+pub use self::shared::{Moved, Progress};
+pub(crate) use self::sync::Sync;
 use crate::{
     journal::{End, JournalError, Start},
     kept::described,
     layouts::layouts,
-    outlet::{Destination, Outlet},
+    outlet::{Channel, Destination, Outlet, Trouble},
     scribe::{Pages, Scribe, Written},
     topics::{Topics, Words},
 };
@@ -92,6 +93,14 @@ pub enum RecordError {
         /// Why.
         source: io::Error,
     },
+    /// Neither place can be written.
+    #[error("{first}; nor can it go on in the second place: {second}")]
+    Both {
+        /// Why not the first.
+        first: Box<Self>,
+        /// Why not the second.
+        second: Box<Self>,
+    },
 }
 
 /// What a screen adds to the log of a session: it does not pass the loop.
@@ -114,26 +123,6 @@ pub enum NoteKind {
     Alarm,
 }
 
-/// Figures of a recording so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Progress {
-    /// Ticks that were taken.
-    pub ticks: u64,
-    /// Entries that the loop dropped, because this thread came too late.
-    pub lost: u64,
-    /// Bytes in the file.
-    pub bytes: u64,
-}
-
-#[derive(Debug, Default)]
-struct Shared {
-    ticks: AtomicU64,
-    lost: AtomicU64,
-    bytes: AtomicU64,
-    ends: AtomicBool,
-    trouble: OnceLock<RecordError>,
-}
-
 /// A recording that is going on. Dropping it ends it as [`Recorder::finish`] does.
 #[derive(Debug)]
 pub struct Recorder {
@@ -149,18 +138,16 @@ impl Recorder {
     /// [`RecordError`] if the file cannot be created or its beginning cannot be written.
     pub fn start(to: Destination<'_>, about: About, origin: Origin, tap: TapEnd) -> Result<Self, RecordError> {
         let (notes, noted) = unbounded();
-        let path = to.file;
         let mut session = Session::create(to, about, origin, noted)?;
-        let shared = Arc::<Shared>::default();
+        let shared = Arc::new(Shared::new());
         shared.bytes.store(session.file.out.bytes(), Ordering::Relaxed);
-        let (told, sync) = (Arc::clone(&shared), synchronised(path, &session.file.out, &shared)?);
+        let told = Arc::clone(&shared);
         let run = move || {
             let ran = session.run(&tap, &told);
             if let Err(error) = ran.and_then(|()| session.close(&tap, &told)) {
                 told.trouble.set(error).ok();
-                drain(&tap, &told);
             }
-            drop(sync);
+            drain(&tap, &told);
         };
         let thread = Builder::new().name("recorder".to_owned()).spawn(run).map_err(RecordError::Thread)?;
         Ok(Self { shared, notes, thread: Some(thread) })
@@ -174,9 +161,12 @@ impl Recorder {
 
     /// Figures so far.
     pub fn progress(&self) -> Progress {
-        let Shared { ticks, lost, bytes, .. } = &*self.shared;
-        let [ticks, lost, bytes] = [ticks, lost, bytes].map(|count| count.load(Ordering::Relaxed));
-        Progress { ticks, lost, bytes }
+        self.shared.progress()
+    }
+
+    /// Where the recording goes on, if it had to leave its first place, and why.
+    pub fn moved(&self) -> Option<&Moved> {
+        self.shared.moved.get()
     }
 
     /// Why the recording has ended, if it has ended by itself.
@@ -190,7 +180,7 @@ impl Recorder {
     /// # Errors
     /// Why the recording ended before.
     pub fn finish(mut self) -> Result<Progress, RecordError> {
-        self.join();
+        self.end();
         let progress = self.progress();
         match Arc::get_mut(&mut self.shared).and_then(|shared| shared.trouble.take()) {
             Some(trouble) => Err(trouble),
@@ -198,7 +188,8 @@ impl Recorder {
         }
     }
 
-    fn join(&mut self) {
+    /// Ends the recording, as [`Recorder::finish`] does; what there is to tell of it can still be asked.
+    pub fn end(&mut self) {
         self.shared.ends.store(true, Ordering::Release);
         if let Some(thread) = self.thread.take() {
             thread.join().ok();
@@ -208,15 +199,8 @@ impl Recorder {
 
 impl Drop for Recorder {
     fn drop(&mut self) {
-        self.join();
+        self.end();
     }
-}
-
-/// Keeps the file, if there is one, on the disk.
-fn synchronised(path: Option<&Path>, out: &Outlet, shared: &Arc<Shared>) -> Result<Option<Sync>, RecordError> {
-    let (Some(path), Some(file)) = (path, &out.file) else { return Ok(None) };
-    let failed = |source| RecordError::System { path: path.to_owned(), source };
-    Sync::start(path, file.sync_handle().map_err(failed)?, shared).map(Some)
 }
 
 /// Goes on emptying the tap of a loop whose recording has ended, so that its boxes go round.
@@ -230,7 +214,18 @@ fn drain(tap: &TapEnd, shared: &Shared) {
     }
 }
 
+/// Tells what went wrong with the file.
+fn tell(out: &mut Outlet, shared: &Shared) {
+    for Trouble { why, to } in out.troubles() {
+        match to {
+            Some(to) => drop(shared.moved.set(Moved { why, to })),
+            None => drop(shared.trouble.set(why)),
+        }
+    }
+}
+
 fn next(tap: &TapEnd, shared: &Shared) -> Next {
+    shared.looked();
     if shared.ends.load(Ordering::Acquire) {
         return tap.entries.try_recv().map_or(Next::End, Next::Entry);
     }
@@ -276,6 +271,11 @@ impl Session {
                 Next::End => return self.notes(f64::INFINITY),
             }
             self.notes(self.scribe.t_s())?;
+            self.file.out.look();
+            tell(&mut self.file.out, shared);
+            if !self.file.out.is_heard() {
+                return Ok(());
+            }
             shared.ticks.store(self.scribe.ticks(), Ordering::Relaxed);
             shared.lost.store(self.scribe.lost(), Ordering::Relaxed);
             shared.bytes.store(self.file.out.bytes(), Ordering::Relaxed);
@@ -299,10 +299,11 @@ impl Session {
         let Self { scribe, mut file, .. } = self;
         let End { ticks, lost } = scribe.end(tap, &mut file)?;
         file.out.flush()?;
+        tell(&mut file.out, shared);
         shared.ticks.store(ticks, Ordering::Relaxed);
         shared.lost.store(lost, Ordering::Relaxed);
         shared.bytes.store(file.out.bytes(), Ordering::Relaxed);
-        file.out.file.map(Writer::finish).transpose()?;
+        file.out.finish()?;
         Ok(())
     }
 }
@@ -311,7 +312,7 @@ impl Session {
 struct SessionFile {
     out: Outlet,
     /// In the file alone.
-    journal: Option<ChannelId>,
+    journal: Channel,
     topics: Topics,
     started_ns: u64,
     blocks: u32,
@@ -326,21 +327,18 @@ impl SessionFile {
         devices: Vec<String>,
     ) -> Result<Self, RecordError> {
         let About { program, started_ns, metadata, files, words } = about;
-        let mut out = Outlet::create(to, &program)?;
-        let mut journal = None;
-        if let Some(file) = &mut out.file {
-            for (name, entries) in &metadata {
-                file.metadata(name, entries)?;
-            }
-            for (side, entries) in known {
-                file.metadata(&format!("calibrations {}", side.word()), entries)?;
-            }
-            for Attached { name, media_type, data } in files.iter().chain(&layouts(sides)) {
-                file.attachment(name, media_type, started_ns, data)?;
-            }
-            let encoding = Encoding { message_encoding: JOURNAL_ENCODING.to_owned(), ..Encoding::default() };
-            journal = Some(file.channel(JOURNAL_TOPIC, encoding)?);
+        let mut out = Outlet::create(to, &program, started_ns)?;
+        for (name, entries) in &metadata {
+            out.metadata(name, entries)?;
         }
+        for (side, entries) in known {
+            out.metadata(&format!("calibrations {}", side.word()), entries)?;
+        }
+        for attached in files.iter().chain(&layouts(sides)) {
+            out.attachment(started_ns, attached)?;
+        }
+        let encoding = Encoding { message_encoding: JOURNAL_ENCODING.to_owned(), ..Encoding::default() };
+        let journal = out.channel_of_file(JOURNAL_TOPIC, encoding)?;
         let topics = Topics::new(&mut out, sides, words, devices)?;
         Ok(Self { out, journal, topics, started_ns, blocks: 0 })
     }
@@ -355,11 +353,10 @@ impl Pages for SessionFile {
 
     fn write(&mut self, Written { t_s, bytes }: &Written) -> Result<(), RecordError> {
         let time_ns = self.log_time_ns(*t_s);
-        let (Some(file), Some(journal)) = (&mut self.out.file, self.journal) else { return Ok(()) };
-        file.message(journal, time_ns, bytes)?;
+        self.out.message(self.journal, time_ns, bytes)?;
         self.blocks += 1;
         if self.blocks.is_multiple_of(BLOCKS_PER_CHUNK) {
-            file.flush()?;
+            self.out.flush()?;
         }
         Ok(())
     }
@@ -370,8 +367,7 @@ impl Pages for SessionFile {
     }
 
     fn calibrations(&mut self, number: u64, calibrations: &Calibrations) -> Result<(), RecordError> {
-        let Some(file) = &mut self.out.file else { return Ok(()) };
-        Ok(file.metadata(&format!("calibrations {number}"), &described(calibrations))?)
+        Ok(self.out.metadata(&format!("calibrations {number}"), &described(calibrations))?)
     }
 
     fn operation(&mut self, operation: &Operation, t_s: f64) -> Result<(), RecordError> {

@@ -2,6 +2,7 @@
 //!
 //! The counter counts per thread, but tests with real connections must not wait for a processor core, so each test
 //! holds `alone`.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod bota;
 mod counting;

@@ -8,7 +8,7 @@ use nima_machine::{
 };
 use nima_session::{
     journal::Start,
-    replay::{Journal, Outcome, ReplayError, replay},
+    replay::{Journal, Outcome, ReplayError, decoded, replay},
     scribe::{Scribe, Written},
 };
 use nima_world::Plan;
@@ -35,7 +35,7 @@ impl Kept {
 
     /// Replays it; every tick is told.
     pub(crate) fn replayed(&self, mut each: impl FnMut(&Tick)) -> Result<Outcome, ReplayError> {
-        let journal = Journal::open(self.0.iter().map(|bytes| Ok(bytes.clone())))?;
+        let journal = Journal::open(decoded(self.0.iter().map(|bytes| Ok(bytes.clone())), 0))?;
         replay(journal, |replayed| replayed.ticks.iter().flatten().for_each(&mut each))
     }
 }

@@ -22,7 +22,7 @@ use nima_session::{
 };
 use nima_world::{Plan, scene::Scene};
 
-fn plan(scene: &str) -> Plan {
+pub(crate) fn plan(scene: &str) -> Plan {
     Plan {
         rig: RigConfig::load("simulated").unwrap(),
         scene: Scene::load(scene).unwrap(),
@@ -31,7 +31,7 @@ fn plan(scene: &str) -> Plan {
     }
 }
 
-fn about() -> About {
+pub(crate) fn about() -> About {
     let seed = BTreeMap::from([("seed".to_owned(), "1".to_owned())]);
     About {
         program: "test".to_owned(),

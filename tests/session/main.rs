@@ -2,8 +2,11 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod another_build;
+#[cfg(target_os = "linux")]
+mod bad_disk;
 mod bench;
 mod faults;
 mod file;
+mod long;
 mod network;
 mod round_trip;

@@ -2,13 +2,11 @@
 
 use nima_machine::{
     messages::{Event, Tick},
-    rig::{Outputs, SIDES},
+    rig::{Outputs, SIDES, Side},
+    runtime::Operation,
 };
 
-use super::{
-    Differs, Hole, Journal, Machine, ReplayError, Step,
-    steps::{Messages, go_on},
-};
+use super::{Differs, Hole, Journal, Machine, Numbered, ReplayError, Step, steps::go_on};
 use crate::{
     digest::Check,
     journal::{Row, Start},
@@ -19,6 +17,10 @@ use crate::{
 pub struct Cursor<I> {
     journal: Journal<I>,
     machine: Machine,
+    /// Calibrations that came into force since the last tick.
+    in_force: Vec<(Side, u64)>,
+    /// The last tick takes kilobytes, and stays where it is: to move it about takes as long as a part of the loop.
+    came: Box<Came>,
     ticks: u64,
     t_s: f64,
 }
@@ -42,14 +44,22 @@ impl Keyframe {
         Ok(Self { machine: Machine::new(&start.origin)?, read: 1, ticks: 0, t_s: 0.0 })
     }
 
-    /// A cursor here, in a journal with this beginning; its messages may begin before it.
-    pub fn cursor<'a>(
-        self,
-        start: Start,
-        messages: impl Iterator<Item = Result<Vec<u8>, ReplayError>> + 'a,
-    ) -> Cursor<Messages<'a>> {
+    /// A cursor here, in a journal with this beginning; `messages` are those behind the [`Self::read`] ones.
+    pub fn cursor<I>(self, start: Start, messages: I) -> Cursor<I> {
         let Self { machine, read, ticks, t_s } = self;
-        Cursor { journal: go_on(messages, start, read), machine, ticks, t_s }
+        Cursor {
+            journal: go_on(messages, start, read),
+            machine,
+            in_force: Vec::new(),
+            came: Box::default(),
+            ticks,
+            t_s,
+        }
+    }
+
+    /// Messages of the journal before it.
+    pub const fn read(&self) -> u64 {
+        self.read
     }
 
     /// Loop time of its last tick, s.
@@ -60,52 +70,68 @@ impl Keyframe {
 
 /// What a cursor comes to.
 #[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "one at a time")]
-pub enum Passed {
+pub enum Passed<'a> {
     /// A tick.
-    Tick(Moment),
+    Tick(Moment<'a>),
     /// Entries are missing: what comes after them cannot be replayed.
     Hole(Hole),
     /// The recording was closed.
     Closed,
 }
 
-/// One tick of a session.
+/// What comes out of a tick.
 #[derive(Debug)]
-pub struct Moment {
+struct Came {
+    in_force: Vec<(Side, u64)>,
+    events: Vec<Event>,
+    outputs: [Outputs; SIDES],
+    ticks: [Option<Tick>; SIDES],
+}
+
+impl Default for Came {
+    fn default() -> Self {
+        Self { in_force: Vec::new(), events: Vec::new(), outputs: [Outputs::SAFE; SIDES], ticks: [None; SIDES] }
+    }
+}
+
+/// One tick of a session.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a> {
     /// Its number in the journal, from 0.
     pub number: u64,
     /// What the loop was given.
-    pub row: Row,
+    pub row: &'a Row,
+    /// Calibrations that came into force before it: the side, and their number in the journal.
+    pub in_force: &'a [(Side, u64)],
     /// What it told.
-    pub events: Vec<Event>,
+    pub events: &'a [Event],
     /// Its commands.
-    pub outputs: [Outputs; SIDES],
+    pub outputs: &'a [Outputs; SIDES],
     /// What it shows.
-    pub ticks: [Option<Tick>; SIDES],
+    pub ticks: &'a [Option<Tick>; SIDES],
 }
 
-impl Moment {
+impl Moment<'_> {
     /// Where it is not as it was recorded.
     pub fn differs(&self) -> Option<Differs> {
-        let Self { number, row, events, outputs, ticks } = self;
+        let Self { number, row, events, outputs, ticks, in_force: _ } = self;
         let check = Check::of(events.iter(), outputs, ticks);
         (check != row.check).then(|| Differs { tick: *number, t_s: row.timing.now_s, place: check.differs(&row.check) })
     }
 }
 
-impl<I: Iterator<Item = Result<Vec<u8>, ReplayError>>> Cursor<I> {
+impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Cursor<I> {
     /// At the beginning of a journal.
     ///
     /// # Errors
     /// [`ReplayError::Settings`] if the settings of the identification are invalid.
     pub fn new(journal: Journal<I>) -> Result<Self, ReplayError> {
         let machine = Machine::new(&journal.start().origin)?;
-        Ok(Self { journal, machine, ticks: 0, t_s: 0.0 })
+        Ok(Self { journal, machine, in_force: Vec::new(), came: Box::default(), ticks: 0, t_s: 0.0 })
     }
 
     /// Whether a block of the journal has just been passed.
-    pub const fn is_between_blocks(&self) -> bool {
+    pub fn is_between_blocks(&self) -> bool {
         self.journal.between_blocks().is_some()
     }
 
@@ -119,23 +145,32 @@ impl<I: Iterator<Item = Result<Vec<u8>, ReplayError>>> Cursor<I> {
     ///
     /// # Errors
     /// [`ReplayError`] if the journal cannot be read.
-    pub fn step(&mut self) -> Result<Option<Passed>, ReplayError> {
-        for step in &mut self.journal {
+    pub fn step(&mut self) -> Result<Option<Passed<'_>>, ReplayError> {
+        let Self { journal, machine, in_force, came, ticks, t_s } = self;
+        for step in journal.by_ref() {
             match step? {
-                Step::Operation(operation) => self.machine.apply(operation, self.ticks)?,
-                Step::Calibrations { number, calibrations } => self.machine.know(number, calibrations),
-                Step::Hole { lost } => return Ok(Some(Passed::Hole(Hole { tick: self.ticks, lost }))),
-                Step::End(_) => return Ok(Some(Passed::Closed)),
-                Step::Tick(row) => {
-                    let (outputs, ticks) = self.machine.step(&row);
-                    let events = self.machine.take_events();
-                    let number = self.ticks;
-                    self.ticks += 1;
-                    self.t_s = row.timing.now_s;
-                    return Ok(Some(Passed::Tick(Moment { number, row, events, outputs, ticks })));
+                Step::Operation(operation) => {
+                    if let Operation::Calibrations { side, number } = operation {
+                        in_force.push((side, number));
+                    }
+                    machine.apply(operation, *ticks)?;
                 }
+                Step::Calibrations { number, calibrations } => machine.know(number, *calibrations),
+                Step::Hole { lost } => return Ok(Some(Passed::Hole(Hole { tick: *ticks, lost }))),
+                Step::End(_) => return Ok(Some(Passed::Closed)),
+                Step::Tick => break,
             }
         }
-        Ok(None)
+        let Some(row) = journal.row() else { return Ok(None) };
+        let Came { in_force: came_in_force, events, outputs, ticks: shown } = &mut **came;
+        (*outputs, *shown) = machine.step(row);
+        machine.take_events(events);
+        came_in_force.clear();
+        came_in_force.append(in_force);
+        let number = *ticks;
+        *ticks += 1;
+        *t_s = row.timing.now_s;
+        let (in_force, ticks) = (&*came_in_force, &*shown);
+        Ok(Some(Passed::Tick(Moment { number, row, in_force, events, outputs, ticks })))
     }
 }

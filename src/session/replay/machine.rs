@@ -61,9 +61,9 @@ impl Machine {
     }
 
     /// The events of this tick; to be called after every tick.
-    pub fn take_events(&mut self) -> Vec<Event> {
-        let events = self.control.events().copied().collect();
+    pub fn take_events(&mut self, into: &mut Vec<Event>) {
+        into.clear();
+        into.extend(self.control.events().copied());
         self.control.clear_events();
-        events
     }
 }

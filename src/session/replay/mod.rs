@@ -5,12 +5,14 @@ mod machine;
 mod steps;
 mod what_if;
 
+use std::io;
+
 use nima_core::impedance::SettingsError;
 use nima_machine::rig::Side;
 
 pub use cursor::{Cursor, Keyframe, Moment, Passed};
 pub use machine::Machine;
-pub use steps::{Journal, Messages, Step};
+pub use steps::{Journal, Messages, Numbered, Step, decoded};
 pub use what_if::{Change, Compared, Difference, compare};
 
 use nima_recording::session::ReadError;
@@ -30,6 +32,9 @@ pub enum ReplayError {
     /// There is no beginning.
     #[error("its journal does not say what the loop was made of: the file was cut or damaged")]
     NoStart,
+    /// It is the second place of a recording.
+    #[error("its recording began in {first}: give that file first, nima replay {first} THIS")]
+    GoesOn { first: String },
     /// There is no journal at all.
     #[error("it holds no journal: only a session that was recorded with `nima run --record` can be replayed")]
     NoJournal,
@@ -42,6 +47,9 @@ pub enum ReplayError {
     /// The file itself.
     #[error(transparent)]
     File(#[from] ReadError),
+    /// The operating system gives no thread.
+    #[error("cannot start the thread that reads the journal: {0}; end other programs, then try again")]
+    Thread(#[source] io::Error),
 }
 
 /// The first tick that is not as it was recorded.
@@ -83,9 +91,9 @@ pub struct Outcome {
 ///
 /// # Errors
 /// [`ReplayError`] if the journal cannot be read.
-pub fn replay<I: Iterator<Item = Result<Vec<u8>, ReplayError>>>(
+pub fn replay<I: Iterator<Item = Result<Numbered, ReplayError>>>(
     journal: Journal<I>,
-    mut each: impl FnMut(&Moment),
+    mut each: impl FnMut(&Moment<'_>),
 ) -> Result<Outcome, ReplayError> {
     let mut cursor = Cursor::new(journal)?;
     let mut outcome = Outcome::default();

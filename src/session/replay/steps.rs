@@ -9,7 +9,6 @@ use crate::journal::{Block, End, Message, Noted, Row, Start, decode, number};
 
 /// One step of a journal.
 #[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "nearly every step is a tick, and is used at once")]
 pub enum Step {
     /// Something is done to the loop.
     Operation(Operation),
@@ -18,10 +17,10 @@ pub enum Step {
         /// The number by which an operation names them.
         number: u64,
         /// The calibrations.
-        calibrations: Calibrations,
+        calibrations: Box<Calibrations>,
     },
-    /// The loop is stepped.
-    Tick(Row),
+    /// The loop is stepped with [`Journal::row`].
+    Tick,
     /// Entries are missing here.
     Hole {
         /// How many.
@@ -43,12 +42,19 @@ pub struct Journal<I> {
 /// A block that is being read.
 #[derive(Debug)]
 struct Open {
-    rows: vec::IntoIter<Row>,
+    rows: Vec<Row>,
     noted: Peekable<vec::IntoIter<(usize, Noted)>>,
+    /// Rows that were taken.
     passed: usize,
 }
 
-impl<I: Iterator<Item = Result<Vec<u8>, ReplayError>>> Journal<I> {
+/// A message of a journal, and its number.
+pub type Numbered = (u64, Message);
+
+/// Messages of a journal from anywhere.
+pub type Messages = Box<dyn Iterator<Item = Result<Numbered, ReplayError>> + Send>;
+
+impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Journal<I> {
     /// Reads the beginning.
     ///
     /// # Errors
@@ -68,44 +74,59 @@ impl<I: Iterator<Item = Result<Vec<u8>, ReplayError>>> Journal<I> {
     }
 
     /// Messages that were read, if all their steps were taken: a place from which [`go_on`] can read.
-    pub const fn between_blocks(&self) -> Option<u64> {
-        if self.open.is_none() { Some(self.read) } else { None }
+    pub fn between_blocks(&self) -> Option<u64> {
+        match &self.open {
+            Some(open) if !open.is_read() => None,
+            _ => Some(self.read),
+        }
+    }
+
+    /// What the loop is stepped with, if the last step was a tick. It stays where it is, because it takes a kilobyte.
+    pub fn row(&self) -> Option<&Row> {
+        let open = self.open.as_ref()?;
+        open.rows.get(open.passed.checked_sub(1)?)
     }
 }
 
-/// Messages of a journal from anywhere.
-pub type Messages<'a> = Box<dyn Iterator<Item = Result<Vec<u8>, ReplayError>> + 'a>;
-
-/// The steps of a journal with this beginning behind its first `read` messages; `messages` may begin with some of those.
-pub(super) fn go_on<'a>(
-    messages: impl Iterator<Item = Result<Vec<u8>, ReplayError>> + 'a,
-    start: Start,
+/// The messages of these bytes behind the first `read` of the journal; the bytes may begin with some of those, and one that was there
+/// already is passed over: of a recording that went on in another place, both files may have it.
+pub fn decoded(
+    bytes: impl Iterator<Item = Result<Vec<u8>, ReplayError>>,
     read: u64,
-) -> Journal<Messages<'a>> {
-    let is_read = move |bytes: &Result<Vec<u8>, ReplayError>| {
-        bytes.as_ref().is_ok_and(|bytes| number(bytes).is_ok_and(|number| number < read))
-    };
-    Journal { messages: Box::new(messages.skip_while(is_read)), read, start, open: None }
+) -> impl Iterator<Item = Result<Numbered, ReplayError>> {
+    let mut next = read;
+    bytes.filter_map(move |bytes| {
+        let decoded = bytes.and_then(|bytes| match number(&bytes) {
+            Ok(number) if number < next => Ok(None),
+            _ => decode(&bytes).map(Some).map_err(|source| ReplayError::Message { place: next + 1, source }),
+        });
+        if let Ok(Some((number, _))) = &decoded {
+            next = *number + 1;
+        }
+        decoded.transpose()
+    })
 }
 
-impl<I: Iterator<Item = Result<Vec<u8>, ReplayError>>> Iterator for Journal<I> {
+/// The steps of a journal with this beginning behind its first `read` messages, which are these.
+pub(super) const fn go_on<I>(messages: I, start: Start, read: u64) -> Journal<I> {
+    Journal { messages, read, start, open: None }
+}
+
+impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Iterator for Journal<I> {
     type Item = Result<Step, ReplayError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
-            if let Some(open) = &mut self.open {
-                let step = open.next();
-                if open.is_read() {
-                    self.open = None;
-                }
-                if let Some(step) = step {
-                    return Some(Ok(step));
-                }
+            if let Some(step) = self.open.as_mut().and_then(Open::next) {
+                return Some(Ok(step));
             }
+            self.open = None;
             return Some(Ok(match next_message(&mut self.messages, &mut self.read).transpose()? {
                 Err(error) => return Some(Err(error)),
                 Ok(Message::Start(_)) => return Some(Err(ReplayError::NoStart)),
-                Ok(Message::Calibrations { number, calibrations }) => Step::Calibrations { number, calibrations },
+                Ok(Message::Calibrations { number, calibrations }) => {
+                    Step::Calibrations { number, calibrations: Box::new(calibrations) }
+                }
                 Ok(Message::End(end)) => Step::End(end),
                 Ok(Message::Block(block)) => {
                     self.open = Some(Open::of(block));
@@ -119,20 +140,23 @@ impl<I: Iterator<Item = Result<Vec<u8>, ReplayError>>> Iterator for Journal<I> {
 impl Open {
     fn of(block: Block) -> Self {
         let Block { rows, noted, .. } = block;
-        Self { rows: rows.into_iter(), noted: noted.into_iter().peekable(), passed: 0 }
+        Self { rows, noted: noted.into_iter().peekable(), passed: 0 }
     }
 
     fn is_read(&self) -> bool {
-        self.rows.len() == 0 && self.noted.len() == 0
+        self.passed == self.rows.len() && self.noted.len() == 0
     }
 
     fn next(&mut self) -> Option<Step> {
-        let (passed, last) = (self.passed, self.rows.len() == 0);
+        let (passed, last) = (self.passed, self.passed == self.rows.len());
         if let Some((_, noted)) = self.noted.next_if(|(before, _)| last || *before <= passed) {
             return Some(step_of(noted));
         }
+        if last {
+            return None;
+        }
         self.passed += 1;
-        self.rows.next().map(Step::Tick)
+        Some(Step::Tick)
     }
 }
 
@@ -144,14 +168,12 @@ const fn step_of(noted: Noted) -> Step {
 }
 
 fn next_message(
-    messages: &mut impl Iterator<Item = Result<Vec<u8>, ReplayError>>,
+    messages: &mut impl Iterator<Item = Result<Numbered, ReplayError>>,
     read: &mut u64,
 ) -> Result<Option<Message>, ReplayError> {
-    let Some(bytes) = messages.next().transpose()? else { return Ok(None) };
-    let place = *read + 1;
-    let (number, message) = decode(&bytes).map_err(|source| ReplayError::Message { place, source })?;
+    let Some((number, message)) = messages.next().transpose()? else { return Ok(None) };
     if number != *read {
-        return Err(ReplayError::Missing { place });
+        return Err(ReplayError::Missing { place: *read + 1 });
     }
     *read += 1;
     Ok(Some(message))

@@ -13,7 +13,7 @@ use nima_machine::{
     teleop::Origin,
 };
 
-use super::{Hole, Journal, Machine, ReplayError, Step};
+use super::{Hole, Journal, Machine, Numbered, ReplayError, Step};
 
 /// What is changed; `None` leaves it as it was. A setting that is changed stays so: commands that would set it are left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -101,15 +101,15 @@ pub struct Compared {
 /// # Errors
 /// [`ReplayError`] if the journal cannot be read or the changed settings are not usable.
 #[expect(clippy::type_complexity, reason = "three answers")]
-pub fn compare<I: Iterator<Item = Result<Vec<u8>, ReplayError>>>(
+pub fn compare<I: Iterator<Item = Result<Numbered, ReplayError>>>(
     journal: &mut Journal<I>,
     change: &Change,
     mut each: impl FnMut(&Tick, &Tick),
 ) -> Result<([Option<Compared>; SIDES], u64, Option<Hole>), ReplayError> {
     let origin = &journal.start().origin;
     let (mut recorded, mut changed) = (Machine::new(origin)?, Machine::new(&change.origin(origin))?);
-    let (mut sides, mut ticks, mut hole) = ([None; SIDES], 0, None);
-    for step in journal {
+    let (mut sides, mut ticks, mut hole, mut events) = ([None; SIDES], 0, None, Vec::new());
+    while let Some(step) = journal.next() {
         match step? {
             Step::Operation(operation) => {
                 recorded.apply(operation, ticks)?;
@@ -118,18 +118,19 @@ pub fn compare<I: Iterator<Item = Result<Vec<u8>, ReplayError>>>(
                 }
             }
             Step::Calibrations { number, calibrations } => {
-                recorded.know(number, calibrations.clone());
-                changed.know(number, calibrations);
+                recorded.know(number, (*calibrations).clone());
+                changed.know(number, *calibrations);
             }
             Step::Hole { lost } => {
                 hole = Some(Hole { tick: ticks, lost });
                 break;
             }
             Step::End(_) => {}
-            Step::Tick(row) => {
-                let ((_, as_was), (_, as_if)) = (recorded.step(&row), changed.step(&row));
-                recorded.take_events();
-                changed.take_events();
+            Step::Tick => {
+                let Some(row) = journal.row() else { continue };
+                let ((_, as_was), (_, as_if)) = (recorded.step(row), changed.step(row));
+                recorded.take_events(&mut events);
+                changed.take_events(&mut events);
                 ticks += 1;
                 for side in Side::ALL {
                     if let (Some(was), Some(would)) = (&as_was[side.index()], &as_if[side.index()]) {

@@ -30,6 +30,9 @@ pub(super) struct Arguments {
     live: Live,
     #[command(flatten)]
     network: ToFollower,
+    /// Record into this folder when sessions can no longer be written into the usual one: best on another disk
+    #[arg(long, value_name = "DIR")]
+    second_place: Option<PathBuf>,
     /// Start in this view (default: the one used last)
     #[arg(long)]
     role: Option<Role>,
@@ -95,7 +98,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         live.is_none() || folder.is_some(),
         "live viewing shows what is recorded, and there is no folder for sessions: set NIMA_DATA_DIR"
     );
-    let mut sessions = Sessions::of_user(folder, live);
+    let mut sessions = Sessions::of_user(folder, arguments.second_place.as_deref(), live);
     let reports = line.as_ref().map(Line::reports);
     let handle = start_recorded(&plan, &mut sessions, line)?;
     let options = Options {

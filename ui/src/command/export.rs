@@ -214,7 +214,7 @@ fn cut_out(reader: &Reader, times_ns: &Range<u64>, session: &Path, new: &Path, l
     let journal = match journal {
         Kept::Yes => "with the journal up to the cut: `nima replay` repeats it",
         Kept::LeftOut => "without the journal, which can be replayed from its beginning only",
-        Kept::None => "the session has no journal",
+        Kept::GoesOn | Kept::None => "the session has no journal",
     };
     Ok((format!("{messages} messages"), journal))
 }

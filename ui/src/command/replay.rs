@@ -3,6 +3,7 @@
 mod what_if;
 
 use std::{
+    iter,
     path::{Path, PathBuf},
     time::Instant,
 };
@@ -12,7 +13,7 @@ use clap::Args;
 use nima_core::impedance::{MAX_DELAY_S, Mode};
 use nima_session::{
     file::Recorded,
-    replay::{Change, Differs, Hole, Outcome, replay},
+    replay::{Change, Differs, Hole, Journal, Messages, Outcome, ReplayError, replay},
 };
 use serde::Serialize;
 
@@ -23,6 +24,9 @@ use crate::{recording::PROGRAM, telling::tell};
 pub(super) struct Arguments {
     /// Session file that `nima run --record` wrote
     session: PathBuf,
+    /// The file in the second place in which its recording went on
+    #[arg(value_name = "SECOND")]
+    more: Vec<PathBuf>,
     /// What if: render with this mode
     #[arg(long)]
     mode: Option<Mode>,
@@ -56,20 +60,24 @@ fn gain(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { session, mode, delay_ms, gain, out, json } = arguments;
+    let Arguments { session, more, mode, delay_ms, gain, out, json } = arguments;
     let change = Change { mode: *mode, delay_s: delay_ms.map(|delay_ms| delay_ms * 1e-3), gain: *gain };
     if !change.is_any() && out.is_some() {
         bail!("--out needs a change: give --mode, --delay-ms or --gain too");
     }
-    let file = Recorded::open(session)?;
-    for note in file.reader().notes() {
+    let files = iter::once(session).chain(more).map(|path| Recorded::open(path)).collect::<Result<Vec<_>, _>>()?;
+    for note in files.iter().flat_map(|file| file.reader().notes()) {
         tell(format_args!("nima: {note}"));
     }
+    let journal = || files.split_first().map_or(Err(ReplayError::NoJournal), |(first, more)| first.journal_with(more));
     if change.is_any() {
-        return what_if::run(&file, session, &change, out.as_deref(), *json);
+        return what_if::run(&journal, session, &change, out.as_deref(), *json);
     }
-    once_more(&file, session, *json)
+    once_more(journal(), session, *json)
 }
+
+/// The journal from its beginning, or why there is none.
+type Opened = Result<Journal<Messages>, ReplayError>;
 
 /// What a replay tells.
 #[derive(Serialize)]
@@ -102,9 +110,8 @@ struct Missing {
     lost: u64,
 }
 
-fn once_more(file: &Recorded, session: &Path, json: bool) -> anyhow::Result<()> {
-    let damaged = || session.display().to_string();
-    let journal = file.journal().with_context(damaged)?;
+fn once_more(journal: Opened, session: &Path, json: bool) -> anyhow::Result<()> {
+    let journal = journal.with_context(|| session.display().to_string())?;
     let start = journal.start().clone();
     let (begin, mut read) = (Instant::now(), 0);
     let outcome = replay(journal, |_| read += 1);

@@ -81,6 +81,9 @@ pub(super) struct Arguments {
     /// Record the session into a new file, from which `nima replay` repeats it bit for bit
     #[arg(long, value_name = "FILE.mcap")]
     record: Option<PathBuf>,
+    /// Go on in this new file when that one can no longer be written: best on another disk
+    #[arg(long, value_name = "FILE.mcap", requires = "record")]
+    second_place: Option<PathBuf>,
     #[command(flatten)]
     live: Live,
     #[command(flatten)]
@@ -164,7 +167,11 @@ pub(super) fn run_with(
         );
     }
     let live = arguments.live.start()?;
-    let to = Destination { file: arguments.record.as_deref(), audience: live.as_ref().map(Server::audience) };
+    let to = Destination {
+        file: arguments.record.as_deref(),
+        second: arguments.second_place.as_deref(),
+        audience: live.as_ref().map(Server::audience),
+    };
     let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock)?;
     let mut summary = if arguments.virtual_clock {
         runtime::run_virtual(Assembly { tap, ..plan.simulated()? }, arguments.seconds.unwrap_or(60.0), |tick| {
@@ -305,7 +312,7 @@ fn on_the_real_clock(
                 status.tell(&words);
             }
         });
-        if let Some(words) = recording.newly_over() {
+        for words in recording.news() {
             status.tell(&words);
         }
         if let Some(words) = reports.as_ref().and_then(|reports| start.link.hear(reports)) {

@@ -128,6 +128,8 @@ pub struct Live {
     pub is_unchecked: bool,
     /// The devices of the rig; empty if everything is simulated.
     pub roster: Roster,
+    /// Of a recorded session: its devices, and how each was at that moment.
+    pub devices_then: Vec<(String, Standing)>,
     /// Health of the devices, in the same order.
     pub healths: Healths,
     /// What was last told of the line to the machine with the arm, if it is at another one.
@@ -187,6 +189,7 @@ impl Live {
             roster: Roster::new(),
             line: None,
             line_reports: None,
+            devices_then: Vec::new(),
             healths: Healths::default(),
             blocks: VecDeque::with_capacity(BLOCKS_KEPT + 1),
             blocks_counted: 0,

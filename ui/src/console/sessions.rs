@@ -33,12 +33,16 @@ const ROOM_EVERY: Duration = Duration::from_secs(30);
 const WARN_BEFORE: Duration = Duration::from_hours(8);
 /// A session must have run for this long before its growth says anything of a day.
 const GROWN: Duration = Duration::from_mins(1);
+/// A disk that does not answer for this long is told: a second later entries are lost.
+const SLOW: Duration = Duration::from_secs(1);
 
 /// The sessions of this console.
 #[derive(Debug, Default)]
 pub(crate) struct Sessions {
     /// `None`: nothing is recorded.
     shelf: Option<Shelf>,
+    /// Where a recording goes on that can no longer be written there.
+    second: Option<Shelf>,
     /// Those who watch.
     live: Option<Server>,
     now: Option<Now>,
@@ -86,10 +90,12 @@ pub(crate) struct Shown {
 }
 
 impl Sessions {
-    /// Records into the folder `sessions` of the user's data folder, and lets those of this server watch.
-    pub(crate) fn of_user(data_folder: Option<&Path>, live: Option<Server>) -> Self {
+    /// Records into the folder `sessions` of the user's data folder, and into `second` when that can no longer be written; lets those
+    /// of this server watch.
+    pub(crate) fn of_user(data_folder: Option<&Path>, second: Option<&Path>, live: Option<Server>) -> Self {
         let shelf = data_folder.map(|folder| Shelf::new(folder.join("sessions"), MOST_BYTES));
-        Self { shelf, live, now: None, trouble: None, looked: None, full_in: None }
+        let second = second.map(|folder| Shelf::new(folder, MOST_BYTES));
+        Self { shelf, second, live, now: None, trouble: None, looked: None, full_in: None }
     }
 
     /// Begins to record a loop of this plan; the tap is for it. `None` if nothing is recorded.
@@ -97,13 +103,25 @@ impl Sessions {
         self.end();
         let shelf = self.shelf.as_ref()?;
         self.trouble = None;
-        let place =
-            shelf.place(&utc_now(), &plan.rig.name).map_err(|error| text::sessions::no_folder(shelf.folder(), &error));
-        let begun = place.and_then(|path| {
-            let to = Destination { file: Some(&path), audience: self.live.as_ref().map(Server::audience) };
+        let started = utc_now();
+        let place = |shelf: &Shelf| {
+            shelf.place(&started, &plan.rig.name).map_err(|error| text::sessions::no_folder(shelf.folder(), &error))
+        };
+        let begin = |path: PathBuf, second: Option<PathBuf>| {
+            let audience = self.live.as_ref().map(Server::audience);
+            let to = Destination { file: Some(&path), second: second.as_deref(), audience };
             let (tap, recorder) = recording::begin(to, plan, "real").map_err(|error| chain(&error))?;
             Ok((tap, Now { recorder, path, began: Instant::now(), kept: false, told: Told::default() }))
-        });
+        };
+        let second = self.second.as_ref().and_then(|shelf| place(shelf).ok());
+        let begun = place(shelf).and_then(|path| begin(path, second.clone()));
+        // What cannot begin here begins there.
+        let begun = match (begun, second) {
+            (Err(why), Some(path)) => begin(path.clone(), None).inspect(|_| {
+                self.trouble = Some(text::sessions::moved(&why, &path));
+            }),
+            (begun, _) => begun,
+        };
         match begun {
             Ok((tap, now)) => {
                 self.now = Some(now);
@@ -119,9 +137,10 @@ impl Sessions {
     /// Ends the recording; the loop must have ended.
     pub(crate) fn end(&mut self) {
         let Some(Now { recorder, path, kept, .. }) = self.now.take() else { return };
+        let stays = kept || recorder.moved().is_some();
         match recorder.finish() {
             // Whether it can be deleted matters to nobody.
-            Ok(progress) if progress.ticks < LEAST_TICKS && !kept => drop(std::fs::remove_file(path)),
+            Ok(progress) if progress.ticks < LEAST_TICKS && !stays => drop(std::fs::remove_file(path)),
             Ok(_) => {}
             Err(error) => self.trouble = Some(chain(&error)),
         }
@@ -130,9 +149,14 @@ impl Sessions {
     /// Keeps the session that is being recorded, or leaves it to be deleted.
     pub(crate) fn toggle_kept(&mut self) {
         let Some(now) = &mut self.now else { return };
-        match keep(&now.path, !now.kept) {
-            Ok(()) => now.kept = !now.kept,
-            Err(error) => self.trouble = Some(text::sessions::not_kept(&now.path, &error)),
+        let kept = keep(&now.path, !now.kept).map_err(|error| (&now.path, error));
+        match now.recorder.moved().map(|moved| keep(&moved.to, !now.kept).map_err(|error| (&moved.to, error))) {
+            // The first place may be gone; what counts is where it goes on.
+            Some(Ok(())) => now.kept = !now.kept,
+            other => match other.unwrap_or(kept) {
+                Ok(()) => now.kept = !now.kept,
+                Err((path, error)) => self.trouble = Some(text::sessions::not_kept(path, &error)),
+            },
         }
     }
 
@@ -167,9 +191,14 @@ impl Sessions {
 
     /// Why nothing is recorded although it should be, or what will be in the way within a working day.
     pub(crate) fn trouble(&self) -> Option<String> {
-        let ended = self.now.as_ref().and_then(|now| now.recorder.trouble()).map(|error| chain(error));
+        let recorder = self.now.as_ref().map(|now| &now.recorder);
+        let ended = recorder.and_then(Recorder::trouble).map(|error| chain(error));
+        let moved = || Some(recorder?.moved()?).map(|moved| text::sessions::moved(&chain(&moved.why), &moved.to));
+        let progress = recorder.map(Recorder::progress).unwrap_or_default();
+        let slow = || (progress.waits > SLOW).then(|| text::sessions::slow(progress.waits));
+        let lost = || (progress.lost > 0).then(|| text::sessions::lost(progress.lost));
         let full = || self.full_in.filter(|time| *time < WARN_BEFORE).map(text::sessions::full_in);
-        ended.or_else(|| self.trouble.clone()).or_else(full)
+        ended.or_else(slow).or_else(lost).or_else(moved).or_else(|| self.trouble.clone()).or_else(full)
     }
 
     /// The session that is being recorded; `None` if none is.
@@ -179,7 +208,7 @@ impl Sessions {
         Some(Shown {
             seconds: now.began.elapsed().as_secs(),
             kept: now.kept,
-            path: now.path.clone(),
+            path: now.recorder.moved().map_or(&now.path, |moved| &moved.to).clone(),
             bytes: progress.bytes,
             lost: progress.lost,
             marks: now.told.marks,
@@ -251,7 +280,7 @@ mod tests {
     #[test]
     fn every_loop_is_recorded_and_its_session_replays() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None);
+        let mut sessions = Sessions::of_user(Some(folder.path()), None, None);
         let mut paths = Vec::new();
         for kept in [true, false] {
             let plan = plan();
@@ -281,7 +310,7 @@ mod tests {
     #[test]
     fn marks_and_alarms_of_the_screen_are_in_the_session_at_their_moments_and_it_replays() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None);
+        let mut sessions = Sessions::of_user(Some(folder.path()), None, None);
         let plan = plan();
         let tap = sessions.begin(&plan);
         let handle = start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap();
@@ -332,7 +361,7 @@ mod tests {
     #[test]
     fn a_loop_that_ends_at_once_leaves_no_session() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None);
+        let mut sessions = Sessions::of_user(Some(folder.path()), None, None);
         let plan = plan();
         let tap = sessions.begin(&plan);
         drop(start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap());
@@ -345,10 +374,27 @@ mod tests {
     fn a_folder_that_cannot_be_made_is_told_and_the_loop_runs_without_a_recording() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("sessions"), "a file").unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None);
+        let mut sessions = Sessions::of_user(Some(folder.path()), None, None);
         assert!(sessions.begin(&plan()).is_none());
         let trouble = sessions.trouble().unwrap();
         assert!(trouble.contains("sessions"), "{trouble}");
         assert_eq!(sessions.shown(), None);
+    }
+
+    #[test]
+    fn what_cannot_be_recorded_in_the_usual_folder_is_recorded_in_the_second_and_that_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("sessions"), "a file").unwrap();
+        let second = folder.path().join("second");
+        let mut sessions = Sessions::of_user(Some(folder.path()), Some(&second), None);
+        let tap = sessions.begin(&plan());
+        let handle = start(Assembly { tap, ..plan().assembly().unwrap() }).unwrap();
+        sessions.toggle_kept();
+        let path = sessions.shown().unwrap().path;
+        assert!(path.starts_with(&second), "{}", path.display());
+        assert!(sessions.trouble().unwrap().contains("it goes on in"), "{:?}", sessions.trouble());
+        handle.stop_and_join().unwrap();
+        sessions.end();
+        assert!(replay(Recorded::open(&path).unwrap().journal().unwrap(), |_| ()).unwrap().closed);
     }
 }

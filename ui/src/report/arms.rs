@@ -44,7 +44,11 @@ fn seconds(session: &Figures, arm: &ArmFigures) -> String {
     let mut rows: Vec<_> = arm.seconds.iter().zip(&plots::STATE).filter_map(of).collect();
     let unknown_s = session.length_s - total_s;
     if unknown_s > 0.05 {
-        rows.push(vec!["not recorded".to_owned(), format!("{unknown_s:.1} s"), String::new()]);
+        rows.push(vec![
+            format!("<span class=\"key gap\"></span>{}", plots::NOT_RECORDED),
+            format!("{unknown_s:.1} s"),
+            String::new(),
+        ]);
     }
     table(&["state", "time", "share"], &rows)
 }
@@ -60,7 +64,7 @@ fn forces(arm: &ArmFigures) -> String {
         "peak (N)",
         "at",
         "mean (N)",
-        "integral (N s)",
+        "integral (N&nbsp;s)",
         "sd on principal axes (N)",
         "force volume (N<sup>3</sup>)",
         "rate RMS (N/s)",
@@ -73,7 +77,7 @@ fn force(name: &str, of: &ForceFigures) -> Vec<String> {
     vec![
         name.to_owned(),
         digits(of.peak_n),
-        time(of.peak_at_s),
+        time(of.peak_at_s).replace(' ', "&nbsp;"),
         digits(of.mean_n),
         digits(of.integral_n_s),
         of.principal_sd_n.map(digits).join(", "),

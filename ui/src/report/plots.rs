@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use nima_session::report::{ArmFigures, Figures, STATES, Trace};
+use nima_session::report::{ArmFigures, Figures, Mark, STATES, Span, Trace};
 use nima_study::picture::COLOURS;
 
 use super::html::escape;
@@ -14,6 +14,13 @@ const BAND: f64 = 26.0;
 const PLOT: f64 = 130.0;
 /// Most marks in a band: more would hide it.
 const MARKS: usize = 200;
+/// The numbers of marks stand above the triangles, and one label is for all that are closer together than this.
+const NUMBERS: f64 = 14.0;
+const APART: f64 = 20.0;
+/// Ticks that are further apart than this do not follow each other, s.
+const GAP_S: f64 = 0.02;
+/// Where nothing was recorded.
+pub(super) const NOT_RECORDED: &str = "not recorded";
 
 /// Name, colour and whether it is hatched: no two states differ by colour alone.
 pub(super) const STATE: [(&str, &str, bool); STATES] = [
@@ -62,10 +69,12 @@ fn time_axis(out: &mut String, length_s: f64, top: f64, bottom: f64) {
 
 /// The states of an arm as a band, with a triangle at each warning and each error, and a numbered line at each mark of the operator.
 pub(super) fn states(session: &Figures, arm: &ArmFigures) -> String {
-    let (top, bottom) = (16.0, 16.0 + BAND);
+    let top = NUMBERS + 16.0;
+    let bottom = top + BAND;
     let mut out = begin(bottom + 22.0, &format!("States of the {} arm over time", arm.side));
     writeln!(out, "<defs>{HATCH}</defs>").ok();
     time_axis(&mut out, session.length_s, top, bottom);
+    gaps(&mut out, session.length_s, &arm.states, top);
     for span in &arm.states {
         let (name, colour, hatched) = STATE[usize::from(span.state).min(STATES - 1)];
         let x = across(span.from_s, session.length_s);
@@ -75,24 +84,9 @@ pub(super) fn states(session: &Figures, arm: &ArmFigures) -> String {
                 .ok();
         }
     }
-    let mut number = 0;
-    for mark in session.marks.iter().filter(|mark| mark.level != "info").take(MARKS) {
+    let is_mark = |mark: &&Mark| mark.level == "mark";
+    for mark in session.marks.iter().filter(|mark| mark.level != "info" && !is_mark(mark)).take(MARKS) {
         let x = across(mark.t_s, session.length_s);
-        if mark.level == "mark" {
-            number += 1;
-            // At the right edge the number stands on the other side.
-            let (at, anchor) = if x < WIDTH - 40.0 { (x + 3.0, "start") } else { (x - 3.0, "end") };
-            writeln!(
-                out,
-                "<g><path d=\"M{x:.1} {}V{bottom}\" stroke=\"#000000\" stroke-width=\"2\"/>\
-                 <text x=\"{at:.1}\" y=\"{}\" text-anchor=\"{anchor}\" font-weight=\"bold\">{number}</text><title>{}</title></g>",
-                top - 12.0,
-                top - 3.0,
-                escape(&mark.words)
-            )
-            .ok();
-            continue;
-        }
         let fill = if mark.level == "error" { "#000000" } else { "#ffffff" };
         writeln!(
             out,
@@ -101,8 +95,61 @@ pub(super) fn states(session: &Figures, arm: &ArmFigures) -> String {
         )
         .ok();
     }
+    let marks: Vec<&Mark> = session.marks.iter().filter(is_mark).take(MARKS).collect();
+    for mark in &marks {
+        let x = across(mark.t_s, session.length_s);
+        writeln!(
+            out,
+            "<path d=\"M{x:.1} {NUMBERS}V{bottom}\" stroke=\"#000000\" stroke-width=\"2\"><title>{}</title></path>",
+            escape(&mark.words)
+        )
+        .ok();
+    }
+    let places: Vec<f64> = marks.iter().map(|mark| across(mark.t_s, session.length_s)).collect();
+    for (x, label) in labels(&places) {
+        let y = NUMBERS - 3.0;
+        writeln!(out, "<text x=\"{x:.1}\" y=\"{y}\" text-anchor=\"middle\" font-weight=\"bold\">{label}</text>").ok();
+    }
     out.push_str("</svg>\n");
     out
+}
+
+/// Frames where nothing was recorded, so that nobody takes them for a state.
+fn gaps(out: &mut String, length_s: f64, states: &[Span], top: f64) {
+    let mut before_s = 0.0;
+    let ends = states.iter().map(|span| (span.from_s, span.to_s));
+    for (from_s, to_s) in ends.chain([(length_s, length_s)]) {
+        if from_s - before_s > GAP_S {
+            let [x, end] = [before_s, from_s].map(|t_s| across(t_s, length_s));
+            writeln!(
+                out,
+                "<rect x=\"{x:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"#ffffff\" stroke=\"#444444\" \
+                 stroke-dasharray=\"3 2\"><title>{NOT_RECORDED}</title></rect>",
+                top + 0.5,
+                (end - x).max(0.8),
+                BAND - 1.0
+            )
+            .ok();
+        }
+        before_s = before_s.max(to_s);
+    }
+}
+
+/// Places and texts of the numbers of marks at these places: those that are close together share one, such as 1-3.
+fn labels(places: &[f64]) -> Vec<(f64, String)> {
+    // First and last number, first and last place.
+    let mut groups: Vec<(usize, usize, f64, f64)> = Vec::new();
+    for (number, x) in (1..).zip(places) {
+        match groups.last_mut() {
+            Some((_, last, _, end)) if x - *end < APART => (*last, *end) = (number, *x),
+            _ => groups.push((number, number, *x, *x)),
+        }
+    }
+    let label = |(first, last, begin, end): (usize, usize, f64, f64)| {
+        let text = if first == last { first.to_string() } else { format!("{first}-{last}") };
+        (f64::midpoint(begin, end), text)
+    };
+    groups.into_iter().map(label).collect()
 }
 
 /// The lengths of the three forces, one above the other on the same scale.
@@ -143,4 +190,30 @@ pub(super) fn forces(session: &Figures, arm: &ArmFigures) -> String {
     }
     out.push_str("</svg>\n");
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_marks_that_are_close_together_do_not_cover_each_other() {
+        let told = labels(&[100.0, 104.0, 108.0, 300.0, 940.0, 944.0]);
+        let texts: Vec<&str> = told.iter().map(|(_, text)| text.as_str()).collect();
+        assert_eq!(texts, ["1-3", "4", "5-6"]);
+        assert!(told.windows(2).all(|pair| pair[1].0 - pair[0].0 >= APART), "{told:?}");
+    }
+
+    #[test]
+    fn what_was_not_recorded_is_no_state() {
+        let span = |from_s, to_s, state| Span { from_s, to_s, state };
+        let frames = |states: &[Span]| {
+            let mut out = String::new();
+            gaps(&mut out, 10.0, states, 0.0);
+            out.matches(NOT_RECORDED).count()
+        };
+        assert_eq!(frames(&[span(0.0, 4.0, 3), span(4.7, 10.0, 6)]), 1);
+        assert_eq!(frames(&[span(0.0, 4.0, 3), span(4.001, 10.0, 6)]), 0, "the next tick");
+        assert_eq!(frames(&[span(2.0, 4.0, 3)]), 2, "before and after");
+    }
 }

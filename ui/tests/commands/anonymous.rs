@@ -1,5 +1,5 @@
 //! `nima export --anonymous`: nothing that tells who, where and when is left, and every force is.
-use std::{collections::BTreeMap, path::Path, time::UNIX_EPOCH};
+use std::{collections::BTreeMap, path::Path, process::Command, time::UNIX_EPOCH};
 
 use nima_recording::{
     messages::{
@@ -10,13 +10,10 @@ use nima_recording::{
 };
 use prost::Message as _;
 
-use crate::{
-    every_command::json,
-    export::{done, refused, values},
-};
+use crate::export::{done, refused, values};
 
 /// Wherever a person can write a name, one of these is written.
-const PLANTED: [&str; 9] = [
+const PLANTED: [&str; 11] = [
     "Theatre seven",
     "grasper-of-Jane",
     "SN-4711-PLANTED",
@@ -26,7 +23,12 @@ const PLANTED: [&str; 9] = [
     "host-theatre-7",
     "network-of-Jane",
     "2026-08-21",
+    MACHINE,
+    LOGIN,
 ];
+/// Names of the computer on which it is recorded and of who is logged in there: they are in no session at all.
+const MACHINE: &str = "computer-of-jane";
+const LOGIN: &str = "login-of-jane";
 
 /// Rig and scene with planted names, and a session of them.
 fn recorded(folder: &Path) -> String {
@@ -48,8 +50,36 @@ fn recorded(folder: &Path) -> String {
     std::fs::write(at("scene.toml"), named(config("scenes", "bimanual.toml"), scene_name)).unwrap();
     let session = at("jane.mcap");
     let [rig, scene] = [at("rig.toml"), at("scene.toml")];
-    json(&["run", "--virtual", "--seconds", "3", "--rig", &rig, "--scene", &scene, "--record", &session, "--json"]);
+    let run = ["run", "--virtual", "--seconds", "3", "--rig", &rig, "--scene", &scene, "--record", &session, "--json"];
+    let output = elsewhere(&run).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let bytes = all_bytes(Path::new(&session));
+    assert!(found(&bytes).contains(&serial) && !found(&bytes).contains(&MACHINE) && !found(&bytes).contains(&LOGIN));
     session
+}
+
+/// The program as somebody else runs it on another computer, as far as this system lets a test be that: by all variables that tell it, and
+/// by what the system says its name is.
+fn elsewhere(arguments: &[&str]) -> Command {
+    let rename = format!("hostname {MACHINE} 2>/dev/null || echo {MACHINE} > /proc/sys/kernel/hostname; exec \"$@\"");
+    let renames =
+        Command::new("unshare").args(["-r", "--uts", "true"]).output().is_ok_and(|output| output.status.success());
+    let mut command = if renames {
+        let mut command = Command::new("unshare");
+        command.args(["-r", "--uts", "sh", "-c", &rename, "sh", env!("CARGO_BIN_EXE_nima")]);
+        command
+    } else {
+        Command::new(env!("CARGO_BIN_EXE_nima"))
+    };
+    for variable in ["USER", "LOGNAME", "USERNAME", "SUDO_USER"] {
+        command.env(variable, LOGIN);
+    }
+    for variable in ["HOSTNAME", "HOST", "COMPUTERNAME"] {
+        command.env(variable, MACHINE);
+    }
+    command.args(arguments).env("HOME", format!("/home/{LOGIN}")).env("NIMA_DATA_DIR", "/dev/null/no/such/folder");
+    command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+    command
 }
 
 /// The same session with names in every place that a file has.
@@ -169,7 +199,8 @@ fn no_name_and_no_date_is_left_and_every_force_is() {
 
     let (out, part) = (at("a.mcap"), at("b.mcap"));
     let text = |path: &Path| path.display().to_string();
-    done(&["export", &text(&full), "--out", &text(&out), "--anonymous"]);
+    let exported = elsewhere(&["export", &text(&full), "--out", &text(&out), "--anonymous"]).output().unwrap();
+    assert!(exported.status.success(), "{}", String::from_utf8_lossy(&exported.stderr));
     done(&["export", &text(&full), "--out", &text(&part), "--anonymous", "--from", "1", "--to", "2"]);
     for path in [&out, &part] {
         let bytes = all_bytes(path);

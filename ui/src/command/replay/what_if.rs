@@ -9,13 +9,10 @@ use std::{
 use anyhow::Context as _;
 use nima_files::write_atomically;
 use nima_machine::{messages::Tick, rig::Side};
-use nima_session::{
-    file::Recorded,
-    replay::{Change, Compared, Difference, Hole, compare},
-};
+use nima_session::replay::{Change, Compared, Difference, Hole, compare};
 use serde::Serialize;
 
-use super::output;
+use super::{Opened, output};
 
 /// The file with the forces of both.
 const FORCES: &str = "forces.csv";
@@ -68,16 +65,16 @@ impl Lengths {
 }
 
 pub(super) fn run(
-    file: &Recorded,
+    journal: &dyn Fn() -> Opened,
     session: &Path,
     change: &Change,
     out: Option<&Path>,
     json: bool,
 ) -> anyhow::Result<()> {
     let (compared, ticks, hole) = match out {
-        None => compare(&mut file.journal().with_context(|| session.display().to_string())?, change, |_, _| {})
+        None => compare(&mut journal().with_context(|| session.display().to_string())?, change, |_, _| {})
             .with_context(|| session.display().to_string())?,
-        Some(out) => with_forces(file, session, change, out)?,
+        Some(out) => with_forces(journal, session, change, out)?,
     };
     let arm = |side: Side| {
         let Compared { engaged, apart, rendered, recorded_error, changed_error } = compared[side.index()]?;
@@ -101,14 +98,14 @@ pub(super) fn run(
 type Answer = ([Option<Compared>; nima_machine::rig::SIDES], u64, Option<Hole>);
 
 /// Compares, and writes the forces of both.
-fn with_forces(file: &Recorded, session: &Path, change: &Change, out: &Path) -> anyhow::Result<Answer> {
+fn with_forces(journal: &dyn Fn() -> Opened, session: &Path, change: &Change, out: &Path) -> anyhow::Result<Answer> {
     output::folder(out, &[FORCES], &[session])?;
     let path = out.join(FORCES);
     let mut answer = None;
     let written = write_atomically(&path, |to| {
         writeln!(to, "{HEADER}")?;
         let mut written = Ok(());
-        let compared = file.journal().and_then(|mut journal| {
+        let compared = journal().and_then(|mut journal| {
             compare(&mut journal, change, |was, would| {
                 if written.is_ok() {
                     written = to.write_all(row(was, would).as_bytes());

@@ -1,12 +1,12 @@
 //! `nima run --record`: the session file of a run; `--live`: who watches it.
 
-use std::path::PathBuf;
+use std::{path::PathBuf, time::Duration};
 
 use anyhow::Context as _;
 use nima_machine::runtime::Tap;
 use nima_session::{
     outlet::Destination,
-    recorder::{Progress, Recorder},
+    recorder::{Moved, Progress, Recorder},
 };
 use nima_world::Plan;
 use serde::Serialize;
@@ -17,13 +17,19 @@ use crate::recording::begin;
 #[derive(Default)]
 pub(super) struct Recording {
     recorder: Option<(Recorder, Option<PathBuf>)>,
-    told: bool,
+    /// What was told already: that it is over, goes on elsewhere, waits for the disk, has lost entries.
+    told: [bool; 4],
 }
+
+/// A disk that does not answer for this long is told: a second later entries are lost.
+const SLOW: Duration = Duration::from_secs(1);
 
 /// The figures of a recording.
 #[derive(Serialize)]
 pub(super) struct Recorded {
     file: PathBuf,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    goes_on_in: Option<PathBuf>,
     ticks: u64,
     lost: u64,
     bytes: u64,
@@ -37,7 +43,7 @@ impl Recording {
         }
         let file = to.file.map(ToOwned::to_owned);
         let (tap, recorder) = begin(to, plan, if is_virtual { "virtual" } else { "real" })?;
-        Ok((Some(tap), Self { recorder: Some((recorder, file)), told: false }))
+        Ok((Some(tap), Self { recorder: Some((recorder, file)), told: [false; 4] }))
     }
 
     /// Whether it has ended by itself.
@@ -45,30 +51,45 @@ impl Recording {
         self.recorder.as_ref().is_some_and(|(recorder, _)| recorder.trouble().is_some())
     }
 
-    /// Why it has ended by itself, once. The run goes on.
-    pub(super) fn newly_over(&mut self) -> Option<String> {
-        let trouble = self.recorder.as_ref().and_then(|(recorder, _)| recorder.trouble()).filter(|_| !self.told)?;
-        self.told = true;
-        Some(format!("the recording has ended, the run goes on: {trouble}"))
+    /// What has gone wrong, each of it once. The run goes on.
+    pub(super) fn news(&mut self) -> Vec<String> {
+        let Some((recorder, _)) = &self.recorder else { return Vec::new() };
+        let progress = recorder.progress();
+        let over = recorder.trouble().map(|why| format!("the recording has ended, the run goes on: {why}"));
+        let moved = |Moved { why, to }: &Moved| format!("the recording goes on in {}: {why}", to.display());
+        let slow = || format!("the disk has not answered for {:.1} s: the run goes on", progress.waits.as_secs_f64());
+        let lost = || "the disk is slower than the loop: parts of the recording are lost, the run goes on".to_owned();
+        let news =
+            [over, recorder.moved().map(moved), (progress.waits > SLOW).then(slow), (progress.lost > 0).then(lost)];
+        let is_new = |(words, told): (Option<String>, &mut bool)| {
+            let words = words.filter(|_| !*told)?;
+            *told = true;
+            Some(words)
+        };
+        news.into_iter().zip(&mut self.told).filter_map(is_new).collect()
     }
 
     /// Ends it after the loop has ended.
     pub(super) fn end(self) -> anyhow::Result<Option<Recorded>> {
-        let Some((recorder, file)) = self.recorder else { return Ok(None) };
-        let Progress { ticks, lost, bytes } = recorder.finish().context("the recording has ended before the run")?;
-        Ok(file.map(|file| Recorded { file, ticks, lost, bytes }))
+        let Some((mut recorder, file)) = self.recorder else { return Ok(None) };
+        recorder.end();
+        let goes_on_in = recorder.moved().map(|moved| moved.to.clone());
+        let Progress { ticks, lost, bytes, .. } =
+            recorder.finish().context("the recording has ended before the run")?;
+        Ok(file.map(|file| Recorded { file, goes_on_in, ticks, lost, bytes }))
     }
 }
 
 impl Recorded {
     /// In words, for a terminal; begins with a line break.
     pub(super) fn in_words(&self) -> String {
-        let Self { file, ticks, lost, bytes } = self;
+        let Self { file, goes_on_in, ticks, lost, bytes } = self;
         let hole = match lost {
             0 => String::new(),
             _ => format!(", {lost} entries lost: it can be replayed up to the first of them"),
         };
         let megabytes = *bytes as f64 * 1e-6;
-        format!("\nrecorded {ticks} ticks into {}, {megabytes:.1} MB{hole}", file.display())
+        let moved = goes_on_in.as_ref().map_or_else(String::new, |second| format!(" and {}", second.display()));
+        format!("\nrecorded {ticks} ticks into {}{moved}, {megabytes:.1} MB{hole}", file.display())
     }
 }

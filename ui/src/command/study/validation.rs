@@ -4,13 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use nima_core::impedance::MAX_DELAY_S;
-use nima_recording::{
-    csv::{Mapping, Recording},
-    tip_force::MOST_ROWS,
-};
+use nima_machine::rig::Side;
+use nima_recording::tip_force::MOST_ROWS;
 use nima_study::validation::{Options, isolation::ROWS, paper};
 
-use super::{Asked, Results};
+use super::{super::motion, Asked, Results};
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct Validation {
@@ -29,9 +27,12 @@ pub(in crate::command) struct Validation {
     /// Duration of the task under each condition, s
     #[arg(long, value_name = "S", default_value_t = paper::SECONDS, value_parser = seconds, requires = "paper")]
     seconds: f64,
-    /// CSV file with motion and force, as for `nima identify`, which is judged too; may be given several times
+    /// CSV file with motion and force, or session, as for `nima identify`, which is judged too; may be given several times
     #[arg(long, value_name = "FILE", requires = "paper")]
     recording: Vec<PathBuf>,
+    /// Which arm of the sessions, right or left (needed where one has both)
+    #[arg(long, value_name = "ARM", value_parser = motion::side, requires = "recording")]
+    arm: Option<Side>,
     /// Other column names in the recordings, with an optional factor: `x=px_mm*0.001`
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]", requires = "recording")]
     map: Vec<String>,
@@ -69,8 +70,8 @@ impl Asked for Validation {
         if !self.paper {
             return results.of(&self.experiment()?);
         }
-        let mapping = Mapping::parse(&self.map)?;
-        let recordings = self.recording.iter().map(|path| Recording::read(path, &mapping)).collect::<Result<_, _>>()?;
+        let read = |path: &PathBuf| motion::read(path, &self.map, self.arm);
+        let recordings = self.recording.iter().map(read).collect::<Result<_, _>>()?;
         results.of(&paper::Options { seed: self.seed, seconds: self.seconds, recordings })
     }
 }

@@ -22,15 +22,17 @@ const STRETCH_S: f64 = 0.4;
 #[derive(Clone, Debug)]
 pub(super) struct Frame {
     pub(super) t_s: f64,
+    /// Calibrations that came into force: the side, and their number.
+    pub(super) in_force: Vec<(Side, u64)>,
     pub(super) events: Vec<Event>,
     pub(super) ticks: [Option<Tick>; SIDES],
 }
 
 /// Where ticks come from.
 #[expect(clippy::large_enum_variant, reason = "two at most")]
-pub(super) enum Feed<'a> {
+pub(super) enum Feed {
     /// The loop that was recorded.
-    Replay(Cursor<Messages<'a>>),
+    Replay(Cursor<Messages>),
     /// The plots of the file, from this time on, s.
     Plots(f64),
 }
@@ -46,7 +48,7 @@ pub(super) enum Reached {
     End(Option<String>),
 }
 
-impl Feed<'_> {
+impl Feed {
     /// Moves on by a block, or to the first tick at `limit_s` or after it. `like` are ticks from which what is not plotted is taken.
     pub(super) fn slice(
         &mut self,
@@ -88,11 +90,7 @@ impl Feed<'_> {
     }
 }
 
-fn replay(
-    cursor: &mut Cursor<Messages<'_>>,
-    limit_s: f64,
-    each: &mut impl FnMut(Frame),
-) -> Result<Reached, ReplayError> {
+fn replay(cursor: &mut Cursor<Messages>, limit_s: f64, each: &mut impl FnMut(Frame)) -> Result<Reached, ReplayError> {
     loop {
         match cursor.step()? {
             None | Some(Passed::Closed) => return Ok(Reached::End(None)),
@@ -102,7 +100,8 @@ fn replay(
                     return Ok(Reached::End(Some(text::past::differs(t_s))));
                 }
                 let t_s = moment.row.timing.now_s;
-                each(Frame { t_s, events: moment.events, ticks: moment.ticks });
+                let (in_force, events) = (moment.in_force.to_vec(), moment.events.to_vec());
+                each(Frame { t_s, in_force, events, ticks: *moment.ticks });
                 if t_s >= limit_s {
                     return Ok(Reached::Limit);
                 }
@@ -126,7 +125,7 @@ pub(super) fn plots(
     for arm in &file.arms {
         let Some(like) = &like[arm.index()] else { continue };
         plotted::each_tick(file.recorded.reader(), &file.path, *arm, times_ns.clone(), |plotted| {
-            let none = || Frame { t_s: plotted.t_s, events: Vec::new(), ticks: [None; SIDES] };
+            let none = || Frame { t_s: plotted.t_s, in_force: Vec::new(), events: Vec::new(), ticks: [None; SIDES] };
             frames.entry(plotted.time_ns).or_insert_with(none).ticks[arm.index()] = Some(tick(like, *arm, &plotted));
             Ok::<_, PlottedError>(())
         })?;

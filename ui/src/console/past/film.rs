@@ -22,7 +22,7 @@ use nima_world::scene::Scene;
 
 use super::{
     feed::{Feed, Frame, Reached, plots},
-    overview::Note,
+    overview::{Note, Tables},
 };
 use crate::console::{
     chain,
@@ -86,14 +86,11 @@ impl File {
         self.begin_ns + (t_s.max(0.0) * 1e9).round() as u64
     }
 
-    /// The calibrations in force at the beginning, one line each.
-    pub(super) fn calibrations(&self) -> Vec<String> {
+    /// The tables of the calibrations that came into force.
+    pub(super) fn calibrations(&self) -> Tables {
         let tables = self.recorded.reader().metadata().unwrap_or_default();
-        let of_side = |side: Side| {
-            let (_, table) = tables.iter().find(|(name, _)| *name == format!("calibrations {}", side.word()))?;
-            Some(text::past::calibrations(side.word(), table))
-        };
-        Side::ALL.into_iter().filter_map(of_side).collect()
+        let of = |name: &str| name.strip_prefix("calibrations ").map(str::to_owned);
+        tables.into_iter().filter_map(|(name, table)| Some((of(&name)?, table))).collect()
     }
 
     /// A tick of each arm in which nothing is known.
@@ -124,7 +121,7 @@ struct Column {
 pub(super) struct Film<'a> {
     pub(super) file: &'a File,
     blank: [Option<Tick>; SIDES],
-    reading: Option<Feed<'a>>,
+    reading: Option<Feed>,
     keyframes: Vec<Keyframe>,
     keyframe_s: f64,
     samples: [Vec<Tick>; SIDES],
@@ -143,8 +140,8 @@ pub(super) struct Film<'a> {
 }
 
 /// A moment that is being replayed.
-pub(super) struct Chase<'a> {
-    feed: Feed<'a>,
+pub(super) struct Chase {
+    feed: Feed,
     live: Live,
     like: [Option<Tick>; SIDES],
     from_s: f64,
@@ -240,7 +237,7 @@ impl<'a> Film<'a> {
     }
 
     fn keep(&mut self, frame: &Frame, is_replay: bool) {
-        let Frame { t_s, events, ticks } = frame;
+        let Frame { t_s, events, ticks, .. } = frame;
         self.read_s = *t_s;
         if is_replay {
             self.exact_s = *t_s;
@@ -307,7 +304,7 @@ impl<'a> Film<'a> {
     }
 
     /// Begins to replay up to the first tick at this time, s, or after it.
-    pub(super) fn chase(&self, to_s: f64) -> Chase<'a> {
+    pub(super) fn chase(&self, to_s: f64) -> Chase {
         let from_s = (to_s - LEAD_S).max(0.0);
         let keyframe = self.keyframes.iter().rfind(|keyframe| keyframe.t_s() <= from_s);
         let feed = match (keyframe, &self.file.start) {
@@ -320,7 +317,7 @@ impl<'a> Film<'a> {
     }
 }
 
-impl<'a> Chase<'a> {
+impl Chase {
     /// Goes on for a moment; true when the moment is reached.
     pub(super) fn go_on(&mut self, file: &File) -> bool {
         let Self { feed, live, like, from_s, to_s } = self;
@@ -333,7 +330,7 @@ impl<'a> Chase<'a> {
     }
 
     /// What is shown, and where it goes on.
-    pub(super) fn end(mut self) -> (Live, View<'a>) {
+    pub(super) fn end(mut self) -> (Live, View) {
         if self.live.ticks.iter().all(Option::is_none) {
             // Nothing could be read here.
             self.live.replay(std::iter::empty(), &self.like);
@@ -345,12 +342,12 @@ impl<'a> Chase<'a> {
 }
 
 /// The moment that is shown, from which it goes on.
-pub(super) struct View<'a> {
-    feed: Feed<'a>,
+pub(super) struct View {
+    feed: Feed,
     like: [Option<Tick>; SIDES],
 }
 
-impl View<'_> {
+impl View {
     /// Whether everything is as it was, not only what is plotted.
     pub(super) const fn is_exact(&self) -> bool {
         matches!(self.feed, Feed::Replay(_))

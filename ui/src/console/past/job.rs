@@ -9,7 +9,7 @@ use std::{
         atomic::{AtomicBool, Ordering},
         mpsc::{Receiver, TryRecvError, channel},
     },
-    thread,
+    thread::{self, JoinHandle},
 };
 
 use egui::Context;
@@ -28,11 +28,16 @@ pub(super) struct Job {
     told: Receiver<String>,
     /// Set when nobody waits for it any more.
     left: Arc<AtomicBool>,
+    /// What deletes its half-written file then, which takes a moment: the program must not end before.
+    tidies: Option<JoinHandle<()>>,
 }
 
 impl Drop for Job {
     fn drop(&mut self) {
         self.left.store(true, Ordering::Relaxed);
+        if let Some(tidies) = self.tidies.take() {
+            tidies.join().ok();
+        }
     }
 }
 
@@ -56,14 +61,14 @@ impl Job {
             ctx.request_repaint();
         };
         // If no thread can be created, `tell` is dropped, and that is told.
-        thread::Builder::new().name("session".to_owned()).spawn(work).ok();
-        Self { doing, told, left }
+        let tidies = thread::Builder::new().name("session".to_owned()).spawn(work).ok();
+        Self { doing, told, left, tidies }
     }
 
     /// Writes the page of a session and opens it, if this computer has a program for it.
     pub(super) fn report(ctx: &Context, session: &Path) -> Self {
         let session = session.to_path_buf();
-        Self::start(ctx, text::past::REPORTING, move |_| {
+        let mut job = Self::start(ctx, text::past::REPORTING, move |_| {
             let folder = beside(&session).join(REPORTS).join(session.file_stem().unwrap_or_default());
             match crate::report::write(&[session], &folder) {
                 Ok(page) => {
@@ -72,7 +77,10 @@ impl Job {
                 }
                 Err(error) => text::past::not_reported(&format!("{error:#}")),
             }
-        })
+        });
+        // Its page appears whole or not at all, and its program may run for long.
+        job.tidies = None;
+        job
     }
 
     /// Saves the stretch between these times (s) beside the session, and keeps it.

@@ -17,10 +17,11 @@ mod worker;
 use std::path::{Path, PathBuf};
 
 use egui::Context;
+use nima_machine::rig::Side;
 
 use self::{
     job::Job,
-    overview::Overview,
+    overview::{Overview, Tables},
     worker::{Answer, Extent, Opened, Worker},
 };
 use super::{in_force::InForce, live::Live, outbox::Outbox, roles::Panels, scene3d::SceneView, text};
@@ -48,6 +49,9 @@ pub(crate) struct Past {
     /// Takes what the views would tell the machine; it is never sent.
     pub(super) outbox: Outbox,
     overview: Overview,
+    calibrations: Tables,
+    /// Names of the devices.
+    devices: Vec<String>,
     extent: Extent,
     /// Time that is wanted on the screen, s.
     wanted_s: f64,
@@ -102,6 +106,8 @@ impl Past {
             in_force: InForce::of_past(Vec::new()),
             outbox: Outbox::default(),
             overview: Overview::default(),
+            calibrations: Tables::new(),
+            devices: Vec::new(),
             extent: Extent::Plotted,
             wanted_s: 0.0,
             play: Play { runs: false, speed: 1.0, unsettled_s: 0.0 },
@@ -127,6 +133,7 @@ impl Past {
         if let Some(beside) = &mut self.beside {
             beside.follow(self.play.runs.then_some(self.wanted_s), driven);
         }
+        self.settle();
         if let Some((words, over)) = self.job.as_ref().map(Job::told) {
             self.told.job = Some(words);
             if over {
@@ -141,6 +148,7 @@ impl Past {
         while let Some(answer) = self.worker.answer() {
             self.take(answer);
         }
+        self.settle();
         if let Some(to_s) = to_s {
             self.wanted_s = to_s.min(self.about.map_or(to_s, |about| about.end_s));
             self.worker.go_on(self.wanted_s);
@@ -153,12 +161,28 @@ impl Past {
         self.beside = Some(Box::new(beside));
     }
 
+    /// What was in force and which devices were there at the moment on the screen.
+    fn settle(&mut self) {
+        let t_s = self.shown_s();
+        let line = |side: Side| {
+            let later = self.overview.calibrations(side, t_s);
+            let name = later.map_or_else(|| side.word().to_owned(), |(_, number)| number.to_string());
+            let table = self.calibrations.get(&name)?;
+            Some(text::past::calibrations(side.word(), table, later.map(|(since_s, _)| since_s)))
+        };
+        self.in_force = InForce::of_past(Side::ALL.into_iter().filter_map(line).collect());
+        if let Some(live) = &mut self.live {
+            let of = |(place, name): (usize, &String)| (name.clone(), self.overview.standing(place, t_s));
+            live.devices_then = self.devices.iter().enumerate().map(of).collect();
+        }
+    }
+
     fn take(&mut self, answer: Answer) {
         match answer {
             Answer::Opened(opened) => {
-                let Opened { begin_ns, end_s, calibrations } = *opened;
+                let Opened { begin_ns, end_s, calibrations, devices } = *opened;
                 self.about = Some(About { begin_ns, end_s });
-                self.in_force = InForce::of_past(calibrations);
+                (self.calibrations, self.devices) = (calibrations, devices);
                 if self.wanted_s > end_s {
                     self.show(end_s);
                 }

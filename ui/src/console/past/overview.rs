@@ -1,6 +1,12 @@
 //! A whole session in little: its largest forces, its states, and what happened, along its time.
 
-use nima_machine::messages::{LoopState, attention};
+use std::collections::BTreeMap;
+
+use nima_devices::Standing;
+use nima_machine::{
+    messages::{Event, LoopState, attention},
+    rig::Side,
+};
 use nima_session::file::LineKind;
 
 use super::feed::Frame;
@@ -24,6 +30,9 @@ pub(super) struct Note {
     pub(super) words: String,
 }
 
+/// Tables of calibrations in a session: those of the beginning by their side, later ones by their number.
+pub(super) type Tables = BTreeMap<String, BTreeMap<String, String>>;
+
 /// What has been read of a session.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Overview {
@@ -31,6 +40,10 @@ pub(super) struct Overview {
     first: usize,
     pub(super) buckets: Vec<Bucket>,
     pub(super) notes: Vec<Note>,
+    /// Devices that came or went: when (s), which, and how it is since.
+    pub(super) devices: Vec<(f64, usize, Standing)>,
+    /// Calibrations that came into force: when (s), on which side, their number.
+    pub(super) in_force: Vec<(f64, Side, u64)>,
     pub(super) read_s: f64,
 }
 
@@ -50,17 +63,36 @@ impl Overview {
             let (measured_n, rendered_n) = (tick.measured_n.norm() as f32, tick.rendered_n.norm() as f32);
             self.buckets[place].merge(&Bucket { measured_n, rendered_n, state });
         }
+        self.in_force.extend(frame.in_force.iter().map(|(side, number)| (frame.t_s, *side, *number)));
+        self.devices.extend(frame.events.iter().filter_map(|event| match event {
+            Event::Device(device) => Some((frame.t_s, usize::from(device.device), device.standing)),
+            _ => None,
+        }));
         self.read_s = frame.t_s;
+    }
+
+    /// How this device was at this time (s); closed before anything was told of it.
+    pub(super) fn standing(&self, device: usize, t_s: f64) -> Standing {
+        let of_device = |(at_s, which, _): &&(f64, usize, Standing)| *which == device && *at_s <= t_s;
+        self.devices.iter().rfind(of_device).map_or(Standing::Closed, |(_, _, standing)| *standing)
+    }
+
+    /// The calibrations that were in force on this side at this time (s): since when, and their number; `None`: those of the beginning.
+    pub(super) fn calibrations(&self, side: Side, t_s: f64) -> Option<(f64, u64)> {
+        let of_side = |(at_s, of, _): &&(f64, Side, u64)| *of == side && *at_s <= t_s;
+        self.in_force.iter().rfind(of_side).map(|(at_s, _, number)| (*at_s, *number))
     }
 
     /// Takes in the next part.
     pub(super) fn add(&mut self, part: Self) {
-        let Self { first, buckets, notes, read_s } = part;
+        let Self { first, buckets, notes, devices, in_force, read_s } = part;
         self.buckets.resize(self.buckets.len().max(first + buckets.len()), Bucket::default());
         for (now, more) in self.buckets[first..].iter_mut().zip(&buckets) {
             now.merge(more);
         }
         self.notes.extend(notes);
+        self.devices.extend(devices);
+        self.in_force.extend(in_force);
         self.read_s = read_s;
     }
 }
@@ -71,5 +103,37 @@ impl Bucket {
         self.measured_n = self.measured_n.max(other.measured_n);
         self.rendered_n = self.rendered_n.max(other.rendered_n);
         self.state = self.state.into_iter().chain(other.state).max_by_key(|state| attention(*state));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_devices::Loss;
+    use nima_machine::rig::{DeviceEvent, SIDES};
+
+    use super::*;
+
+    #[test]
+    fn a_moment_has_the_devices_and_calibrations_that_it_had() {
+        let device =
+            |t_s, device, standing| Event::Device(DeviceEvent { t_s, device, standing, of_side: [true, false] });
+        let frame = |t_s, events, in_force| Frame { t_s, in_force, events, ticks: [None; SIDES] };
+        let mut parts = [Overview::default(), Overview::default()];
+        parts[0].take(&frame(1.0, vec![device(1.0, 0, Standing::Connected)], Vec::new()));
+        parts[0].take(&frame(2.0, vec![device(2.0, 1, Standing::Connected)], vec![(Side::Right, 4)]));
+        parts[1].take(&frame(3.0, vec![device(3.0, 0, Standing::Lost(Loss::Silent))], vec![(Side::Left, 5)]));
+        let mut whole = Overview::default();
+        for part in parts {
+            whole.add(part);
+        }
+        let standing = |t_s| [0, 1].map(|device| whole.standing(device, t_s));
+        assert_eq!(standing(0.5), [Standing::Closed; 2]);
+        assert_eq!(standing(2.0), [Standing::Connected; 2]);
+        assert_eq!(standing(9.0), [Standing::Lost(Loss::Silent), Standing::Connected]);
+        assert_eq!(
+            [1.9, 2.0, 9.0].map(|t_s| whole.calibrations(Side::Right, t_s)),
+            [None, Some((2.0, 4)), Some((2.0, 4))]
+        );
+        assert_eq!(whole.calibrations(Side::Left, 2.9), None);
     }
 }

@@ -41,7 +41,7 @@ fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Optio
 /// All ticks of the right arm, and of the left.
 fn replayed(path: &Path) -> Vec<[Option<Tick>; 2]> {
     let mut all = Vec::new();
-    let outcome = replay(Recorded::open(path).unwrap().journal().unwrap(), |moment| all.push(moment.ticks)).unwrap();
+    let outcome = replay(Recorded::open(path).unwrap().journal().unwrap(), |moment| all.push(*moment.ticks)).unwrap();
     assert!(outcome.closed && outcome.differs.is_none());
     all
 }
@@ -236,6 +236,27 @@ fn what_is_no_session_is_refused_in_one_line() {
         until(&mut past, "refused", |past| past.refused().is_some());
         assert!(!past.refused().unwrap().contains('\n') && past.live.is_none());
     }
+}
+
+#[test]
+fn a_window_that_is_closed_while_a_stretch_is_saved_leaves_no_half_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "bimanual", 20.0, |_| None);
+    let mut past = open(&path);
+    until(&mut past, "open", |past| past.about.is_some());
+    past.stretch_s = [Some(0.0), Some(19.5)];
+    past.save(&Context::default());
+    let named = |ending: &str| {
+        let names = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+        names.filter(|name| name.to_string_lossy().ends_with(ending)).count()
+    };
+    let began = Instant::now();
+    while named(".part") == 0 && named(".mcap") == 1 && began.elapsed() < TIMEOUT {
+        thread::yield_now();
+    }
+    drop(past);
+    assert_eq!(named(".part"), 0, "{} sessions", named(".mcap"));
 }
 
 /// Prints how long it takes until a random moment is on the screen, and until every figure is as it was.

@@ -14,7 +14,7 @@ use std::{
 use super::{
     feed::Frame,
     film::{Chase, File, Film, View},
-    overview::Overview,
+    overview::{Overview, Tables},
 };
 use crate::console::live::Live;
 
@@ -35,7 +35,9 @@ enum Wish {
 pub(super) struct Opened {
     pub(super) begin_ns: u64,
     pub(super) end_s: f64,
-    pub(super) calibrations: Vec<String>,
+    pub(super) calibrations: Tables,
+    /// By their places in the loop's events.
+    pub(super) devices: Vec<String>,
 }
 
 /// How much of a moment is as it was.
@@ -127,7 +129,12 @@ impl Told {
 
 fn run(path: &Path, wanted: &Receiver<Wish>, told: &Told) -> Result<(), String> {
     let file = File::open(path)?;
-    let opened = Opened { begin_ns: file.begin_ns, end_s: file.end_s, calibrations: file.calibrations() };
+    let opened = Opened {
+        begin_ns: file.begin_ns,
+        end_s: file.end_s,
+        calibrations: file.calibrations(),
+        devices: file.rig.device_names(),
+    };
     told.tell(Answer::Opened(Box::new(opened)));
     let mut reading = Reading {
         part: Overview::default(),
@@ -210,21 +217,21 @@ impl Reading {
 
 /// What is on the screen, and what is on its way there.
 #[derive(Default)]
-struct Shown<'a> {
-    view: Option<View<'a>>,
-    chase: Option<(Chase<'a>, f64)>,
+struct Shown {
+    view: Option<View>,
+    chase: Option<(Chase, f64)>,
     /// A time that was shown before it was read, s.
     early_s: Option<f64>,
 }
 
-impl<'a> Shown<'a> {
-    fn show(&mut self, film: &Film<'a>, t_s: f64, told: &Told) {
+impl Shown {
+    fn show(&mut self, film: &Film<'_>, t_s: f64, told: &Told) {
         let live = film.at_once(t_s);
         told.tell(Answer::Shown(Box::new(live), Extent::Plotted, t_s));
         (self.view, self.chase, self.early_s) = (None, Some((film.chase(t_s), t_s)), None);
     }
 
-    fn chase_on(&mut self, film: &Film<'a>, told: &Told) {
+    fn chase_on(&mut self, film: &Film<'_>, told: &Told) {
         let Some((mut chase, t_s)) = self.chase.take() else { return };
         if !chase.go_on(film.file) {
             self.chase = Some((chase, t_s));
@@ -238,13 +245,13 @@ impl<'a> Shown<'a> {
     }
 
     /// What was shown before it was read is shown again, now as it was.
-    fn again(&mut self, film: &Film<'a>) {
+    fn again(&mut self, film: &Film<'_>) {
         if let Some(t_s) = self.early_s.take_if(|t_s| film.is_exact(*t_s)) {
             self.chase = Some((film.chase(t_s), t_s));
         }
     }
 
-    fn go_on(&mut self, film: &Film<'a>, to_s: f64, told: &Told) {
+    fn go_on(&mut self, film: &Film<'_>, to_s: f64, told: &Told) {
         if let Some(view) = &mut self.view {
             self.early_s = None;
             told.tell(Answer::WentOn(view.go_on(film.file, to_s)));

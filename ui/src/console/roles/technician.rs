@@ -36,10 +36,7 @@ pub(super) fn technician_ui(
             force_space_ui(ui, live, forces.side(), space, forces.cursor_at_s(live));
         }
         Panel::Feedback => acts(ui, past, |ui| feedback_ui(ui, live, &mut panels.feedback, outbox)),
-        // How they were is not in a session.
-        Panel::Devices if past => {
-            ui.label(weak(text::past::NO_DEVICES));
-        }
+        Panel::Devices if past => devices_then_ui(ui, live),
         Panel::Devices => wishes.devices = devices_ui(ui, live, &mut panels.devices),
         Panel::Calibrations => wishes.calibration = acts(ui, past, |ui| calibrations_ui(ui, live, in_force, None)),
         Panel::Gates => gates_ui(ui, live, &mut panels.gates),
@@ -51,6 +48,20 @@ pub(super) fn technician_ui(
     });
     panels.desk = desk;
     wishes
+}
+
+/// The devices of a recorded session as they were, and what of them is not in it.
+fn devices_then_ui(ui: &mut Ui, live: &Live) {
+    Frame::new().inner_margin(Margin::same(8)).show(ui, |ui| {
+        if live.devices_then.is_empty() {
+            ui.label(text::past::SIMULATED);
+        }
+        for (name, standing) in &live.devices_then {
+            ui.label(text::past::device(name, *standing));
+        }
+        ui.add_space(6.0);
+        ui.label(weak(text::past::NOT_OF_DEVICES));
+    });
 }
 
 /// Forces over time, with space for the last number of the time axis, half of which is beyond the plot.

@@ -7,6 +7,7 @@ use std::{
     time::{Duration, UNIX_EPOCH},
 };
 
+use nima_devices::Standing;
 use nima_recording::store::utc_of;
 
 pub(in crate::console) const SESSIONS: &str = "Sessions";
@@ -45,8 +46,9 @@ pub(in crate::console) const OPENING: &str = "Opening the session";
 pub(in crate::console) const WHOLE: &str = "Replayed to the last bit";
 pub(in crate::console) const PLOTTED: &str = "Forces, positions and states; the rest follows";
 pub(in crate::console) const PLOTTED_ONLY: &str = "Only forces, positions and states";
-pub(in crate::console) const NO_DEVICES: &str =
-    "A session tells in its log which devices came and went, and nothing else of them";
+pub(in crate::console) const SIMULATED: &str = "This rig has no devices: everything was simulated";
+pub(in crate::console) const NOT_OF_DEVICES: &str = "A session does not hold what each device counted and measured on its own: \
+rates, losses, ages, the drift of a sensor's bias, and the pages of the wizards";
 pub(in crate::console) const TIMELINE: &str = "Time of the session";
 pub(in crate::console) const PLAY: &str = "Play";
 pub(in crate::console) const PAUSE: &str = "Pause";
@@ -167,18 +169,44 @@ pub(in crate::console) fn unusable(name: &str, why: &str) -> String {
     format!("its {name} cannot be used: {why}")
 }
 
-/// The calibrations of a side at the beginning of a session, from what its file tells.
-pub(in crate::console) fn calibrations(side: &str, table: &BTreeMap<String, String>) -> String {
+/// How a device was.
+pub(in crate::console) fn device(name: &str, standing: Standing) -> String {
+    let how = match standing {
+        Standing::Closed => "not opened",
+        Standing::Opening => "being opened",
+        Standing::Connected => "connected",
+        Standing::Lost(loss) => return format!("{name}: lost: {}", loss.cause()),
+    };
+    format!("{name}: {how}")
+}
+
+/// The calibrations of a side, from what its file tells; in force since the beginning, or since this time, s.
+pub(in crate::console) fn calibrations(side: &str, table: &BTreeMap<String, String>, since_s: Option<f64>) -> String {
     let told = |key: &str| table.get(key).filter(|value| !value.is_empty());
-    let gravity = if told("gravity_digest").is_some() { "gravity calibrated" } else { "no gravity calibration" };
+    // The verdict, and the error on data that were not used.
+    let result = |verdict: &str, error_n: &str| {
+        let error_n = told(error_n).and_then(|error_n| error_n.parse::<f64>().ok());
+        match (told(verdict), error_n) {
+            (Some(verdict), Some(error_n)) => format!(" ({verdict}, {error_n:.2} N on new data)"),
+            (Some(verdict), None) => format!(" ({verdict})"),
+            (None, _) => String::new(),
+        }
+    };
+    let gravity = if told("gravity_digest").is_some() {
+        format!("gravity calibrated{}", result("gravity_verdict", "gravity_error_n"))
+    } else {
+        "no gravity calibration".to_owned()
+    };
     let network = told("network_date").map_or_else(
         || "no network".to_owned(),
         |date| {
             let of = |key: &str| told(key).map_or("unknown", String::as_str);
-            format!("network of {date} for sensor {}, tool {}", of("network_sensor"), of("network_tool"))
+            let result = result("network_verdict", "network_error_n");
+            format!("network of {date} for sensor {}, tool {}{result}", of("network_sensor"), of("network_tool"))
         },
     );
-    format!("{side} arm: {gravity}, {network}")
+    let since = since_s.map_or_else(String::new, |since_s| format!(", in force since {}", clock(since_s)));
+    format!("{side} arm: {gravity}, {network}{since}")
 }
 
 /// Where a report is.

@@ -45,6 +45,21 @@ pub(in crate::console) fn not_kept(path: &Path, error: &io::Error) -> String {
     format!("whether {} is kept cannot be changed: {error}", path.display())
 }
 
+/// The recording had to leave its place.
+pub(in crate::console) fn moved(why: &str, to: &Path) -> String {
+    format!("it goes on in {}, because: {why}", to.display())
+}
+
+/// The disk does not answer.
+pub(in crate::console) fn slow(waits: Duration) -> String {
+    format!("the disk has not answered for {:.1} s; after 2 s a part of the session is lost", waits.as_secs_f64())
+}
+
+/// Entries are missing.
+pub(in crate::console) fn lost(entries: u64) -> String {
+    format!("the disk is too slow: {entries} entries of this session are lost, a replay ends at the first of them")
+}
+
 /// The disk will be full.
 pub(in crate::console) fn full_in(time: Duration) -> String {
     format!("the disk will be full in {:.0} h at this rate", time.as_secs_f64() / 3600.0)

@@ -1,0 +1,79 @@
+//! What the recorder's thread tells.
+
+use std::{
+    path::PathBuf,
+    sync::{
+        OnceLock,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use super::RecordError;
+
+/// A recording that goes on in its second place.
+#[derive(Debug)]
+pub struct Moved {
+    /// Why it left the first.
+    pub why: RecordError,
+    /// The file in which it goes on.
+    pub to: PathBuf,
+}
+
+/// Figures of a recording so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// Ticks that were taken.
+    pub ticks: u64,
+    /// Entries that the loop dropped, because this thread came too late.
+    pub lost: u64,
+    /// Bytes in the file.
+    pub bytes: u64,
+    /// How long the disk has not answered; after two seconds the loop drops entries.
+    pub waits: Duration,
+}
+
+#[derive(Debug)]
+pub(super) struct Shared {
+    began: Instant,
+    /// When the thread looked for entries last, ms since it began.
+    looked_ms: AtomicU64,
+    pub(super) ticks: AtomicU64,
+    pub(super) lost: AtomicU64,
+    pub(super) bytes: AtomicU64,
+    pub(super) ends: AtomicBool,
+    pub(super) moved: OnceLock<Moved>,
+    pub(super) trouble: OnceLock<RecordError>,
+}
+
+impl Shared {
+    pub(super) fn new() -> Self {
+        Self {
+            began: Instant::now(),
+            looked_ms: AtomicU64::default(),
+            ticks: AtomicU64::default(),
+            lost: AtomicU64::default(),
+            bytes: AtomicU64::default(),
+            ends: AtomicBool::default(),
+            moved: OnceLock::new(),
+            trouble: OnceLock::new(),
+        }
+    }
+
+    /// The thread looks for entries now.
+    pub(super) fn looked(&self) {
+        self.looked_ms.store(self.ms(), Ordering::Relaxed);
+    }
+
+    pub(super) fn progress(&self) -> Progress {
+        let Self { ticks, lost, bytes, looked_ms, .. } = self;
+        let [ticks, lost, bytes, looked_ms] =
+            [ticks, lost, bytes, looked_ms].map(|count| count.load(Ordering::Relaxed));
+        let waits = Duration::from_millis(self.ms().saturating_sub(looked_ms));
+        Progress { ticks, lost, bytes, waits }
+    }
+
+    fn ms(&self) -> u64 {
+        self.began.elapsed().as_millis() as u64
+    }
+}

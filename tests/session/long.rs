@@ -1,0 +1,67 @@
+//! A long session: what it takes on the disk and in memory.
+
+use std::{fs, time::Instant};
+
+use nima_machine::runtime::{self, Assembly, tap};
+use nima_recording::session::{Reader, Writer};
+use nima_session::{
+    outlet::Destination,
+    recorder::{JOURNAL_TOPIC, Recorder},
+};
+
+use crate::file::{about, plan};
+
+/// Memory of this process, MB; `None` where the system does not say.
+fn memory_mb() -> Option<f64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? / 1000.0)
+}
+
+/// Two arms on the virtual clock for `NIMA_MINUTES`, or one.
+#[test]
+#[ignore = "minutes: figures for docs/replay.md"]
+fn figures_of_a_long_session() {
+    let minutes: u64 = std::env::var("NIMA_MINUTES").map_or(1, |minutes| minutes.parse().unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    let [path, journal] = ["session.mcap", "journal.mcap"].map(|name| folder.path().join(name));
+    let plan = plan("bimanual");
+    let (tap, end) = tap();
+    let recorder = Recorder::start(Destination::file(&path), about(), plan.origin(), end).unwrap();
+    let (begin, mut memory) = (Instant::now(), Vec::new());
+    runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, minutes as f64 * 60.0, |tick| {
+        if tick.side.index() == 0 && tick.index % 60_000 == 59_999 {
+            memory.extend(memory_mb());
+        }
+        None
+    });
+    let told = recorder.finish().unwrap();
+    let took_s = begin.elapsed().as_secs_f64();
+    assert_eq!((told.ticks, told.lost), (minutes * 60_000, 0));
+    let reader = Reader::open(&path).unwrap();
+    let forces = reader.channels().iter().find(|channel| channel.topic == "left/forces").unwrap();
+    assert_eq!(forces.messages, Some(minutes * 60_000), "every sample is there");
+    // The journal alone, in chunks as long as those of the session.
+    let mut alone = Writer::create(&journal, "figures").unwrap();
+    let channel = reader.channels().iter().find(|channel| channel.topic == JOURNAL_TOPIC).unwrap();
+    let channel = alone.channel(JOURNAL_TOPIC, channel.encoding.clone()).unwrap();
+    for message in reader.messages(&[JOURNAL_TOPIC], 0..u64::MAX) {
+        let message = message.unwrap();
+        alone.message(channel, message.log_time_ns(), message.data()).unwrap();
+    }
+    alone.finish().unwrap();
+    let per_minute = |path| fs::metadata(path).unwrap().len() as f64 * 1e-6 / minutes as f64;
+    let (all_mb, journal_mb) = (per_minute(&path), per_minute(&journal));
+    println!(
+        "{minutes} min in {took_s:.0} s: {} ticks, 0 lost; all {all_mb:.1} MB/min, journal {journal_mb:.1} MB/min; 8 h: {:.1} GB",
+        told.ticks,
+        all_mb * 0.48
+    );
+    println!("memory after each minute, MB: {memory:.1?}");
+    if let [.., second, last] = &*[memory.get(1), memory.last()].into_iter().flatten().copied().collect::<Vec<_>>() {
+        let per_hour_mb = (last - second) / (minutes as f64 - 2.0).max(1.0) * 60.0;
+        println!("after the second minute it grows by {per_hour_mb:.1} MB an hour");
+        assert!(minutes < 5 || per_hour_mb < 20.0, "{per_hour_mb} MB an hour");
+    }
+    assert!(all_mb <= 75.0 && journal_mb <= 25.0);
+}

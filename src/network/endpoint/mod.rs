@@ -40,7 +40,7 @@ use crate::{
 };
 
 /// Where a follower listens unless told otherwise.
-pub const PORT: u16 = 47_110;
+pub const PORT: u16 = 47_150;
 /// Consoles that are connected to a follower at once.
 pub const CONSOLES_MAX: usize = 6;
 /// Sessions at once: those, and some whose handshake has only just ended.

@@ -385,6 +385,6 @@ fn a_follower_listens_on_loopback_unless_told_otherwise() {
     let Ok(endpoint) = Endpoint::open(Config::new(role.clone(), keys())) else { return };
     assert_eq!(endpoint.address().unwrap(), (Ipv4Addr::LOCALHOST, PORT).into());
     let taken = Endpoint::open(Config::new(role, keys())).unwrap_err();
-    assert!(taken.to_string().contains("127.0.0.1:47110"), "{taken}");
+    assert!(taken.to_string().contains("127.0.0.1:47150"), "{taken}");
     assert_eq!(endpoint.state(), LinkState::Waiting);
 }

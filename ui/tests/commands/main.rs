@@ -18,4 +18,5 @@ mod replay;
 mod report;
 mod sessions;
 mod study;
+mod two_machines;
 mod words;

@@ -14,5 +14,6 @@ mod kinematics;
 mod kinova;
 mod ndi;
 mod network;
+mod remote;
 mod tip_force;
 mod whole_loop;

@@ -6,6 +6,7 @@
 //! DEVICE NAME`, with a name that contains blanks in quotes or with dashes. `nima emulate rig` emulates a whole rig
 //! with one simulated world; `pedal BITS` presses its pedal's switches, `screen ...` shows its technician what to do.
 
+mod link;
 #[cfg(unix)]
 mod rig;
 
@@ -25,7 +26,7 @@ use crate::{leaving::Leave, telling::tell};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Devices to emulate; `rig` for all devices of a rig
+    /// Devices to emulate; `rig` for all devices of a rig, `link` for a bad network between two machines
     #[arg(required = true, value_name = "DEVICE")]
     devices: Vec<String>,
     /// A setting of the emulated devices; devices that do not have it ignore it
@@ -56,6 +57,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             arguments.scene.as_deref().unwrap_or_else(|| default_scene(&arguments.rig)),
             arguments.until_input_ends,
         );
+    }
+    if arguments.devices == ["link"] {
+        return link::run(&arguments.set);
     }
     let settings = Settings::new(&arguments.set)?;
     let mut emulated = Vec::new();

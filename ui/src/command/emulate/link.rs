@@ -99,7 +99,7 @@ mod tests {
         ])
         .unwrap();
         assert_eq!((line.to.as_str(), line.at.as_str()), ("theatre:99", "127.0.0.1:47151"));
-        assert_eq!([line.there.delay_s, line.back.delay_s], [0.02; 2]);
+        assert!([line.there.delay_s, line.back.delay_s].iter().all(|delay_s| (delay_s - 0.02).abs() < 1e-12));
         assert_eq!(line.there.jitter, Jitter::Normal { deviation_s: 0.001 });
         assert_eq!((line.there.loss, line.back.loss), (Loss::None, Loss::Independent { share: 0.3 }));
         assert!(line.there.flap.is_some() && line.back.flap.is_none());

@@ -1,6 +1,6 @@
 //! What the two machines of a teleoperation over a network have to know of each other.
 
-use nima_core::impedance::{Mode, Parcel};
+use nima_core::impedance::{Mode, Parcel, Report};
 
 use super::{Fault, ForceSource, LoopState};
 use crate::rig::Side;
@@ -24,6 +24,8 @@ pub struct Bulletin<'a> {
     pub source: ForceSource,
     /// What was identified from the newest sample.
     pub parcel: &'a Parcel,
+    /// What is known of the identification.
+    pub report: &'a Report,
 }
 
 /// Why the machine at the other end of the network is stopped: its fault without the details, which its own screen shows.

@@ -127,6 +127,7 @@ impl<R: Rig, W: Wire> FarFollower<R, W> {
             resting: far.resting,
             modes: far.modes,
             packed: far.packed.unwrap_or(Packed::NONE),
+            errors_n: far.errors_n,
             stop: far.stop,
         };
         Some(Inputs {
@@ -151,6 +152,7 @@ fn keep_parameters(now: &mut [Option<FollowerSide>; SIDES], before: &[Option<Fol
     for (now, before) in now.iter_mut().zip(before) {
         if let (Some(now), Some(before)) = (now, before) {
             now.packed = now.packed.or(before.packed);
+            now.errors_n = now.errors_n.or(before.errors_n);
         }
     }
 }

@@ -18,6 +18,8 @@ use crate::{
 /// The parameters of one rendering are sent every so many ticks, in turn where several are computed. Fits are renewed 200 times a
 /// second.
 const PARAMETERS_EVERY: u64 = 10;
+/// The errors of the modes are told every so many ticks: they are read, and nothing depends on them.
+const ERRORS_EVERY: u64 = 100;
 /// Answers go on for so long after the last message, s: so the other machine hears why this one stopped.
 const ANSWERS_FOR_S: f64 = 1.0;
 /// Most commands that follow from one message.
@@ -194,12 +196,13 @@ impl<R: Rig, W: Wire> Rig for FarLeader<R, W> {
         self.ticks += 1;
         let Some(heard) = self.heard.filter(|heard| now_s - heard.at_s <= ANSWERS_FOR_S) else { return };
         let turn = (self.ticks.is_multiple_of(PARAMETERS_EVERY)).then_some(self.ticks / PARAMETERS_EVERY);
+        let tells_errors = self.ticks % ERRORS_EVERY == 1;
         // Since the command came it has grown older here.
         let t_s = heard.message.t_s + (now_s - heard.at_s);
         let mut message = FollowerMessage { t_s, sides: [None; SIDES] };
         for bulletin in bulletins.iter().flatten() {
             let side = bulletin.side.index();
-            message.sides[side] = self.inputs[side].map(|inputs| answer(&inputs, bulletin, turn));
+            message.sides[side] = self.inputs[side].map(|inputs| answer(&inputs, bulletin, turn, tells_errors));
         }
         if let Some(bytes) = message.pack(&mut self.buffer) {
             self.wire.send(now_s, bytes);
@@ -234,7 +237,7 @@ fn join(here: &Inputs, told: &LeaderSide, position_m: Vector3<f64>) -> Inputs {
     }
 }
 
-fn answer(inputs: &Inputs, bulletin: &Bulletin<'_>, turn: Option<u64>) -> FollowerSide {
+fn answer(inputs: &Inputs, bulletin: &Bulletin<'_>, turn: Option<u64>, tells_errors: bool) -> FollowerSide {
     let parcel = bulletin.parcel;
     FollowerSide {
         tip_m: inputs.tip_m,
@@ -248,6 +251,7 @@ fn answer(inputs: &Inputs, bulletin: &Bulletin<'_>, turn: Option<u64>) -> Follow
         fresh: parcel.fresh,
         resting: parcel.resting,
         modes: parcel.modes,
+        errors_n: tells_errors.then(|| bulletin.report.horizon_error_n.map(|error_n| error_n as f32)),
         packed: turn.and_then(|turn| Packed::of(parcel, turn as usize)),
     }
 }

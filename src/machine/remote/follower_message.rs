@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
-    impedance::{Mode, ModeSet, PACKED_MAX, Packed},
+    impedance::{Mode, ModeSet, PACKED_MAX, Packed, SLOTS},
     tip_force::{Fallback, Unsure},
 };
 
@@ -33,6 +33,7 @@ pub(super) struct FollowerSide {
     pub(super) resting: bool,
     pub(super) modes: ModeSet,
     pub(super) packed: Option<Packed>,
+    pub(super) errors_n: Option<[f32; SLOTS]>,
 }
 
 /// A message of the follower's machine.
@@ -114,6 +115,7 @@ impl FollowerSide {
             self.fresh,
             self.resting,
             self.packed.is_some(),
+            self.errors_n.is_some(),
         ];
         to.byte(side.index() as u8);
         to.byte(flags.iter().rev().fold(0, |bits, flag| bits << 1 | u8::from(*flag)));
@@ -130,6 +132,7 @@ impl FollowerSide {
             to.byte(packed.len);
             packed.used().iter().for_each(|number| to.single(*number));
         }
+        self.errors_n.iter().flatten().for_each(|error_n| to.single(*error_n));
     }
 
     fn unpack(from: &mut Unpacker<'_>) -> Option<Self> {
@@ -152,8 +155,17 @@ impl FollowerSide {
             force_n: from.vector()?,
             modes: set_of(from.short()?),
             packed: if flag(6) { Some(packed_of(from)?) } else { None },
+            errors_n: if flag(7) { Some(errors_of(from)?) } else { None },
         })
     }
+}
+
+fn errors_of(from: &mut Unpacker<'_>) -> Option<[f32; SLOTS]> {
+    let mut errors_n = [0.0; SLOTS];
+    for place in &mut errors_n {
+        *place = from.single()?;
+    }
+    Some(errors_n)
 }
 
 fn packed_of(from: &mut Unpacker<'_>) -> Option<Packed> {

@@ -1,5 +1,5 @@
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::impedance::{Mode, ModeSet, Packed};
+use nima_core::impedance::{Mode, ModeSet, Packed, SLOTS};
 
 use super::{
     MESSAGE_MAX,
@@ -27,12 +27,13 @@ fn follower_side() -> FollowerSide {
         resting: false,
         modes: ModeSet::only(Mode::Best),
         packed: Some(packed),
+        errors_n: Some([0.25; SLOTS]),
     }
 }
 
 fn follower_message() -> FollowerMessage {
     let right = follower_side();
-    let left = FollowerSide { packed: None, world_from_jaws: None, grip_n: None, stop: None, ..right };
+    let left = FollowerSide { packed: None, errors_n: None, world_from_jaws: None, grip_n: None, stop: None, ..right };
     FollowerMessage { t_s: 12.345, sides: [Some(right), Some(left)] }
 }
 
@@ -84,7 +85,7 @@ fn messages_arrive_as_they_were_sent() {
 
 fn sent_without_parameters() -> usize {
     let mut message = follower_message();
-    message.sides.iter_mut().flatten().for_each(|side| side.packed = None);
+    message.sides.iter_mut().flatten().for_each(|side| (side.packed, side.errors_n) = (None, None));
     message.pack(&mut [0; MESSAGE_MAX]).unwrap().len()
 }
 

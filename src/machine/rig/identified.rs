@@ -1,7 +1,7 @@
 //! The force at the tip as the follower's machine tells it over a network.
 
 use nalgebra::Vector3;
-use nima_core::impedance::{ModeSet, Packed};
+use nima_core::impedance::{ModeSet, Packed, SLOTS};
 
 use crate::messages::{FarStop, ForceSource};
 
@@ -25,6 +25,8 @@ pub struct Identified {
     pub modes: ModeSet,
     /// Parameters of one of them.
     pub packed: Packed,
+    /// Running mean of each mode's error at the horizon, N, where it is told.
+    pub errors_n: Option<[f32; SLOTS]>,
     /// Why the other machine is stopped.
     pub stop: Option<FarStop>,
 }

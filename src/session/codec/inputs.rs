@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
     calibration::frames::FrameSample,
     frames::{Wrench, WristSample},
-    impedance::{ModeSet, PACKED_MAX, Packed},
+    impedance::{ModeSet, PACKED_MAX, Packed, SLOTS},
     kinematics::{Hand, StartError},
 };
 use nima_machine::{
@@ -52,6 +52,7 @@ record!(Identified {
     resting: bool,
     modes: ModeSet,
     packed: Packed,
+    errors_n: Option<[f32; SLOTS]>,
     stop: Option<FarStop>,
 });
 

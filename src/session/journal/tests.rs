@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, UnitVector3,
 use nima_core::{
     calibration::frames::{FrameSample, Move},
     frames::{Wrench, WristSample},
-    impedance::{Mode, ModeSet, PACKED_MAX, Packed},
+    impedance::{Mode, ModeSet, PACKED_MAX, Packed, SLOTS},
     kinematics::{Hand, StartError},
     tip_force::{Fallback, Unsure},
 };
@@ -119,6 +119,7 @@ fn identified() -> BoxedStrategy<Identified> {
             fresh,
             resting,
             modes: ModeSet::only(mode),
+            errors_n: fresh.then(|| [numbers[0]; SLOTS]),
             packed: Packed { slot, len, numbers: numbers.try_into().unwrap() },
             stop,
         })

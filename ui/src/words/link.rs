@@ -58,27 +58,32 @@ pub(crate) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
 
 /// The figures of a line, one to a row.
 pub(crate) fn link_rows(report: &LineReport) -> Vec<[String; 2]> {
-    let ms = |seconds: f64| format!("{:.2} ms", seconds * 1e3);
+    let ms = |seconds: f64| format!("{:.1} ms", seconds * 1e3);
     let (figures, counts) = (&report.figures, &report.figures.counts);
-    let mut rows = vec![["link".to_owned(), state_in_words(report.state)]];
+    let state = match report.state {
+        LinkState::Open => "connected",
+        LinkState::Waiting => "waiting",
+        LinkState::Down(_) => "down",
+    };
+    let mut rows = vec![["Link".to_owned(), state.to_owned()]];
     let mut row = |name: &str, value: String| rows.push([name.to_owned(), value]);
     if let Some(clock) = &figures.clock {
-        row("round trip", format!("{} at least", ms(clock.round_trip_s)));
-        row("clock", format!("{} ahead there, ± {}", ms(clock.offset_s), ms(clock.bound_s)));
+        row("Round trip", format!("{} at least", ms(clock.round_trip_s)));
+        row("Other clock known to", format!("± {}", ms(clock.bound_s)));
     }
     if let Some(delays) = &figures.one_way {
-        row("one way", format!("{} mean, {} p99.9", ms(delays.mean_s), ms(delays.p999_s)));
+        row("One way", format!("{} mean, {} p99.9", ms(delays.mean_s), ms(delays.p999_s)));
     }
     if let Some(playout_s) = figures.playout_s {
-        row("play-out", format!("{} after sending", ms(playout_s)));
+        row("Played out after", ms(playout_s));
     }
-    row("loss", format!("{:.2} % to here, {:.2} % to there", figures.loss * 1e2, figures.loss_there * 1e2));
-    row("copies", format!("each message is sent {} times", figures.copies.used));
+    row("Lost on the way", format!("{:.1} % to here, {:.1} % to there", figures.loss * 1e2, figures.loss_there * 1e2));
+    row("Copies of each message", figures.copies.used.to_string());
     row(
-        "rate",
+        "Rate",
         format!("{:.2} Mbit/s out, {:.2} in", figures.sent.rate_bit_s / 1e6, figures.received.rate_bit_s / 1e6),
     );
-    row("messages", format!("{} delivered, {} late, {} lost", counts.delivered, counts.late, counts.lost));
-    row("dropped", format!("{} datagrams that are not the other machine's", report.dropped.total()));
+    row("Messages", format!("{}, {} late, {} lost", counts.delivered, counts.late, counts.lost));
+    row("Foreign datagrams", report.dropped.total().to_string());
     rows
 }

@@ -80,6 +80,9 @@ impl<L: Link> Pair<L> {
             (report.paper_degree, report.degree) = (parcel.literal.degree, parcel.anchored.degree);
             (report.matched_degree, report.nima_degree) = (parcel.matched.degree, parcel.nima.degree);
             report.gain = parcel.anchored.gain;
+            if let Some(errors_n) = identified.errors_n {
+                report.horizon_error_n = errors_n.map(f64::from);
+            }
         }
         ForceReport { tip_n: self.far.parcel.force_n, ..ForceReport::none(self.far.source, None) }
     }
@@ -108,6 +111,7 @@ impl<L: Link> Pair<L> {
             releases: self.releases,
             source: self.force.source,
             parcel: self.identifier.parcel(),
+            report: self.identifier.report(),
         }
     }
 }

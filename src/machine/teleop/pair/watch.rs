@@ -10,7 +10,7 @@ use nima_core::{
 use super::{AT_REST_M, LINK_SILENT_AFTER_S, Pair, STALLED_AFTER_S, Timing};
 use crate::{
     messages::{Command, Event, Fault, Watchdog},
-    rig::{Identified, Inputs, Sensed, Switches, View},
+    rig::{Inputs, Sensed, Switches, View},
     teleop::{Link, LoopState},
 };
 
@@ -53,8 +53,11 @@ impl<L: Link> Pair<L> {
         inputs
     }
 
-    /// The command that the follower had when the tip was measured, m.
+    /// The command that the follower had when the tip was measured, m; `None` where the tip is not measured now.
     fn command_in_force(&self, silent_s: f64) -> Option<Vector3<f64>> {
+        if silent_s * self.rate_hz > 1.5 {
+            return None;
+        }
         match self.ticks_behind(silent_s) {
             0 => self.command_m,
             // The newest one is of the tick before.
@@ -152,9 +155,9 @@ impl<L: Link> Pair<L> {
 fn numbers(sensed: &Sensed) -> [f64; CHANNELS] {
     let mut all = [f64::NAN; CHANNELS];
     match sensed {
-        Sensed::AtTip(force_n) | Sensed::FarEnd(Identified { force_n, .. }) => {
-            all[..3].copy_from_slice(force_n.as_slice());
-        }
+        Sensed::AtTip(force_n) => all[..3].copy_from_slice(force_n.as_slice()),
+        // Its sensor is judged at the other machine: here a silent line would look like a sensor that repeats itself.
+        Sensed::FarEnd(_) => {}
         Sensed::AtWrist(sample) => {
             all[..3].copy_from_slice(sample.raw.force_n.as_slice());
             all[3..6].copy_from_slice(sample.raw.torque_nm.as_slice());

@@ -2,7 +2,7 @@
 //!
 //! Each machine contributes its key and a secret that is used once. The console first sends a hash of its own (a commitment), then sees the
 //! follower's, then shows its own: who stands between them would have to guess before he knows what the code depends on, one chance in a
-//! million. Both screens show the code, made of both keys and both secrets, and each person enters the code of the other screen. A wrong
+//! million. Each screen shows a code, made of both keys and both secrets, and each person enters the code of the other screen. A wrong
 //! one is a refusal, and after three of them a machine pairs with nobody for a minute. (Commitment and comparison as in ZRTP, RFC 6189, 4.)
 //!
 //! It is no part of a loop: [`ask`] and [`offer`] wait, on a thread of the caller's, while a person has pressed a button on both machines.
@@ -80,7 +80,7 @@ pub enum PairingError {
     Keys(#[from] KeyError),
 }
 
-/// What both screens show: six digits.
+/// What a screen shows: six digits, others on each of the two machines, so that nobody can enter those of his own screen unseen.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Code(u32);
 
@@ -122,24 +122,25 @@ impl Attempts {
 /// A pairing that waits for the code of the other screen.
 #[derive(Debug)]
 pub struct Pending {
-    code: Code,
+    shown: Code,
+    expected: Code,
     peer: PublicKey,
 }
 
 impl Pending {
-    /// The code to show.
+    /// The code to show here, which is to be entered at the other machine.
     pub const fn code(&self) -> Code {
-        self.code
+        self.shown
     }
 
-    /// The other machine's key, if `entered` is the code; spaces do not count.
+    /// The other machine's key, if `entered` is the code that its screen shows; spaces do not count.
     ///
     /// # Errors
     /// [`PairingError::WrongCode`], which is counted.
     pub fn confirm(self, entered: &str, attempts: &mut Attempts) -> Result<PublicKey, PairingError> {
         let digits: String = entered.chars().filter(|c| !c.is_whitespace() && *c != '-').collect();
         let is_whole = digits.len() == DIGITS as usize && digits.bytes().all(|digit| digit.is_ascii_digit());
-        if is_whole && digits.parse() == Ok(self.code.0) {
+        if is_whole && digits.parse() == Ok(self.expected.0) {
             return Ok(self.peer);
         }
         attempts.wrong.push(Instant::now());
@@ -186,9 +187,12 @@ fn hash(parts: &[&[u8]]) -> [u8; 32] {
     hash.finalize().into()
 }
 
-fn code(console: &Part, follower: &Part) -> Code {
-    let [a, b, c, d, e, f, g, h, ..] = hash(&[b"nima pairing 1 code", &console.bytes(), &follower.bytes()]);
-    Code((u64::from_le_bytes([a, b, c, d, e, f, g, h]) % 10_u64.pow(DIGITS)) as u32)
+/// The codes that the console's and the follower's screen show.
+fn codes(console: &Part, follower: &Part) -> [Code; 2] {
+    [&b"nima pairing 1 console"[..], b"nima pairing 1 follower"].map(|of| {
+        let [a, b, c, d, e, f, g, h, ..] = hash(&[of, &console.bytes(), &follower.bytes()]);
+        Code((u64::from_le_bytes([a, b, c, d, e, f, g, h]) % 10_u64.pow(DIGITS)) as u32)
+    })
 }
 
 fn datagram(token: u64, step: u8, content: &[u8]) -> [u8; LEN] {
@@ -254,7 +258,10 @@ pub fn ask(
             (Some((_, ANSWER, content)), Some(theirs)) if content != theirs.bytes() => {
                 return Err(PairingError::Contradiction);
             }
-            (Some((_, DONE, _)), Some(theirs)) => return Ok(Pending { code: code(&own, &theirs), peer: theirs.key }),
+            (Some((_, DONE, _)), Some(theirs)) => {
+                let [shown, expected] = codes(&own, &theirs);
+                return Ok(Pending { shown, expected, peer: theirs.key });
+            }
             _ => {}
         }
     }
@@ -302,7 +309,8 @@ pub fn offer(
                     return Err(PairingError::Contradiction);
                 }
                 repeat(&socket, &datagram(token, DONE, &[]), token, from);
-                return Ok(Pending { code: code(&console, own), peer: console.key });
+                let [expected, shown] = codes(&console, own);
+                return Ok(Pending { shown, expected, peer: console.key });
             }
             _ => {}
         }

@@ -24,18 +24,20 @@ fn both(console: &Keys, follower: &Keys, at: SocketAddr, reached: SocketAddr) ->
 }
 
 #[test]
-fn both_screens_show_the_same_code_and_the_right_one_gives_the_keys() {
+fn the_code_of_the_other_screen_gives_the_keys_and_that_of_ones_own_does_not() {
     let (console, follower) = (Keys::random().unwrap(), Keys::random().unwrap());
     let mut codes = Vec::new();
     for _ in 0..2 {
         let at = free_address();
         let [ours, theirs] = both(&console, &follower, at, at).map(Result::unwrap);
-        assert_eq!(ours.code(), theirs.code());
-        let (shown, mut attempts) = (ours.code().to_string(), Attempts::default());
-        assert_eq!(shown.len(), 7);
-        codes.push(shown.clone());
-        assert_eq!(ours.confirm(&shown, &mut attempts).unwrap(), follower.public());
-        assert_eq!(theirs.confirm(&shown.replace(' ', ""), &mut attempts).unwrap(), console.public());
+        let ([here, there], mut attempts) = ([ours.code().to_string(), theirs.code().to_string()], Attempts::default());
+        assert_ne!(here, there);
+        assert_eq!(here.len(), 7);
+        codes.push(here.clone());
+        let own = Pending { shown: ours.shown, expected: ours.expected, peer: ours.peer };
+        assert!(own.confirm(&here, &mut attempts).is_err());
+        assert_eq!(ours.confirm(&there, &mut attempts).unwrap(), follower.public());
+        assert_eq!(theirs.confirm(&here.replace(' ', ""), &mut attempts).unwrap(), console.public());
     }
     assert_ne!(codes[0], codes[1], "for one time only");
 }
@@ -48,7 +50,7 @@ fn lost_datagrams_are_sent_again() {
     let home = (Ipv4Addr::LOCALHOST, 0).into();
     let relay = Relay::start(RelaySettings { at: home, to: at, there: bad, back: bad, seed: 4 }).unwrap();
     let [ours, theirs] = both(&console, &follower, at, relay.address()).map(Result::unwrap);
-    assert_eq!(ours.code(), theirs.code());
+    assert_eq!([ours.shown, ours.expected], [theirs.expected, theirs.shown]);
 }
 
 #[test]
@@ -56,7 +58,7 @@ fn a_wrong_code_is_refused_and_the_third_makes_a_pause() {
     let mut attempts = Attempts::default();
     for wrong in ["123 457", "12345", "+23456"] {
         assert!(attempts.may_begin(Instant::now()).is_ok());
-        let pending = Pending { code: Code(123_456), peer: Keys::random().unwrap().public() };
+        let pending = Pending { shown: Code(0), expected: Code(123_456), peer: Keys::random().unwrap().public() };
         assert!(matches!(pending.confirm(wrong, &mut attempts), Err(PairingError::WrongCode)), "{wrong}");
     }
     let told = attempts.may_begin(Instant::now()).unwrap_err();
@@ -72,7 +74,10 @@ fn a_wrong_code_is_refused_and_the_third_makes_a_pause() {
 fn who_stands_between_is_seen() {
     // He pairs with both sides by keys of his own: the codes differ.
     let [console, follower, between] = [0; 3].map(|_| Part::new(&Keys::random().unwrap()).unwrap());
-    assert_ne!(code(&console, &between), code(&between, &follower));
+    let [[at_console, _], [_, at_follower]] = [codes(&console, &between), codes(&between, &follower)];
+    let [[_, expected_there], [expected_here, _]] = [codes(&console, &between), codes(&between, &follower)];
+    assert_ne!(at_console, expected_here);
+    assert_ne!(at_follower, expected_there);
     // He must promise before he knows the follower's part; another part than promised is told.
     let at = free_address();
     let stop = AtomicBool::new(false);

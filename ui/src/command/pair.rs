@@ -49,7 +49,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         output::line(&format!("waiting at {at} for `nima pair HOST` at the console's machine"))?;
         (arguments.name.as_str(), offer(at, &keys, &mut attempts, wait, &called_off)?)
     };
-    output::line(&format!("code of both machines: {}", pending.code()))?;
+    output::line(&format!("code to enter at the other machine: {}", pending.code()))?;
     output::line("Enter the code that the other screen shows:")?;
     let mut entered = String::new();
     std::io::stdin().lock().read_line(&mut entered).context("cannot read the code")?;

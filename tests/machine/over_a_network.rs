@@ -246,6 +246,27 @@ fn a_stop_while_nothing_is_engaged_is_told_and_released_from_the_screen() {
 }
 
 #[test]
+fn another_console_that_has_released_more_stops_releases_none_here() {
+    let mut bench = Bench::engaged(0.02, Mode::Best);
+    bench.step_with(None, Some(Command::Stop));
+    bench.run(60);
+    let mut other = Bench::new(0.02, Mode::Best).leader;
+    let wire = bench.leader.rig.wire();
+    (other.rig.wire_mut().out, other.rig.wire_mut().back) = (wire.out.clone(), wire.back.clone());
+    // Its loop has run longer, and has seen a stop and a release that nobody heard of here.
+    (other.ahead_s, other.rig.wire_mut().ahead_s) = (500.0, 500.0);
+    other.rig.wire_mut().is_cut = Arc::new(Mutex::new(true));
+    let at_s = bench.ticks as f64 * 1e-3;
+    other.step(Some(Command::Stop), at_s);
+    other.step(Some(Command::ReleaseStop), at_s + 1e-3);
+    other.rig.wire_mut().is_cut = bench.is_cut.clone();
+    bench.leader = other;
+    bench.run(2);
+    bench.run(1500);
+    assert_eq!(bench.states(), [LoopState::Idle, LoopState::Stopped]);
+}
+
+#[test]
 fn a_cut_takes_the_force_within_20_ms_and_what_comes_back_resumes_nothing() {
     let mut bench = Bench::engaged(0.02, Mode::Best);
     let mut waited = 0;

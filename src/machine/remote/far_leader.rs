@@ -22,6 +22,8 @@ const PARAMETERS_EVERY: u64 = 10;
 const ERRORS_EVERY: u64 = 100;
 /// Answers go on for so long after the last message, s: so the other machine hears why this one stopped.
 const ANSWERS_FOR_S: f64 = 1.0;
+/// Two messages are of one loop if their times differ by what passed here, to this, s.
+const SAME_CLOCK_S: f64 = 0.2;
 /// Most commands that follow from one message.
 const COMMANDS_MAX: usize = 8;
 
@@ -103,8 +105,14 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
         self.heard = newest;
         self.commands = [None; COMMANDS_MAX];
         if let Some(heard) = newest.filter(|heard| heard.at_s >= now_s) {
-            self.move_hands(&heard.message, before.map(|heard| heard.message).as_ref());
-            self.follow(&heard.message, before.map(|heard| heard.message).as_ref());
+            // Another console, or one that was started anew, has another clock and other counts: nothing was asked for in between.
+            let goes_on = |before: &Heard| {
+                let (told_s, passed_s) = (heard.message.t_s - before.message.t_s, heard.at_s - before.at_s);
+                (told_s - passed_s).abs() < SAME_CLOCK_S
+            };
+            let before = before.filter(goes_on).map(|before| before.message);
+            self.move_hands(&heard.message, before.as_ref());
+            self.follow(&heard.message, before.as_ref());
         }
     }
 

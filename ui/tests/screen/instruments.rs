@@ -37,8 +37,14 @@ fn the_gain_tells_where_it_is_stable_once_there_was_a_contact() {
     until(&mut harness, "the first ticks", |tick| tick.t_s > 0.1);
     harness.get_by_label("Highest stable gain: known after the first contact");
     let mut harness = console_of("peg_transfer", SIZE, |app| app);
+    until(&mut harness, "the first ticks", |tick| tick.t_s > 0.1);
+    let slider = |harness: &Harness<'_, _>| {
+        harness.get_by_role_and_label(accesskit::Role::Slider, "Link delay").accesskit_node().id()
+    };
+    let before = slider(&harness);
     until(&mut harness, "a contact that lasts", |tick| tick.t_s > 3.5);
     harness.step();
+    assert!(slider(&harness) == before, "what stands below would slip from the hand at the first contact");
     let told = harness.get_by_label_contains("stable up to").accesskit_node().value().unwrap();
     // The scene's phantom: 300 to 500 N/m where it is pressed.
     let n_m: f64 = told.split("at ").last().unwrap().trim_end_matches(" N/m").parse().unwrap();

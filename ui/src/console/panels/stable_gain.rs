@@ -11,7 +11,14 @@ const HEIGHT: f32 = 8.0;
 const PARTS: u32 = 60;
 
 /// Draws the strip and its text; `rail` is the slider's rectangle, `limit` the gain at its right end.
+///
+/// In a scope of its own: what it shows changes with the first contact, and what stands below must keep its identity, or
+/// a slider would slip from the hand in that moment.
 pub(super) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
+    ui.scope(|ui| strip_ui(ui, live, rail, limit));
+}
+
+fn strip_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     let Some(map) = StabilityMap::committed() else { return };
     if !StabilityMap::has(live.mode()) {
         ui.label(small(text::feedback::STABLE_GAIN_UNMEASURED)).on_hover_text(text::feedback::STABLE_GAIN_HOVER);

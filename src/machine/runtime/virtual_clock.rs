@@ -14,6 +14,11 @@ use crate::teleop::Timing;
 /// Runs the loop for `seconds` of loop time. `each` is called with every tick of every side; it may return a command
 /// for the next tick, and ends the run by returning [`Command::Shutdown`].
 pub fn run_virtual(assembly: Assembly, seconds: f64, mut each: impl FnMut(&Tick) -> Option<Command>) -> Summary {
+    run(assembly, seconds, &mut each)
+}
+
+/// Built once, here, whatever is called with each tick.
+fn run(assembly: Assembly, seconds: f64, each: &mut dyn FnMut(&Tick) -> Option<Command>) -> Summary {
     let Assembly { mut control, mut rig, rate_hz, engage, tap, .. } = assembly;
     let mut tap = tap.map(Tap::waiting);
     let period_s = 1.0 / rate_hz;

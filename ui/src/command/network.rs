@@ -21,7 +21,7 @@ use nima_world::scene::Scene;
 use crate::line::Line;
 
 /// The option of a command whose arm may be at another machine.
-#[derive(Debug, Default, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub(super) struct ToFollower {
     /// The arm and its sensor are at this machine, where `nima follower` runs; here are the handle and the screen
     #[arg(long, value_name = "HOST[:PORT]")]

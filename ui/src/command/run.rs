@@ -201,7 +201,7 @@ pub(super) fn run_with(
             drift.map_or_else(String::new, |drift| format!("\nbias of the wrist sensor: {}", drift_in_words(drift)));
         let kept = recorded.as_ref().ok().and_then(Option::as_ref).map_or_else(String::new, Recorded::in_words);
         let rows = start.link.newest().map(link_rows).unwrap_or_default();
-        let link = rows.iter().fold(String::new(), |all, [name, value]| all + "\n" + name + ": " + value);
+        let link = rows.iter().fold(String::new(), |all, row| all + "\n" + row.name + ": " + &row.value);
         output::line(
             &(in_words(&plan, &summary, start.link.newest().is_some())
                 + &truth::in_words(&tip_error)
@@ -286,7 +286,7 @@ fn on_the_real_clock(
     arguments: &Arguments,
 ) -> anyhow::Result<Summary> {
     let assembly = Assembly { tap, ..plan.assembly()? };
-    let reports = line.as_ref().map(Line::reports);
+    let door = line.as_ref().map(Line::door);
     let handle = runtime::start(match line {
         Some(line) => line.join(assembly),
         None => assembly,
@@ -315,7 +315,7 @@ fn on_the_real_clock(
         for words in recording.news() {
             status.tell(&words);
         }
-        if let Some(words) = reports.as_ref().and_then(|reports| start.link.hear(reports)) {
+        if let Some(words) = door.as_ref().and_then(|door| start.link.hear(door)) {
             status.tell(&words);
         }
         troubles.look(&handle, &status);

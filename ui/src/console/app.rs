@@ -50,7 +50,11 @@ use super::{
     theme,
     wizards::Wizards,
 };
-use crate::{console::text, emulators::Emulators, line::Line};
+use crate::{
+    console::text,
+    emulators::Emulators,
+    line::{Line, Reopen},
+};
 use checking::Checking;
 use listing::Listing;
 use starting::Starting;
@@ -74,6 +78,8 @@ pub struct ConsoleApp {
     start: StartPage,
     /// Loops that the console starts run in simulated time, so many times as fast as real time.
     simulated_speed: Option<f64>,
+    /// Opens the line to the machine with the arm, if it is at another one.
+    reopen: Option<Reopen>,
     /// The program that starts emulators; this one, except in a test.
     program: Option<PathBuf>,
     /// Used to wake the window from another thread.
@@ -146,6 +152,7 @@ impl ConsoleApp {
             starting: None,
             start: StartPage::new(Choice::default()),
             simulated_speed: None,
+            reopen: None,
             program: None,
             ctx: cc.egui_ctx.clone(),
             in_force,
@@ -256,19 +263,28 @@ impl ConsoleApp {
     }
 
     /// Starts the loop of this rig, idle, when the old one has ended.
-    fn start_loop(&mut self, rig: RigConfig, scene: Scene) -> Result<(), String> {
+    fn start_loop(&mut self, mut rig: RigConfig, scene: Scene) -> Result<(), String> {
+        let line = match &self.reopen {
+            Some(reopen) => reopen.open(&mut rig, &scene).map_err(|error| {
+                let cause = format!("{error:#}");
+                text::calibrations::not_started_again(&cause)
+            })?,
+            None => None,
+        };
+        let line_door = line.as_ref().map(Line::door);
         self.in_force.bind(&rig, &scene);
         let calibrations = self.in_force.calibrations(&rig);
         let rig = self.in_force.with_checked(rig);
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
         let started = match self.simulated_speed {
             Some(speed) => nima_world::start_simulated(&plan, speed),
-            None => start_recorded(&plan, &mut self.sessions, None),
+            None => start_recorded(&plan, &mut self.sessions, line),
         };
         let started = started.map_err(|error| text::calibrations::not_started_again(&error));
         let rough_edges = self.live.rough_edges;
         self.live = Live::new(rig, scene);
         self.live.rough_edges = rough_edges;
+        self.live.line_door = line_door;
         self.panels.forces = ForcesState::default();
         self.panels.devices.begin_anew();
         self.checking.forget();
@@ -365,6 +381,9 @@ impl eframe::App for ConsoleApp {
         self.settings.save();
         if self.past.is_some() {
             self.outbox.only_stop();
+        }
+        if self.live.line_door.is_some() {
+            self.outbox.without_delay();
         }
         self.outbox.flush(self.door.as_ref().map(Door::handle));
         self.obey_options(&ctx);

@@ -9,7 +9,6 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crossbeam_channel::Receiver;
 use nalgebra::Vector3;
 use nima_core::{
     impedance::{Mode, SLOTS},
@@ -24,7 +23,10 @@ use nima_machine::{
 };
 use nima_world::scene::Scene;
 
-use crate::{line::LineReport, words::link_trouble};
+use crate::{
+    line::{LineDoor, LineReport},
+    words::link_trouble,
+};
 
 use super::{
     activity::Activity,
@@ -134,8 +136,8 @@ pub struct Live {
     pub healths: Healths,
     /// What was last told of the line to the machine with the arm, if it is at another one.
     pub(crate) line: Option<LineReport>,
-    /// Where that is told.
-    pub(crate) line_reports: Option<Receiver<LineReport>>,
+    /// Where that is told, and what is wanted of it; there is one as long as the arm is at another machine.
+    pub(crate) line_door: Option<LineDoor>,
     /// What the devices have delivered in the last seconds, oldest first.
     pub blocks: VecDeque<Box<Gauges>>,
     /// Number of such blocks since the loop began.
@@ -188,7 +190,7 @@ impl Live {
             is_unchecked: false,
             roster: Roster::new(),
             line: None,
-            line_reports: None,
+            line_door: None,
             devices_then: Vec::new(),
             healths: Healths::default(),
             blocks: VecDeque::with_capacity(BLOCKS_KEPT + 1),
@@ -362,6 +364,7 @@ impl Live {
             stop_is_stuck,
             bias_moved_n: self.bias_moved_n,
             is_unchecked: self.is_unchecked,
+            control: self.line.map(|line| line.control),
             unrecorded,
         }
     }

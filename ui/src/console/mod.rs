@@ -41,7 +41,6 @@ pub mod theme;
 pub mod widgets;
 pub mod wizards;
 
-use crossbeam_channel::Receiver;
 use std::{path::PathBuf, time::Duration};
 
 use nima_machine::{config::RigConfig, runtime::Handle};
@@ -52,7 +51,7 @@ use start::Choice;
 
 pub use app::ConsoleApp;
 
-use crate::line::LineReport;
+use crate::line::{LineDoor, Reopen};
 use crate::{emulators::Emulators, leaving::Leave};
 
 /// Options of the window, for screenshots and tests. By default it stays open until it is closed.
@@ -91,8 +90,8 @@ pub(crate) struct Begun {
     pub(crate) rig: RigConfig,
     pub(crate) scene: Scene,
     pub(crate) sessions: Sessions,
-    /// Reports of the line to the machine with the arm, if it is at another one.
-    pub(crate) reports: Option<Receiver<LineReport>>,
+    /// The line to the machine with the arm, if it is at another one, and how it is opened again.
+    pub(crate) far: Option<(LineDoor, Reopen)>,
 }
 
 /// Opens the console for a running loop; returns when the window is closed and the loop has ended.
@@ -119,12 +118,10 @@ pub(crate) fn run(begun: Begun, options: Options) -> anyhow::Result<()> {
 
 /// The console with the user's settings; screenshots use the defaults and do not change the settings.
 fn console(cc: &eframe::CreationContext<'_>, begun: Begun, options: Options) -> ConsoleApp {
-    let Begun { choice, emulators, handle, rig, scene, sessions, reports } = begun;
+    let Begun { choice, emulators, handle, rig, scene, sessions, far } = begun;
     let settings = if options.pictures.is_some() { Kept::default() } else { Kept::of_user() };
-    let app = ConsoleApp::new(cc, handle, rig, scene)
-        .with_choice(choice, emulators)
-        .with_sessions(sessions)
-        .with_line(reports);
+    let app =
+        ConsoleApp::new(cc, handle, rig, scene).with_choice(choice, emulators).with_sessions(sessions).with_line(far);
     app.with_settings(settings).with_options(options)
 }
 

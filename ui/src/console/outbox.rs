@@ -38,6 +38,11 @@ impl Outbox {
         self.waiting.retain(|command| *command == Command::Stop);
     }
 
+    /// Leaves out a delay of the link: over a network it is measured, and the loop would refuse it.
+    pub fn without_delay(&mut self) {
+        self.waiting.retain(|command| !matches!(command, Command::SetDelay(_)));
+    }
+
     /// Leaves out all waiting commands.
     pub fn forget(&mut self) {
         self.waiting.clear();

@@ -1,7 +1,10 @@
 //! The technician's instruments on a running loop: interlock and gates light up, the gain knows where it is stable, moments are marked.
 
 use egui::{Key, accesskit};
-use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
 use nima_machine::messages::LoopState;
 
 use crate::bench::{console_of, press, until};

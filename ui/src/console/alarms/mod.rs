@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use egui::Color32;
 use nima_machine::messages::{Fault, LoopState, Scheduling};
+use nima_network::endpoint::Control;
 
 use super::theme;
 use crate::{console::text, words::Remedy as _};
@@ -81,6 +82,8 @@ pub enum Kind {
     Scheduling,
     /// No ready check of today has passed.
     Unchecked,
+    /// Another console asks for control of the follower.
+    ControlAsked,
     /// The session is not recorded, or will soon not be.
     Unrecorded,
 }
@@ -136,6 +139,8 @@ pub struct Signs {
     pub bias_moved_n: Option<f64>,
     /// No ready check of today has passed on this rig.
     pub is_unchecked: bool,
+    /// Who holds the follower, if it is at another machine.
+    pub control: Option<Control>,
     /// Why the session is not recorded although it should be, or what will soon be in the way.
     pub unrecorded: Option<String>,
 }
@@ -206,6 +211,14 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             priority: Priority::Low,
             cause: text::alarms::UNCHECKED_CAUSE.to_owned(),
             cure: text::alarms::UNCHECKED_CURE.to_owned(),
+        });
+    }
+    if signs.control == Some(Control::HoldsAsked) {
+        alarms.push(Alarm {
+            kind: Kind::ControlAsked,
+            priority: Priority::Low,
+            cause: text::link::CONTROL_ASKED_CAUSE.to_owned(),
+            cure: text::link::CONTROL_ASKED_CURE.to_owned(),
         });
     }
     if let Some(why) = &signs.unrecorded {

@@ -2,15 +2,13 @@
 
 use std::path::Path;
 
-use crossbeam_channel::Receiver;
-
 use super::{ConsoleApp, WARM_UP};
 use crate::{
     console::{
         Options, frames::Meter, in_force::InForce, pictures::Photographer, screenshot, sessions::Sessions,
         settings::Kept, wizards::Wizards,
     },
-    line::LineReport,
+    line::{LineDoor, Reopen},
     telling::tell,
 };
 
@@ -68,10 +66,13 @@ impl ConsoleApp {
         self
     }
 
-    /// Shows what is told of the line to the machine with the arm.
+    /// The arm is at another machine: shows what is told of the line there, and opens it again for every loop that starts anew.
     #[must_use]
-    pub(crate) fn with_line(mut self, reports: Option<Receiver<LineReport>>) -> Self {
-        self.live.line_reports = reports;
+    pub(crate) fn with_line(mut self, far: Option<(LineDoor, Reopen)>) -> Self {
+        if let Some((door, reopen)) = far {
+            self.live.line_door = Some(door);
+            self.reopen = Some(reopen);
+        }
         self
     }
 

@@ -123,6 +123,10 @@ impl ConsoleApp {
 
     /// Begins to start a rig whose file was changed; what does not start is taken back.
     pub(super) fn begin_changed(&mut self, choice: Choice, undo: Undo) {
+        if self.reopen.is_some() {
+            undo.take_back();
+            return self.panels.devices.tell(text::devices::not_changed(text::link::ONE_RIG));
+        }
         let before = self.running.clone();
         self.begin(choice, Some(before), None);
         match &mut self.starting {
@@ -133,6 +137,9 @@ impl ConsoleApp {
 
     /// Ends the loop and begins to start this choice. What cannot be loaded ends nothing.
     fn begin(&mut self, choice: Choice, before: Option<Choice>, because: Option<String>) {
+        if self.reopen.is_some() {
+            return self.start.tell(Some(text::link::ONE_RIG.to_owned()));
+        }
         let loaded = RigConfig::load(&choice.rig).and_then(|rig| {
             let scene = Scene::load(&choice.scene)?.mounted_at(&rig);
             Ok((rig, scene))

@@ -241,7 +241,7 @@ fn narrow(width: f32, height: f32, traces: f32) -> Node {
     let [left, _] = short_sides(height);
     let above = row(vec![
         (width - KNOBS - FIGURES, tabs(&[Panel::Field, Panel::Devices])),
-        (FIGURES, tabs(&[Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Tradeoff])),
+        (FIGURES, tabs(&[Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Link, Panel::Tradeoff])),
     ]);
     let under = tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace]);
     row(vec![(KNOBS, left), (width - KNOBS, column(vec![(height - traces, above), (traces, under)]))])
@@ -257,7 +257,7 @@ fn tall_sides(height: f32) -> [Node; 2] {
         column(vec![
             (HORIZON, tabs(&[Panel::Horizon])),
             (DEGREES, tabs(&[Panel::Degrees, Panel::Tradeoff])),
-            (height - HORIZON - DEGREES, tabs(&[Panel::Timing])),
+            (height - HORIZON - DEGREES, tabs(&[Panel::Timing, Panel::Link])),
         ]),
     ]
 }
@@ -272,7 +272,7 @@ fn short_sides(height: f32) -> [Node; 2] {
         ]),
         column(vec![
             (horizon, tabs(&[Panel::Horizon])),
-            (height - horizon, tabs(&[Panel::Degrees, Panel::Timing, Panel::Tradeoff])),
+            (height - horizon, tabs(&[Panel::Degrees, Panel::Timing, Panel::Link, Panel::Tradeoff])),
         ]),
     ]
 }

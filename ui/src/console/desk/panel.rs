@@ -30,13 +30,15 @@ pub enum Panel {
     Degrees,
     /// Timing of the loop.
     Timing,
+    /// The link to the follower's machine.
+    Link,
     /// Computing time against accuracy.
     Tradeoff,
 }
 
 impl Panel {
     /// All of them, in the order of the menu.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Field,
         Self::Traces,
         Self::ForceSpace,
@@ -48,6 +50,7 @@ impl Panel {
         Self::Horizon,
         Self::Degrees,
         Self::Timing,
+        Self::Link,
         Self::Tradeoff,
     ];
 
@@ -65,6 +68,7 @@ impl Panel {
             Self::Horizon => text::desk::ERROR_AT_THE_HORIZON,
             Self::Degrees => text::desk::DEGREES,
             Self::Timing => text::desk::TIMING,
+            Self::Link => text::desk::LINK,
             Self::Tradeoff => text::desk::TRADE_OFF,
         }
     }
@@ -83,6 +87,7 @@ impl Panel {
             Self::Horizon => text::desk::ERROR_AT_THE_HORIZON_HOVER,
             Self::Degrees => text::desk::DEGREES_HOVER,
             Self::Timing => text::desk::TIMING_HOVER,
+            Self::Link => text::desk::LINK_HOVER,
             Self::Tradeoff => text::desk::TRADE_OFF_HOVER,
         }
     }
@@ -95,7 +100,7 @@ impl Panel {
             Self::ForceSpace => vec2(200.0, 180.0),
             Self::Safety => vec2(560.0, 120.0),
             Self::Feedback | Self::Devices | Self::Calibrations | Self::Gates => vec2(276.0, 60.0),
-            Self::Horizon | Self::Degrees | Self::Timing | Self::Tradeoff => vec2(308.0, 60.0),
+            Self::Horizon | Self::Degrees | Self::Timing | Self::Link | Self::Tradeoff => vec2(308.0, 60.0),
         }
     }
 

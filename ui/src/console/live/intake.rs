@@ -9,12 +9,15 @@ use nima_machine::{
 };
 
 use super::{BLOCKS_KEPT, FIGURES_EVERY, Live, READINGS_EVERY, Refused, TRAIL_S, TRAIL_STEP_S, TREND_S};
-use crate::console::{
-    activity::Activity,
-    door::{Door, News},
-    history::CHANNELS,
-    readings::{Change, Figures},
-    rolling::Fading,
+use crate::{
+    console::{
+        activity::Activity,
+        door::{Door, News},
+        history::CHANNELS,
+        readings::{Change, Figures},
+        rolling::Fading,
+    },
+    line::LineDoor,
 };
 
 impl Live {
@@ -25,7 +28,7 @@ impl Live {
             self.roster.clone_from(handle.roster());
             self.activity = Activity::of(&self.roster);
         }
-        if let Some(report) = self.line_reports.as_ref().and_then(|reports| reports.try_iter().last()) {
+        if let Some(report) = self.line_door.as_ref().and_then(LineDoor::newest) {
             self.line = Some(report);
         }
         if let Some(healths) = handle.healths() {

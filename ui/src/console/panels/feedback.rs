@@ -207,9 +207,14 @@ fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Ou
         at_once: false,
     };
     let in_force = live.delay_s() * 1e3;
-    if let Some(delay_ms) = setting_ui(ui, &setting, DELAY_MS, in_force, &mut state.delay_ms).0 {
-        outbox.push(Command::SetDelay(delay_ms * 1e-3));
-    }
+    let measured = live.line_door.is_some();
+    ui.add_enabled_ui(!measured, |ui| {
+        if let Some(delay_ms) = setting_ui(ui, &setting, DELAY_MS, in_force, &mut state.delay_ms).0 {
+            outbox.push(Command::SetDelay(delay_ms * 1e-3));
+        }
+    })
+    .response
+    .on_disabled_hover_text(text::link::DELAY_IS_MEASURED);
 }
 
 fn standstill_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {

@@ -4,14 +4,11 @@ use egui::{Grid, RichText, Ui};
 use nima_core::statistics::Quantiles;
 
 use super::timing_bars::{Timing, bars_ui, missed_ui};
-use crate::{
-    console::{
-        alarms::sentence,
-        live::Live,
-        text, theme,
-        widgets::{figure, small, weak},
-    },
-    words::link_rows,
+use crate::console::{
+    alarms::sentence,
+    live::Live,
+    text, theme,
+    widgets::{figure, small, weak},
 };
 
 /// Interval of counting the histograms, which takes some time.
@@ -54,12 +51,6 @@ fn timings(live: &Live) -> Vec<Timing<'_>> {
 
 /// The panel.
 pub fn timing_ui(ui: &mut Ui, live: &Live, state: &mut TimingState) {
-    if let Some(line) = &live.line {
-        for [name, value] in link_rows(line) {
-            figure(ui, &name, value, text::link::MEANING);
-        }
-        ui.separator();
-    }
     let timings = timings(live);
     table_ui(ui, &timings);
     ui.add_space(2.0);

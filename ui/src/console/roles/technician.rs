@@ -9,7 +9,7 @@ use crate::console::{
     live::Live,
     outbox::Outbox,
     panels::{
-        calibrations_ui, degrees_ui, devices_ui, feedback_ui, force_space_ui, forces_ui, gates_ui, horizon_ui,
+        calibrations_ui, degrees_ui, devices_ui, feedback_ui, force_space_ui, forces_ui, gates_ui, horizon_ui, link_ui,
         safety_ui, timing_ui, tradeoff_ui,
     },
     scene3d::scene_ui,
@@ -44,6 +44,10 @@ pub(super) fn technician_ui(
         Panel::Horizon => horizon_ui(ui, live, outbox),
         Panel::Degrees => degrees_ui(ui, live),
         Panel::Timing => timing_ui(ui, live, &mut panels.timing),
+        Panel::Link if past => {
+            ui.label(weak(text::link::NOT_IN_SESSIONS));
+        }
+        Panel::Link => link_ui(ui, live),
         Panel::Tradeoff => wishes.restart = acts(ui, past, |ui| tradeoff_ui(ui, live, &mut panels.tradeoff, outbox)),
     });
     panels.desk = desk;

@@ -11,6 +11,7 @@ pub(in crate::console) const SAFETY: &str = "Safety";
 pub(in crate::console) const ERROR_AT_THE_HORIZON: &str = "Error at the horizon";
 pub(in crate::console) const DEGREES: &str = "Degrees";
 pub(in crate::console) const TIMING: &str = "Timing";
+pub(in crate::console) const LINK: &str = "Link";
 pub(in crate::console) const TRADE_OFF: &str = "Trade-off";
 pub(in crate::console) const FIELD_HOVER: &str = "The operating field in 3-D, with the forces drawn as arrows";
 pub(in crate::console) const TRACES_HOVER: &str = "Measured and rendered force over time, along x, y and z";
@@ -31,6 +32,8 @@ pub(in crate::console) const DEGREES_HOVER: &str =
     "Degree N of the polynomial f = M X between motion and force, chosen every tick from the last 300 ms";
 pub(in crate::console) const TIMING_HOVER: &str =
     "How late the control loop wakes for each period, and how long it works in it, since the console opened (µs)";
+pub(in crate::console) const LINK_HOVER: &str =
+    "The network between this machine and the one with the arm: delay, loss, clock, and who holds the follower";
 pub(in crate::console) const TRADE_OFF_HOVER: &str = "Computing time of one tick of identification (µs, on this computer) against the mean prediction \
     error (N), for every mode, degree and window. Measured on a recording of this scene, at the rig's \
     rate and the link's delay.";

@@ -12,9 +12,8 @@ use super::{
 };
 use crate::{
     messages::{Bulletin, LoopState},
-    rig::{DeviceEvent, Gauges, Healths, Identified, Inputs, Obstacle, Outputs, Rig, SIDES, Sensed, Side, View},
+    rig::{Identified, Inputs, Obstacle, Outputs, Rig, SIDES, Sensed, Side, View, devices_of},
 };
-use nima_devices::Lever;
 
 /// Joins a rig's handles with arms at another machine. What the rig itself measures of arms and sensors is not used.
 #[derive(Debug)]
@@ -192,21 +191,7 @@ impl<R: Rig, W: Wire> Rig for FarFollower<R, W> {
         }
     }
 
-    fn event(&mut self) -> Option<DeviceEvent> {
-        self.local.event()
-    }
-
-    fn levers(&self) -> Vec<Lever> {
-        self.local.levers()
-    }
-
-    fn health(&self) -> Healths {
-        self.local.health()
-    }
-
-    fn gauges(&mut self, now_s: f64) -> Option<Gauges> {
-        self.local.gauges(now_s)
-    }
+    devices_of!(self, self.local);
 }
 
 impl Told {

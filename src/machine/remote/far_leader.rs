@@ -2,7 +2,6 @@
 
 use nalgebra::Vector3;
 use nima_core::{impedance::Packed, kinematics::Hand, safety::ChainSettings};
-use nima_devices::Lever;
 
 use super::{
     GONE_AFTER_S, MESSAGE_MAX, Wire,
@@ -12,7 +11,7 @@ use super::{
 use crate::{
     config::{RigConfig, Teleoperation},
     messages::{Bulletin, Command, FarStop, LoopState},
-    rig::{DeviceEvent, Gauges, Healths, Inputs, Outputs, Rig, SIDES, Side, Switches, View},
+    rig::{Inputs, Outputs, Rig, SIDES, Side, Switches, View, devices_of},
 };
 
 /// The parameters of one rendering are sent every so many ticks, in turn where several are computed. Fits are renewed 200 times a
@@ -217,21 +216,7 @@ impl<R: Rig, W: Wire> Rig for FarLeader<R, W> {
         }
     }
 
-    fn event(&mut self) -> Option<DeviceEvent> {
-        self.local.event()
-    }
-
-    fn levers(&self) -> Vec<Lever> {
-        self.local.levers()
-    }
-
-    fn health(&self) -> Healths {
-        self.local.health()
-    }
-
-    fn gauges(&mut self, now_s: f64) -> Option<Gauges> {
-        self.local.gauges(now_s)
-    }
+    devices_of!(self, self.local);
 }
 
 fn join(here: &Inputs, told: &LeaderSide, position_m: Vector3<f64>) -> Inputs {

@@ -257,6 +257,28 @@ pub trait Rig: Send {
     }
 }
 
+/// The methods of [`Rig`] that ask for its devices, in a rig around another one that has them: `devices_of!(self, self.local)`.
+macro_rules! devices_of {
+    ($self:ident, $rig:expr) => {
+        fn event(&mut $self) -> Option<$crate::rig::DeviceEvent> {
+            ($rig).event()
+        }
+
+        fn levers(&$self) -> Vec<nima_devices::Lever> {
+            ($rig).levers()
+        }
+
+        fn health(&$self) -> $crate::rig::Healths {
+            ($rig).health()
+        }
+
+        fn gauges(&mut $self, now_s: f64) -> Option<$crate::rig::Gauges> {
+            ($rig).gauges(now_s)
+        }
+    };
+}
+pub(crate) use devices_of;
+
 impl<R: Rig + ?Sized> Rig for Box<R> {
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         (**self).read(now_s)
@@ -274,21 +296,7 @@ impl<R: Rig + ?Sized> Rig for Box<R> {
         (**self).command()
     }
 
-    fn event(&mut self) -> Option<DeviceEvent> {
-        (**self).event()
-    }
-
-    fn levers(&self) -> Vec<Lever> {
-        (**self).levers()
-    }
-
-    fn health(&self) -> Healths {
-        (**self).health()
-    }
-
-    fn gauges(&mut self, now_s: f64) -> Option<Gauges> {
-        (**self).gauges(now_s)
-    }
+    devices_of!(self, **self);
 }
 
 /// Most devices of a rig.

@@ -23,3 +23,4 @@ pub mod secure;
 mod socket;
 pub mod stream;
 pub mod wire;
+mod worker;

@@ -5,7 +5,8 @@
 //! million. Each screen shows a code, made of both keys and both secrets, and each person enters the code of the other screen. A wrong
 //! one is a refusal, and after three of them a machine pairs with nobody for a minute. (Commitment and comparison as in ZRTP, RFC 6189, 4.)
 //!
-//! It is no part of a loop: [`ask`] and [`offer`] wait, on a thread of the caller's, while a person has pressed a button on both machines.
+//! It is no part of a loop: [`Pairing::ask`] and [`Pairing::offer`] wait, on a thread of the caller's, while a person has pressed a button
+//! on both machines.
 
 use std::{
     fmt, io,
@@ -217,105 +218,112 @@ fn next(socket: &Socket, buffer: &mut [u8; 2 * LEN]) -> Option<(usize, SocketAdd
     Some((arrival.len.min(buffer.len()), arrival.from))
 }
 
-/// The console's side: asks the follower at this address, for as long as `wait`, until `called_off`.
-///
-/// # Errors
-/// [`PairingError`] if nobody answers, or too many wrong codes were entered before.
-pub fn ask(
-    follower: SocketAddr,
-    keys: &Keys,
-    attempts: &mut Attempts,
-    wait: Duration,
-    called_off: &AtomicBool,
-) -> Result<Pending, PairingError> {
-    let begin = Instant::now();
-    attempts.may_begin(begin)?;
-    let address = |source| PairingError::Address { address: follower, source };
-    let socket = Socket::open(towards(&follower), Some(follower)).map_err(address)?;
-    let own = Part::new(keys)?;
-    let mut token = [0; 8];
-    getrandom::fill(&mut token).map_err(|_| KeyError::Random)?;
-    let token = u64::from_le_bytes(token);
-    let mut question = datagram(token, COMMIT, &own.commitment());
-    let mut theirs: Option<Part> = None;
-    let (mut asked, mut buffer) = (None, [0; 2 * LEN]);
-    while begin.elapsed() < wait && !called_off.load(Relaxed) {
-        if asked.is_none_or(|at: Instant| at.elapsed() >= AGAIN) {
-            socket.send(&question, follower);
-            asked = Some(Instant::now());
-        }
-        let Some((len, _)) = next(&socket, &mut buffer) else {
-            sleep(NAP);
-            continue;
-        };
-        match (read(&buffer[..len]).filter(|(number, ..)| *number == token), theirs) {
-            (Some((_, ANSWER, content)), None) => {
-                theirs = Part::from_bytes(content);
-                question = datagram(token, REVEAL, &own.bytes());
-                asked = None;
-            }
-            // Another answer than before.
-            (Some((_, ANSWER, content)), Some(theirs)) if content != theirs.bytes() => {
-                return Err(PairingError::Contradiction);
-            }
-            (Some((_, DONE, _)), Some(theirs)) => {
-                let [shown, expected] = codes(&own, &theirs);
-                return Ok(Pending { shown, expected, peer: theirs.key });
-            }
-            _ => {}
-        }
-    }
-    Err(PairingError::Nobody)
+/// What a machine needs for a pairing, on whichever side.
+#[derive(Debug)]
+pub struct Pairing<'a> {
+    /// Its keys.
+    pub keys: &'a Keys,
+    /// The wrong codes entered at it.
+    pub attempts: &'a mut Attempts,
+    /// So long it waits for the other side.
+    pub wait: Duration,
+    /// Whether to give up before.
+    pub called_off: &'a AtomicBool,
 }
 
-/// The follower's side: listens at this address, for as long as `wait`, until `called_off`. The first console that shows what it promised
-/// is the one; nobody else is heard then.
-///
-/// # Errors
-/// [`PairingError`] if nobody asks, or too many wrong codes were entered before.
-pub fn offer(
-    at: SocketAddr,
-    keys: &Keys,
-    attempts: &mut Attempts,
-    wait: Duration,
-    called_off: &AtomicBool,
-) -> Result<Pending, PairingError> {
-    let begin = Instant::now();
-    attempts.may_begin(begin)?;
-    let socket = Socket::open(at, None).map_err(|source| PairingError::Address { address: at, source })?;
-    let mut buffer = [0; 2 * LEN];
-    // Of each console: where it is, its number, what it promised, and our part, which is another one for each.
-    let mut asked: Vec<(SocketAddr, u64, [u8; 32], Part)> = Vec::new();
-    while begin.elapsed() < wait && !called_off.load(Relaxed) {
-        let Some((len, from)) = next(&socket, &mut buffer) else {
-            sleep(NAP);
-            continue;
-        };
-        let Some((token, step, content)) = read(&buffer[..len]) else { continue };
-        let known = asked.iter().find(|(address, number, ..)| (*address, *number) == (from, token));
-        match (step, known) {
-            (COMMIT, Some((.., own))) => {
-                socket.send(&datagram(token, ANSWER, &own.bytes()), from);
+impl Pairing<'_> {
+    /// The console's side: asks the follower at this address.
+    ///
+    /// # Errors
+    /// [`PairingError`] if nobody answers, or too many wrong codes were entered before.
+    pub fn ask(self, follower: SocketAddr) -> Result<Pending, PairingError> {
+        let begin = Instant::now();
+        self.attempts.may_begin(begin)?;
+        let address = |source| PairingError::Address { address: follower, source };
+        let socket = Socket::open(towards(&follower), Some(follower)).map_err(address)?;
+        let own = Part::new(self.keys)?;
+        let mut token = [0; 8];
+        getrandom::fill(&mut token).map_err(|_| KeyError::Random)?;
+        let token = u64::from_le_bytes(token);
+        let mut question = datagram(token, COMMIT, &own.commitment());
+        let mut theirs: Option<Part> = None;
+        let (mut asked, mut buffer) = (None, [0; 2 * LEN]);
+        while self.goes_on(begin) {
+            if asked.is_none_or(|at: Instant| at.elapsed() >= AGAIN) {
+                socket.send(&question, follower);
+                asked = Some(Instant::now());
             }
-            (COMMIT, None) if asked.len() < TRIES_MAX => {
-                let own = Part::new(keys)?;
-                let Some(&promised) = content.first_chunk() else { continue };
-                asked.push((from, token, promised, own));
-                socket.send(&datagram(token, ANSWER, &own.bytes()), from);
-            }
-            (REVEAL, Some((.., promised, own))) => {
-                let Some(console) = Part::from_bytes(content) else { continue };
-                if console.commitment() != *promised {
+            let Some((len, _)) = next(&socket, &mut buffer) else {
+                sleep(NAP);
+                continue;
+            };
+            match (read(&buffer[..len]).filter(|(number, ..)| *number == token), theirs) {
+                (Some((_, ANSWER, content)), None) => {
+                    theirs = Part::from_bytes(content);
+                    question = datagram(token, REVEAL, &own.bytes());
+                    asked = None;
+                }
+                // Another answer than before.
+                (Some((_, ANSWER, content)), Some(theirs)) if content != theirs.bytes() => {
                     return Err(PairingError::Contradiction);
                 }
-                repeat(&socket, &datagram(token, DONE, &[]), token, from);
-                let [expected, shown] = codes(&console, own);
-                return Ok(Pending { shown, expected, peer: console.key });
+                (Some((_, DONE, _)), Some(theirs)) => {
+                    let [shown, expected] = codes(&own, &theirs);
+                    return Ok(Pending { shown, expected, peer: theirs.key });
+                }
+                _ => {}
             }
-            _ => {}
         }
+        Err(PairingError::Nobody)
     }
-    Err(PairingError::Nobody)
+
+    /// The follower's side: listens at this address. The first console that shows what it promised
+    /// is the one; nobody else is heard then.
+    ///
+    /// # Errors
+    /// [`PairingError`] if nobody asks, or too many wrong codes were entered before.
+    pub fn offer(self, at: SocketAddr) -> Result<Pending, PairingError> {
+        let begin = Instant::now();
+        self.attempts.may_begin(begin)?;
+        let socket = Socket::open(at, None).map_err(|source| PairingError::Address { address: at, source })?;
+        let mut buffer = [0; 2 * LEN];
+        // Of each console: where it is, its number, what it promised, and our part, which is another one for each.
+        let mut asked: Vec<(SocketAddr, u64, [u8; 32], Part)> = Vec::new();
+        while self.goes_on(begin) {
+            let Some((len, from)) = next(&socket, &mut buffer) else {
+                sleep(NAP);
+                continue;
+            };
+            let Some((token, step, content)) = read(&buffer[..len]) else { continue };
+            let known = asked.iter().find(|(address, number, ..)| (*address, *number) == (from, token));
+            match (step, known) {
+                (COMMIT, Some((.., own))) => {
+                    socket.send(&datagram(token, ANSWER, &own.bytes()), from);
+                }
+                (COMMIT, None) if asked.len() < TRIES_MAX => {
+                    let own = Part::new(self.keys)?;
+                    let Some(&promised) = content.first_chunk() else { continue };
+                    asked.push((from, token, promised, own));
+                    socket.send(&datagram(token, ANSWER, &own.bytes()), from);
+                }
+                (REVEAL, Some((.., promised, own))) => {
+                    let Some(console) = Part::from_bytes(content) else { continue };
+                    if console.commitment() != *promised {
+                        return Err(PairingError::Contradiction);
+                    }
+                    repeat(&socket, &datagram(token, DONE, &[]), token, from);
+                    let [expected, shown] = codes(&console, own);
+                    return Ok(Pending { shown, expected, peer: console.key });
+                }
+                _ => {}
+            }
+        }
+        Err(PairingError::Nobody)
+    }
+
+    fn goes_on(&self, begin: Instant) -> bool {
+        begin.elapsed() < self.wait && !self.called_off.load(Relaxed)
+    }
 }
 
 /// Sends the last answer, and again for each question that shows that it was lost.

@@ -13,12 +13,18 @@ fn free_address() -> SocketAddr {
     UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap()
 }
 
+/// A pairing of a machine where no wrong code was entered yet.
+fn offered(keys: &Keys, at: SocketAddr, called_off: &AtomicBool) -> Result<Pending, PairingError> {
+    Pairing { keys, attempts: &mut Attempts::default(), wait: WAIT, called_off }.offer(at)
+}
+
 /// Both sides over this address of the follower, which the console reaches at another.
 fn both(console: &Keys, follower: &Keys, at: SocketAddr, reached: SocketAddr) -> [Result<Pending, PairingError>; 2] {
     let stop = AtomicBool::new(false);
     scope(|scope| {
-        let theirs = scope.spawn(|| offer(at, follower, &mut Attempts::default(), WAIT, &stop));
-        let ours = ask(reached, console, &mut Attempts::default(), WAIT, &stop);
+        let theirs = scope.spawn(|| offered(follower, at, &stop));
+        let attempts = &mut Attempts::default();
+        let ours = Pairing { keys: console, attempts, wait: WAIT, called_off: &stop }.ask(reached);
         [ours, theirs.join().unwrap()]
     })
 }
@@ -65,7 +71,8 @@ fn a_wrong_code_is_refused_and_the_third_makes_a_pause() {
     assert!(told.to_string().contains("wait 60 s"), "{told}");
     let stop = AtomicBool::new(false);
     let keys = Keys::random().unwrap();
-    let told = offer(free_address(), &keys, &mut attempts, WAIT, &stop).unwrap_err();
+    let pairing = Pairing { keys: &keys, attempts: &mut attempts, wait: WAIT, called_off: &stop };
+    let told = pairing.offer(free_address()).unwrap_err();
     assert!(matches!(told, PairingError::TooMany { .. }));
     assert!(attempts.may_begin(Instant::now() + PAUSE).is_ok());
 }
@@ -83,7 +90,7 @@ fn who_stands_between_is_seen() {
     let stop = AtomicBool::new(false);
     let keys = Keys::random().unwrap();
     let told = scope(|scope| {
-        let theirs = scope.spawn(|| offer(at, &keys, &mut Attempts::default(), WAIT, &stop));
+        let theirs = scope.spawn(|| offered(&keys, at, &stop));
         let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         socket.set_read_timeout(Some(Duration::from_millis(100))).unwrap();
         let mut answer = [0; 2 * LEN];
@@ -99,9 +106,10 @@ fn who_stands_between_is_seen() {
 fn nobody_and_called_off_are_told() {
     let keys = Keys::random().unwrap();
     let (stop, wait) = (AtomicBool::new(false), Duration::from_millis(50));
-    assert!(matches!(ask(free_address(), &keys, &mut Attempts::default(), wait, &stop), Err(PairingError::Nobody)));
+    let pairing = Pairing { keys: &keys, attempts: &mut Attempts::default(), wait, called_off: &stop };
+    assert!(matches!(pairing.ask(free_address()), Err(PairingError::Nobody)));
     stop.store(true, Relaxed);
-    assert!(matches!(offer(free_address(), &keys, &mut Attempts::default(), WAIT, &stop), Err(PairingError::Nobody)));
+    assert!(matches!(offered(&keys, free_address(), &stop), Err(PairingError::Nobody)));
 }
 
 #[test]

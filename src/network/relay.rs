@@ -8,15 +8,15 @@ use std::{
     net::SocketAddr,
     sync::{
         Arc,
-        atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
+        atomic::{AtomicU64, Ordering::Relaxed},
     },
-    thread::{Builder, JoinHandle, sleep},
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use crate::{
     impairment::{Line, Settings},
     socket::Socket,
+    worker::Worker,
 };
 
 /// Consoles at once; the one that has been silent longest makes room.
@@ -59,18 +59,12 @@ pub struct Totals {
     pub back_lost: u64,
 }
 
-#[derive(Debug, Default)]
-struct Shared {
-    ends: AtomicBool,
-    totals: [AtomicU64; 4],
-}
-
 /// A relay that works until it is dropped.
 #[derive(Debug)]
 pub struct Relay {
     address: SocketAddr,
-    shared: Arc<Shared>,
-    thread: Option<JoinHandle<()>>,
+    totals: Arc<[AtomicU64; 4]>,
+    _thread: Worker,
 }
 
 impl Relay {
@@ -84,12 +78,11 @@ impl Relay {
         }
         let socket = Socket::open(settings.at, None)?;
         let address = socket.address()?;
-        let shared = Arc::new(Shared::default());
-        let theirs = Arc::clone(&shared);
-        let thread = Builder::new()
-            .name("relay".into())
-            .spawn(move || Work { socket, settings, clients: Vec::new(), made: 0 }.run(&theirs))?;
-        Ok(Self { address, shared, thread: Some(thread) })
+        let totals = Arc::<[AtomicU64; 4]>::default();
+        let mut work =
+            Work { socket, settings, totals: Arc::clone(&totals), clients: Vec::new(), made: 0, busy_s: 0.0 };
+        let thread = Worker::start("relay", move |now_s| work.turn(now_s))?;
+        Ok(Self { address, totals, _thread: thread })
     }
 
     /// Where it listens.
@@ -99,17 +92,8 @@ impl Relay {
 
     /// What it has done.
     pub fn totals(&self) -> Totals {
-        let [there, there_lost, back, back_lost] = self.shared.totals.each_ref().map(|total| total.load(Relaxed));
+        let [there, there_lost, back, back_lost] = self.totals.each_ref().map(|total| total.load(Relaxed));
         Totals { there, there_lost, back, back_lost }
-    }
-}
-
-impl Drop for Relay {
-    fn drop(&mut self) {
-        self.shared.ends.store(true, Relaxed);
-        if let Some(thread) = self.thread.take() {
-            thread.join().ok();
-        }
     }
 }
 
@@ -125,32 +109,31 @@ struct Client {
 struct Work {
     socket: Socket,
     settings: RelaySettings,
+    totals: Arc<[AtomicU64; 4]>,
     clients: Vec<Client>,
     /// Clients so far: each has seeds of its own.
     made: u64,
+    /// When the last datagram came.
+    busy_s: f64,
 }
 
 impl Work {
-    fn run(mut self, shared: &Shared) {
-        let (begin, mut busy_s) = (Instant::now(), 0.0);
-        while !shared.ends.load(Relaxed) {
-            let now_s = begin.elapsed().as_secs_f64();
-            if self.take(now_s) {
-                busy_s = now_s;
-            }
-            for client in &mut self.clients {
-                while let Some((_, datagram)) = client.there.receive(now_s) {
-                    client.socket.send(&datagram, self.settings.to);
-                }
-                while let Some((_, datagram)) = client.back.receive(now_s) {
-                    self.socket.send(&datagram, client.address);
-                }
-            }
-            self.count(shared);
-            let is_busy = now_s - busy_s < REST_AFTER_S
-                || self.clients.iter().any(|c| c.there.due_s().or(c.back.due_s()).is_some());
-            sleep(if is_busy { BUSY } else { REST });
+    fn turn(&mut self, now_s: f64) -> Duration {
+        if self.take(now_s) {
+            self.busy_s = now_s;
         }
+        for client in &mut self.clients {
+            while let Some((_, datagram)) = client.there.receive(now_s) {
+                client.socket.send(&datagram, self.settings.to);
+            }
+            while let Some((_, datagram)) = client.back.receive(now_s) {
+                self.socket.send(&datagram, client.address);
+            }
+        }
+        self.count();
+        let is_busy = now_s - self.busy_s < REST_AFTER_S
+            || self.clients.iter().any(|c| c.there.due_s().or(c.back.due_s()).is_some());
+        if is_busy { BUSY } else { REST }
     }
 
     /// Takes what has arrived; whether there was any.
@@ -195,7 +178,7 @@ impl Work {
         self.clients.last_mut()
     }
 
-    fn count(&self, shared: &Shared) {
+    fn count(&self) {
         let mut totals = [0; 4];
         for client in &self.clients {
             let ((there, there_lost), (back, back_lost)) = (client.there.totals(), client.back.totals());
@@ -203,7 +186,7 @@ impl Work {
                 *total += more;
             }
         }
-        for (shared, total) in shared.totals.iter().zip(totals) {
+        for (shared, total) in self.totals.iter().zip(totals) {
             shared.store(total, Relaxed);
         }
     }

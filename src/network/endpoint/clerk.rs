@@ -10,8 +10,7 @@ use std::{
         Arc,
         atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
     },
-    thread::{Builder, JoinHandle, sleep},
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use crossbeam_channel::{Receiver, Sender, bounded};
@@ -23,6 +22,7 @@ use crate::{
     socket::Socket,
     stream::StreamSettings,
     wire::HANDSHAKE_MAX,
+    worker::Worker,
 };
 
 /// Datagrams that wait for the thread; what comes on top is dropped.
@@ -53,7 +53,6 @@ pub(super) enum News {
 /// Counters and switches that both look at.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
-    ends: AtomicBool,
     /// A console wants a session.
     pub(super) is_wanted: AtomicBool,
     /// A follower admits no more consoles.
@@ -80,7 +79,7 @@ pub(super) struct Clerk {
     news: Receiver<News>,
     ended: Sender<Box<Session>>,
     pub(super) shared: Arc<Shared>,
-    thread: Option<JoinHandle<()>>,
+    _thread: Worker,
 }
 
 impl Clerk {
@@ -89,7 +88,7 @@ impl Clerk {
         let (outbox, news) = bounded(SESSIONS);
         let (ended, rest) = bounded(SESSIONS);
         let shared = Arc::new(Shared::default());
-        let desk = Desk {
+        let mut desk = Desk {
             side,
             socket,
             settings,
@@ -97,10 +96,11 @@ impl Clerk {
             outbox,
             ended: rest,
             shared: Arc::clone(&shared),
+            busy_s: 0.0,
             out: [0; HANDSHAKE_MAX],
         };
-        let thread = Builder::new().name("network".into()).spawn(move || desk.work())?;
-        Ok(Self { letters, news, ended, shared, thread: Some(thread) })
+        let thread = Worker::start("network", move |now_s| desk.turn(now_s))?;
+        Ok(Self { letters, news, ended, shared, _thread: thread })
     }
 
     /// Hands a datagram over; `false` if too many wait.
@@ -121,15 +121,6 @@ impl Clerk {
     }
 }
 
-impl Drop for Clerk {
-    fn drop(&mut self) {
-        self.shared.ends.store(true, Relaxed);
-        if let Some(thread) = self.thread.take() {
-            thread.join().ok();
-        }
-    }
-}
-
 /// The thread's end.
 struct Desk {
     side: Side,
@@ -139,31 +130,28 @@ struct Desk {
     outbox: Sender<News>,
     ended: Receiver<Box<Session>>,
     shared: Arc<Shared>,
+    /// When the last letter came.
+    busy_s: f64,
     out: [u8; HANDSHAKE_MAX],
 }
 
 impl Desk {
-    fn work(mut self) {
-        let begin = Instant::now();
-        let mut busy_s = 0.0;
-        while !self.shared.ends.load(Relaxed) {
-            let now_s = begin.elapsed().as_secs_f64();
-            for _ in 0..LETTERS {
-                let Ok(letter) = self.inbox.try_recv() else { break };
-                busy_s = now_s;
-                self.answer(&letter, now_s);
-            }
-            while self.ended.try_recv().is_ok() {}
-            let is_wanted = self.shared.is_wanted.load(Relaxed);
-            if let Side::Console(approach, to) = &mut self.side
-                && is_wanted
-            {
-                let len = approach.due(now_s, &mut self.out);
-                let to = *to;
-                self.send(len, to);
-            }
-            sleep(if is_wanted || now_s - busy_s < BUSY_S { BUSY } else { REST });
+    fn turn(&mut self, now_s: f64) -> Duration {
+        for _ in 0..LETTERS {
+            let Ok(letter) = self.inbox.try_recv() else { break };
+            self.busy_s = now_s;
+            self.answer(&letter, now_s);
         }
+        while self.ended.try_recv().is_ok() {}
+        let is_wanted = self.shared.is_wanted.load(Relaxed);
+        if let Side::Console(approach, to) = &mut self.side
+            && is_wanted
+        {
+            let len = approach.due(now_s, &mut self.out);
+            let to = *to;
+            self.send(len, to);
+        }
+        if is_wanted || now_s - self.busy_s < BUSY_S { BUSY } else { REST }
     }
 
     fn send(&self, len: usize, to: SocketAddr) {

@@ -9,7 +9,7 @@ use std::{
 
 use anyhow::Context as _;
 use clap::Args;
-use nima_network::pairing::{Attempts, ask, offer};
+use nima_network::pairing::{Attempts, Pairing};
 
 use super::{network, output, run::positive_seconds};
 use crate::leaving::Leave;
@@ -41,13 +41,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let off = Arc::clone(&called_off);
     leave.at_once(move || off.store(true, Relaxed));
     let (mut attempts, wait) = (Attempts::default(), Duration::from_secs_f64(arguments.wait));
+    let pairing = Pairing { keys: &keys, attempts: &mut attempts, wait, called_off: &called_off };
     let (name, pending) = if let Some(host) = &arguments.host {
-        let pending = ask(network::address(host)?, &keys, &mut attempts, wait, &called_off)?;
-        (network::name_of(host), pending)
+        (network::name_of(host), pairing.ask(network::address(host)?)?)
     } else {
         let at = network::listening(arguments.listen.as_deref())?;
         output::line(&format!("waiting at {at} for `nima pair HOST` at the console's machine"))?;
-        (arguments.name.as_str(), offer(at, &keys, &mut attempts, wait, &called_off)?)
+        (arguments.name.as_str(), pairing.offer(at)?)
     };
     output::line(&format!("code to enter at the other machine: {}", pending.code()))?;
     output::line("Enter the code that the other screen shows:")?;

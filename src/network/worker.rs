@@ -1,0 +1,43 @@
+//! A thread beside the loop's, for as long as what it works for.
+
+use std::{
+    io,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering::Relaxed},
+    },
+    thread::{Builder, JoinHandle, sleep},
+    time::{Duration, Instant},
+};
+
+/// A thread that takes turns until this is dropped, which waits for the end of the last one.
+#[derive(Debug)]
+pub(crate) struct Worker {
+    ends: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Worker {
+    /// Starts it; `turn` gets the time since then, s, and returns how long to rest before the next turn.
+    pub(crate) fn start(name: &str, mut turn: impl FnMut(f64) -> Duration + Send + 'static) -> io::Result<Self> {
+        let ends = Arc::new(AtomicBool::new(false));
+        let theirs = Arc::clone(&ends);
+        let work = move || {
+            let begin = Instant::now();
+            while !theirs.load(Relaxed) {
+                sleep(turn(begin.elapsed().as_secs_f64()));
+            }
+        };
+        let thread = Builder::new().name(name.into()).spawn(work)?;
+        Ok(Self { ends, thread: Some(thread) })
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.ends.store(true, Relaxed);
+        if let Some(thread) = self.thread.take() {
+            thread.join().ok();
+        }
+    }
+}

@@ -154,9 +154,19 @@ fn meddle<const D: usize>(chain: &mut Chain<D>, watch: &mut Watch<D>, meddling: 
     }
 }
 
-impl Report {
-    /// Text for a terminal.
-    pub fn text(&self) -> String {
+impl Experiment for Options {
+    const NAME: &'static str = "gates";
+    const FILES: &'static [&'static str] = &[];
+    type Findings = Report;
+    type Error = Infallible;
+
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, Infallible> {
+        Ok(study(self.requests, self.seed, progress))
+    }
+}
+
+impl Findings for Report {
+    fn text(&self) -> String {
         let Breaches { not_finite, ceiling, slew, gain_rate, gain_range, uncalled, energy } = self.breaches;
         let lines = [
             format!(
@@ -175,23 +185,6 @@ impl Report {
             format!("  without permission, hand or valid request {uncalled}, stored energy {energy}"),
         ];
         lines.into_iter().chain(gates).chain(breaches).collect::<Vec<_>>().join("\n")
-    }
-}
-
-impl Experiment for Options {
-    const NAME: &'static str = "gates";
-    const FILES: &'static [&'static str] = &[];
-    type Findings = Report;
-    type Error = Infallible;
-
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, Infallible> {
-        Ok(study(self.requests, self.seed, progress))
-    }
-}
-
-impl Findings for Report {
-    fn text(&self) -> String {
-        Self::text(self)
     }
 
     fn files(&self) -> Vec<(String, String)> {

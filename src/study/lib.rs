@@ -27,9 +27,9 @@ use serde::Serialize;
 pub trait Experiment {
     /// Start of the names of its files: `release` gives `release.json` and `release.md`.
     const NAME: &'static str;
-    /// Endings of the files that it always writes besides the JSON, such as `.md`. Before the experiment runs, the
-    /// writer checks that these files can be written.
-    const FILES: &'static [&'static str];
+    /// Endings of the files that it always writes besides the JSON. Before the experiment runs, the writer checks that these
+    /// files can be written.
+    const FILES: &'static [&'static str] = &[".md"];
     /// Type of the result.
     type Findings: Findings;
     /// Why it could not be run.
@@ -50,11 +50,13 @@ pub trait Experiment {
 
 /// The result of an [`Experiment`], serialised as its JSON.
 pub trait Findings: Serialize {
-    /// Text for a terminal.
+    /// Text for a terminal; in Markdown where it is a file, too.
     fn text(&self) -> String;
 
-    /// The files besides the JSON: the ending of each name (`.md`, `-errors.svg`), and its contents.
-    fn files(&self) -> Vec<(String, String)>;
+    /// The files besides the JSON: the ending of each name (`.md`, `-errors.svg`), and its contents. By default the text.
+    fn files(&self) -> Vec<(String, String)> {
+        vec![(".md".to_owned(), self.text())]
+    }
 
     /// Whether the result meets its targets.
     ///

@@ -15,7 +15,10 @@ use nima_machine::config::ConfigError;
 use nima_world::scene::{Scene, Tissue};
 use serde::Serialize;
 
-use super::pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial};
+use super::{
+    Experiment,
+    pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial},
+};
 
 /// Delays of the link, ms.
 pub const DELAYS_MS: [f64; 6] = [0.0, 10.0, 50.0, 100.0, 200.0, 300.0];
@@ -185,39 +188,41 @@ pub struct Way {
     pub contact_n: f64,
 }
 
-/// Runs the study; before each part `progress` is called with the number of parts done, their total, and the name of
-/// the next.
-///
-/// # Errors
-/// [`ReleaseError`] if the scene cannot be used or the contact force is not reached.
-pub fn study(mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
-    let tissue = pressed_tissue()?;
-    let mut rows = Vec::new();
-    let releases = CONTACTS_N.len() * 2 * Situation::ALL.len() * METHODS * DELAYS_MS.len();
-    let all = releases + 2 * BRAKES_N_S_M.len() * HANDLES.len();
-    for contact_n in CONTACTS_N {
-        for governor in [false, true] {
-            for situation in Situation::ALL {
-                for mode in methods() {
-                    progress(rows.len(), all, mode.name());
-                    for delay_ms in DELAYS_MS {
-                        rows.push(let_go(&Way { situation, governor, mode, delay_ms, contact_n }, tissue)?);
+impl Experiment for Options {
+    const NAME: &'static str = "release";
+    const FILES: &'static [&'static str] = &[".md", ".svg"];
+    type Findings = Report;
+    type Error = ReleaseError;
+
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
+        let tissue = pressed_tissue()?;
+        let mut rows = Vec::new();
+        let releases = CONTACTS_N.len() * 2 * Situation::ALL.len() * METHODS * DELAYS_MS.len();
+        let all = releases + 2 * BRAKES_N_S_M.len() * HANDLES.len();
+        for contact_n in CONTACTS_N {
+            for governor in [false, true] {
+                for situation in Situation::ALL {
+                    for mode in methods() {
+                        progress(rows.len(), all, mode.name());
+                        for delay_ms in DELAYS_MS {
+                            rows.push(let_go(&Way { situation, governor, mode, delay_ms, contact_n }, tissue)?);
+                        }
                     }
                 }
             }
         }
-    }
-    let mut worst = Vec::new();
-    for contact_n in [CONTACTS_N[0], WEAK_N] {
-        for brake_n_s_m in BRAKES_N_S_M {
-            for (kg, coulomb_n) in HANDLES {
-                progress(releases + worst.len(), all, "other handles");
-                worst.push(worst_of(contact_n, brake_n_s_m, &Handle { kg, coulomb_n, ..Handle::OMEGA }, tissue)?);
+        let mut worst = Vec::new();
+        for contact_n in [CONTACTS_N[0], WEAK_N] {
+            for brake_n_s_m in BRAKES_N_S_M {
+                for (kg, coulomb_n) in HANDLES {
+                    progress(releases + worst.len(), all, "other handles");
+                    worst.push(worst_of(contact_n, brake_n_s_m, &Handle { kg, coulomb_n, ..Handle::OMEGA }, tissue)?);
+                }
             }
         }
+        progress(all, all, "done");
+        Ok(Report { rows, worst })
     }
-    progress(all, all, "done");
-    Ok(Report { rows, worst })
 }
 
 /// Every mode, the program's own first.

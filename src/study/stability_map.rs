@@ -221,9 +221,22 @@ impl StabilityMap {
         let stable = |gain: &&f64| self.at(mode, **gain, delay_s, stiffness_n_m) == Verdict::Stable;
         GAINS.iter().take_while(stable).last().copied().unwrap_or(0.0)
     }
+}
 
+impl Experiment for Options {
+    const NAME: &'static str = "stability_map";
+    const FILES: &'static [&'static str] = &[".csv", ".md"];
+    type Findings = StabilityMap;
+    type Error = SettingsError;
+
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<StabilityMap, SettingsError> {
+        StabilityMap::simulate(progress)
+    }
+}
+
+impl Findings for StabilityMap {
     /// Markdown table of the largest stable gain by delay and stiffness, for every mode.
-    pub fn markdown(&self) -> String {
+    fn text(&self) -> String {
         let mut text = String::new();
         for mode in MODES.into_iter().rev() {
             let stiffnesses = STIFFNESSES_N_M.map(|n_m| format!(" {n_m:.0} N/m |")).concat();
@@ -242,26 +255,9 @@ impl StabilityMap {
         }
         text
     }
-}
-
-impl Experiment for Options {
-    const NAME: &'static str = "stability_map";
-    const FILES: &'static [&'static str] = &[".csv", ".md"];
-    type Findings = StabilityMap;
-    type Error = SettingsError;
-
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<StabilityMap, SettingsError> {
-        StabilityMap::simulate(progress)
-    }
-}
-
-impl Findings for StabilityMap {
-    fn text(&self) -> String {
-        self.markdown()
-    }
 
     fn files(&self) -> Vec<(String, String)> {
-        vec![(".csv".to_owned(), self.csv()), (".md".to_owned(), self.markdown())]
+        vec![(".csv".to_owned(), self.csv()), (".md".to_owned(), self.text())]
     }
 }
 

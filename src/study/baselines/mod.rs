@@ -19,7 +19,7 @@ use serde::Serialize;
 
 pub use statistics::Interval;
 
-use crate::{Experiment, Findings, tradeoff::Source};
+use crate::{Experiment, tradeoff::Source};
 
 /// Recordings that constants were chosen on, of the program's own modes and of the baselines: files whose names begin so.
 pub const CHOSEN_ON: [&str; 2] = ["m1_question1a_", "m1_question1b_"];
@@ -146,16 +146,6 @@ impl Experiment for Options {
         }
         progress(of, of, "done");
         Ok(Report { interval: statistics::WORDS, chosen_on: CHOSEN_ON, means: means(&rows), rows })
-    }
-}
-
-impl Findings for Report {
-    fn text(&self) -> String {
-        self.markdown()
-    }
-
-    fn files(&self) -> Vec<(String, String)> {
-        vec![(".md".to_owned(), self.markdown()), (".csv".to_owned(), self.csv())]
     }
 }
 

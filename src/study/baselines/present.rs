@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 
 use super::{CHOSEN_ON, Interval, Mean, Report, Row, Split, modes};
+use crate::Findings;
 
-impl Report {
+impl Findings for Report {
     /// One table for each part of the material.
-    pub(super) fn markdown(&self) -> String {
+    fn text(&self) -> String {
         // Writing into a String cannot fail.
         let mut text = format!(
             "Mean error at the horizon over that of delayed reflection, start-up included; less is better, 1 is reflection.\n\
@@ -21,6 +22,12 @@ impl Report {
         text
     }
 
+    fn files(&self) -> Vec<(String, String)> {
+        vec![(".md".to_owned(), self.text()), (".csv".to_owned(), self.csv())]
+    }
+}
+
+impl Report {
     fn table(&self, split: Split, text: &mut String) {
         let of_split: Vec<&Mean> = self.means.iter().filter(|mean| mean.split == split).collect();
         let mut delays_ms: Vec<f64> = of_split.iter().map(|mean| mean.delay_ms).collect();
@@ -52,7 +59,7 @@ impl Report {
     }
 
     /// Every source alone.
-    pub(super) fn csv(&self) -> String {
+    fn csv(&self) -> String {
         let mut text = "source,split,delay_ms,mode,error,held_error,ratio\n".to_owned();
         for Row { source, split, delay_ms, mode, error, held_error, ratio } in &self.rows {
             let source = source.replace(['"', ',', '\n'], " ");

@@ -6,9 +6,8 @@ use std::fmt::Write as _;
 use super::{FaultsError, HARMLESS_N, Kind, Options, Outcome, Place, Report, SensorAt, Special, Sums, Verdict, study};
 use crate::{Experiment, Findings};
 
-impl Report {
-    /// Markdown for a document or a terminal.
-    pub fn markdown(&self) -> String {
+impl Findings for Report {
+    fn text(&self) -> String {
         let mut text = self.sums_text();
         // Writing into a String cannot fail, here and below.
         writeln!(text, "\n| fault | sensor at |{}", Place::ALL.map(|place| format!(" {} |", place.word())).concat())
@@ -40,6 +39,19 @@ impl Report {
         text
     }
 
+    fn judge(&self) -> Result<(), String> {
+        let (silent, false_alarms) = (self.sums.silent, self.calm.false_alarms.len());
+        if silent > 0 {
+            return Err(format!("{silent} faults were not detected: see the table"));
+        }
+        if false_alarms > 0 {
+            return Err(format!("{false_alarms} faults were reported in runs without a fault: see the table"));
+        }
+        Ok(())
+    }
+}
+
+impl Report {
     fn sums_text(&self) -> String {
         let Sums { kinds, cases, no_force, harmless, detected, bounded, silent, on_force_path, .. } = self.sums;
         let Sums { detection_p50_ms, detection_p99_ms, detection_max_ms, bounded_error_n, .. } = self.sums;
@@ -112,32 +124,10 @@ const fn word(verdict: Verdict) -> &'static str {
 
 impl Experiment for Options {
     const NAME: &'static str = "faults";
-    const FILES: &'static [&'static str] = &[".md"];
     type Findings = Report;
     type Error = FaultsError;
 
     fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, FaultsError> {
         study(self, progress)
-    }
-}
-
-impl Findings for Report {
-    fn text(&self) -> String {
-        self.markdown()
-    }
-
-    fn files(&self) -> Vec<(String, String)> {
-        vec![(".md".to_owned(), self.markdown())]
-    }
-
-    fn judge(&self) -> Result<(), String> {
-        let (silent, false_alarms) = (self.sums.silent, self.calm.false_alarms.len());
-        if silent > 0 {
-            return Err(format!("{silent} faults were not detected: see the table"));
-        }
-        if false_alarms > 0 {
-            return Err(format!("{false_alarms} faults were reported in runs without a fault: see the table"));
-        }
-        Ok(())
     }
 }

@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use super::{DELAYS_MS, LOOSE_N_M, OwnMotion, Report, STILL_M_S, Task, WAYS, study};
 use crate::{Experiment, Findings, release::ReleaseError};
 
-impl Report {
+impl Findings for Report {
     /// Power and error of each task, and the speed of loose grips, by delay.
-    pub fn markdown(&self) -> String {
+    fn text(&self) -> String {
         let mut text = String::new();
         let delays = DELAYS_MS.map(|delay_ms| format!(" {delay_ms:.0} ms |")).concat();
         for task in Task::ALL {
@@ -61,21 +61,10 @@ const fn word(own_motion: OwnMotion) -> &'static str {
 
 impl Experiment for super::Options {
     const NAME: &'static str = "passivity";
-    const FILES: &'static [&'static str] = &[".md"];
     type Findings = Report;
     type Error = ReleaseError;
 
     fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
         study(progress)
-    }
-}
-
-impl Findings for Report {
-    fn text(&self) -> String {
-        self.markdown()
-    }
-
-    fn files(&self) -> Vec<(String, String)> {
-        vec![(".md".to_owned(), self.markdown())]
     }
 }

@@ -5,17 +5,16 @@ use std::fmt::Write as _;
 use nima_core::impedance::Mode;
 
 use super::{
-    AIM_M_S, AIM_MJ, AIM_MM, AIM_N, CONTACTS_N, DELAYS_MS, Options, ReleaseError, Report, Row, Situation, WEAK_AIM_MM,
-    Worst, methods, study,
+    AIM_M_S, AIM_MJ, AIM_MM, AIM_N, CONTACTS_N, DELAYS_MS, Report, Row, Situation, WEAK_AIM_MM, Worst, methods,
 };
 use crate::{
-    Experiment, Findings,
+    Findings,
     picture::{Axis, Chart, Series, Style, svg},
 };
 
-impl Report {
-    /// For a terminal and for a document: a summary, other handles, and every letting go of 5 N.
-    pub fn markdown(&self) -> String {
+impl Findings for Report {
+    /// A summary, other handles, and every letting go of 5 N.
+    fn text(&self) -> String {
         let mut text = String::new();
         self.summary(&mut text);
         self.handles(&mut text);
@@ -33,6 +32,12 @@ impl Report {
         text
     }
 
+    fn files(&self) -> Vec<(String, String)> {
+        vec![(".md".to_owned(), self.text()), (".svg".to_owned(), self.svg())]
+    }
+}
+
+impl Report {
     /// The worst of all delays and both situations, for each mode and force; rows in which the hand held no force are left out.
     fn summary(&self, text: &mut String) {
         writeln!(
@@ -87,7 +92,7 @@ impl Report {
     }
 
     /// Travel and energy over the delay, for the hand that held 5 N, each of the program's own modes with and without the governor.
-    pub fn svg(&self) -> String {
+    fn svg(&self) -> String {
         let chart = |title: &str, unit: &str, low: f64, high: f64, of: fn(&Row) -> f64| Chart {
             title: title.into(),
             x: Axis::linear("delay of the link (ms)", 0.0, DELAYS_MS[DELAYS_MS.len() - 1]),
@@ -135,25 +140,4 @@ fn line(text: &mut String, row: &Row) {
         "| {mode} | {delay_ms:.0} | {on} | {before_n:.2}{mark} | {travel_mm:.2} | {peak_m_s:.3} | {energy_mj:.2} | {force_after_100_ms_n:.2} |"
     )
     .ok();
-}
-
-impl Experiment for Options {
-    const NAME: &'static str = "release";
-    const FILES: &'static [&'static str] = &[".md", ".svg"];
-    type Findings = Report;
-    type Error = ReleaseError;
-
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
-        study(progress)
-    }
-}
-
-impl Findings for Report {
-    fn text(&self) -> String {
-        self.markdown()
-    }
-
-    fn files(&self) -> Vec<(String, String)> {
-        vec![(".md".to_owned(), self.markdown()), (".svg".to_owned(), self.svg())]
-    }
 }

@@ -36,25 +36,6 @@ impl Report {
         out
     }
 
-    /// Table of every solver's worst relative error over degrees 1 to 5 in every case, then the comparison with the
-    /// targets.
-    pub fn table(&self) -> String {
-        let mut out = format!("{:<10} {:<37}", "extreme", "");
-        for solver in Solver::ALL {
-            write!(out, " {:>14}", solver.name()).ok();
-        }
-        out.push_str("  condition\n");
-        for extreme in &self.extremes {
-            write!(out, "{:<10} {:<37}", extreme.group, extreme.name).ok();
-            for solver in Solver::ALL {
-                write!(out, " {:>14}", worst(extreme, solver)).ok();
-            }
-            writeln!(out, "  {:>9}", condition(extreme)).ok();
-        }
-        out.push_str(&self.in_words());
-        out
-    }
-
     fn in_words(&self) -> String {
         let (verdict, drift) = (&self.verdict, &self.drift);
         let mut out = String::from(
@@ -199,8 +180,23 @@ impl Experiment for Options {
 }
 
 impl Findings for Report {
+    /// Table of every solver's worst relative error over degrees 1 to 5 in every case, then the comparison with the
+    /// targets.
     fn text(&self) -> String {
-        self.table()
+        let mut out = format!("{:<10} {:<37}", "extreme", "");
+        for solver in Solver::ALL {
+            write!(out, " {:>14}", solver.name()).ok();
+        }
+        out.push_str("  condition\n");
+        for extreme in &self.extremes {
+            write!(out, "{:<10} {:<37}", extreme.group, extreme.name).ok();
+            for solver in Solver::ALL {
+                write!(out, " {:>14}", worst(extreme, solver)).ok();
+            }
+            writeln!(out, "  {:>9}", condition(extreme)).ok();
+        }
+        out.push_str(&self.in_words());
+        out
     }
 
     fn files(&self) -> Vec<(String, String)> {

@@ -60,7 +60,6 @@ pub struct Report {
 
 impl Experiment for Options {
     const NAME: &'static str = "validation-paper";
-    const FILES: &'static [&'static str] = &[".md"];
     type Findings = Report;
     type Error = ValidationError;
 

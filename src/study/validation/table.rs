@@ -139,9 +139,8 @@ fn rendering(three: &Rendering) -> Vec<Row> {
     all
 }
 
-impl Report {
-    /// Text for a terminal.
-    pub fn text(&self) -> String {
+impl Findings for Report {
+    fn text(&self) -> String {
         let mut out = format!("{:<4} {:<78} {:>17}  {:>23}\n", "", "", "paper", "ours");
         for row in &self.table {
             let Row { validation, what, paper, ours, .. } = row;
@@ -151,13 +150,13 @@ impl Report {
         out
     }
 
-    /// Markdown table for the documentation.
-    pub fn markdown(&self) -> String {
+    /// For the documentation, with the reasons.
+    fn files(&self) -> Vec<(String, String)> {
         let mut out = String::from("| | | paper | ours | why they differ |\n|---|---|---|---|---|\n");
         for Row { validation, what, paper, ours, why } in &self.table {
             writeln!(out, "| {validation} | {what} | {} | {} | {why} |", words(paper), words(ours)).ok();
         }
-        out
+        vec![(".md".to_owned(), out)]
     }
 }
 
@@ -168,21 +167,10 @@ fn words(values: &[f64]) -> String {
 
 impl Experiment for Options {
     const NAME: &'static str = "validation";
-    const FILES: &'static [&'static str] = &[".md"];
     type Findings = Report;
     type Error = ValidationError;
 
     fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, ValidationError> {
         study(self, progress)
-    }
-}
-
-impl Findings for Report {
-    fn text(&self) -> String {
-        Self::text(self)
-    }
-
-    fn files(&self) -> Vec<(String, String)> {
-        vec![(".md".to_owned(), self.markdown())]
     }
 }

@@ -9,16 +9,17 @@ use crate::{
     validation::rendering::Figures,
 };
 
-impl Report {
-    /// Three tables in Markdown.
-    pub fn markdown(&self) -> String {
+impl Findings for Report {
+    fn text(&self) -> String {
         let mut text = String::new();
         self.in_window(&mut text);
         self.at_horizon(&mut text);
         self.kicks(&mut text);
         text
     }
+}
 
+impl Report {
     fn in_window(&self, text: &mut String) {
         text.push_str(
             "Inside the window, newest sample, all axes (N; recordings in their own unit), and windows for which a degree above 1 is chosen:\n\n\
@@ -105,15 +106,5 @@ fn number(value: f64) -> String {
         large if large >= 10.0 => format!("{large:.0}"),
         small if small < 0.1 => format!("{small:.4}"),
         other => format!("{other:.3}"),
-    }
-}
-
-impl Findings for Report {
-    fn text(&self) -> String {
-        self.markdown()
-    }
-
-    fn files(&self) -> Vec<(String, String)> {
-        vec![(".md".to_owned(), self.markdown())]
     }
 }

@@ -116,7 +116,6 @@ impl Asked for Arguments {
 
 impl Experiment for Arguments {
     const NAME: &'static str = "timing";
-    const FILES: &'static [&'static str] = &[".md"];
     type Findings = Cases;
     type Error = Infallible;
 
@@ -142,10 +141,6 @@ impl Experiment for Arguments {
 impl Findings for Cases {
     fn text(&self) -> String {
         table(&self.0)
-    }
-
-    fn files(&self) -> Vec<(String, String)> {
-        vec![(".md".to_owned(), table(&self.0))]
     }
 }
 

@@ -16,6 +16,21 @@ use nima_world::{
     scene::Scene,
 };
 
+/// The devices of that rig, in its order. The paper's rig has no servos on the left.
+pub const DEVICES: [&str; 11] = [
+    "right handle",
+    "right arm",
+    "right sensor",
+    "right servos",
+    "left handle",
+    "left arm",
+    "left sensor",
+    "left servos",
+    "tissue sensor",
+    "tracker",
+    "pedal",
+];
+
 /// A port that is free for TCP and UDP.
 fn free_port() -> u16 {
     loop {

@@ -1,4 +1,4 @@
-//! Shared by tests across crates: an emulated rig with other addresses, and a gravity calibration.
+//! Shared by tests across crates: a plan of the simulated rig, an emulated rig with other addresses, and a gravity calibration.
 //!
 //! The tests are three programs: `machine` on the virtual clock, `wires` in real time with emulated devices, and
 //! `allocation`, which counts allocations.
@@ -7,3 +7,16 @@
 #[cfg(unix)]
 pub mod emulated;
 pub mod gravity;
+
+use nima_machine::config::RigConfig;
+use nima_world::{Plan, scene::Scene};
+
+/// The simulated rig in this scene, without calibrations; it engages by itself.
+pub fn plan(scene: &str) -> Plan {
+    Plan {
+        rig: RigConfig::load("simulated").unwrap(),
+        scene: Scene::load(scene).unwrap(),
+        calibrations: Default::default(),
+        engage: true,
+    }
+}

@@ -156,8 +156,8 @@ struct Shared {
     stop: Arc<AtomicBool>,
 }
 
-/// Reads the state of a slot, and connects or disconnects it, from other threads.
-#[derive(Clone, Debug)]
+/// Reads the state of a slot, and connects or disconnects it, from other threads. By default that of a slot that never opens.
+#[derive(Clone, Debug, Default)]
 pub struct SlotView {
     shared: Shared,
 }

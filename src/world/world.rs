@@ -6,7 +6,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{calibration::frames::FrameSample, kinematics, noise::Noise};
-use nima_machine::rig::{Inputs, Outputs, Prompt, Sensed, Switches, View};
+use nima_machine::rig::{Inputs, Outputs, Prompt, Sensed};
 
 use crate::{
     Hand, Tissue, Trocar,
@@ -253,18 +253,11 @@ impl World {
             .map_or(hand_m, |Leader { resolution_m, .. }| hand_m.map(|x| (x / resolution_m).round() * resolution_m));
         Inputs {
             hand: kinematics::Hand::at(leader_m),
-            gripper_rad: None,
-            grip_n: None,
             tip_m: self.tip_m,
-            world_from_jaws: None,
             sensed,
-            view: View::Fixed,
             frames: FrameSample { wrench, ..FrameSample::from(leader_m) },
-            switches: Switches::default(),
             powered: true,
-            obstacle: None,
-            age_s: 0.0,
-            silent_s: 0.0,
+            ..Inputs::NOTHING
         }
     }
 }

@@ -11,7 +11,8 @@ use nima_machine::{
     rig::{DeviceEvent, Inputs, Obstacle, Outputs, Rig as _, SIDES, Side, Switches, View},
     teleop::{Calibrations, Loop, Timing},
 };
-use nima_world::{Plan, Worlds, run_virtual, scene::Scene};
+use nima_tests::plan;
+use nima_world::{Worlds, run_virtual, scene::Scene};
 
 struct Bench {
     worlds: Worlds,
@@ -82,14 +83,8 @@ const AS_IT_IS: fn(Side, Inputs) -> Option<Inputs> = |_, inputs| Some(inputs);
 
 #[test]
 fn each_hand_works_on_its_own_pegs_and_both_feel() {
-    let plan = Plan {
-        rig: RigConfig::load("simulated").unwrap(),
-        scene: Scene::load("bimanual").unwrap(),
-        calibrations: Default::default(),
-        engage: true,
-    };
     let mut felt_n = [0.0_f64; SIDES];
-    run_virtual(&plan, 10.0, |tick| {
+    run_virtual(&plan("bimanual"), 10.0, |tick| {
         let felt = &mut felt_n[tick.side.index()];
         *felt = felt.max(tick.rendered_n.norm());
         let beyond_m = if tick.side == Side::Right { -tick.tip_m.x } else { tick.tip_m.x };

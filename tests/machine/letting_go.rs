@@ -7,15 +7,14 @@ use nima_machine::{
     rig::Side,
     teleop::{Calibrations, Pair},
 };
-use nima_world::{Plan, run_virtual, scene::Scene};
+use nima_tests::plan;
+use nima_world::run_virtual;
 
 /// Direct reflection at 300 ms, let go while pressing; the farthest place of the handle while engaged (m), and the states that
 /// followed. The hand takes the handle again after 2.5 s, and the loop is asked to engage.
 fn let_go(governor: bool) -> (f64, Vec<LoopState>) {
-    let mut rig = RigConfig::load("simulated").unwrap();
-    (rig.mode, rig.delay_s, rig.gates.static_hold) = (Mode::Dfr, 0.3, true);
-    let plan =
-        Plan { rig, scene: Scene::load("peg_transfer").unwrap(), calibrations: Default::default(), engage: true };
+    let mut plan = plan("peg_transfer");
+    (plan.rig.mode, plan.rig.delay_s, plan.rig.gates.static_hold) = (Mode::Dfr, 0.3, true);
     let (mut opened, mut far_m, mut states) = (None::<(f64, Vector3<f64>)>, 0.0_f64, Vec::new());
     let mut asked = false;
     run_virtual(&plan, 20.0, |tick: &Tick| {

@@ -14,7 +14,8 @@ use nima_machine::{
     rig::Rig,
     teleop::{Calibrations, Loop, Timing},
 };
-use nima_world::{Plan, Worlds, run_virtual, scene::Scene};
+use nima_tests::plan;
+use nima_world::{Worlds, run_virtual, scene::Scene};
 
 /// Messages under way in one direction, with the time at which they arrive, s.
 type Way = Arc<Mutex<VecDeque<(f64, Vec<u8>)>>>;
@@ -171,10 +172,8 @@ fn over_a_network(delay_s: f64, mode: Mode) -> [f64; 2] {
 
 /// The same with everything in one place and the whole delay on the way back.
 fn in_one_place(delay_s: f64, mode: Mode) -> f64 {
-    let mut rig = RigConfig::load("simulated").unwrap();
-    (rig.mode, rig.delay_s) = (mode, delay_s);
-    let scene = Scene::load("peg_transfer").unwrap();
-    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    let mut plan = plan("peg_transfer");
+    (plan.rig.mode, plan.rig.delay_s) = (mode, delay_s);
     let errors = RefCell::new(Vec::new());
     run_virtual(&plan, 20.5, |tick| {
         if tick.t_s > 4.5 {

@@ -2,10 +2,10 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::frames::{GRAVITY_M_S2, WristSample, from_roll_pitch_yaw_deg};
 use nima_machine::{
-    config::RigConfig,
     messages::{Command, ForceSource, LoopState},
     rig::{Outputs, Prompt, Sensed, Side},
 };
+use nima_tests::plan;
 use nima_world::{
     Plan, World, run_virtual,
     scene::{Flaw, Scene},
@@ -116,15 +116,9 @@ fn each_flaw_shows_in_the_data() {
 
 #[test]
 fn a_prompt_reaches_the_arm_in_idle_only() {
-    let plan = |engage| Plan {
-        rig: RigConfig::load("simulated").unwrap(),
-        scene: Scene::load("peg_transfer").unwrap(),
-        calibrations: Default::default(),
-        engage,
-    };
     for (engage, expected) in [(false, Prompt::Wave), (true, Prompt::Rest)] {
         let mut last = Prompt::Rest;
-        run_virtual(&plan(engage), 0.1, |tick| {
+        run_virtual(&Plan { engage, ..plan("peg_transfer") }, 0.1, |tick| {
             last = tick.prompt;
             (tick.index == 10).then_some(Command::Prompt(Side::Right, Prompt::Wave))
         })
@@ -135,13 +129,7 @@ fn a_prompt_reaches_the_arm_in_idle_only() {
 
 #[test]
 fn an_uncalibrated_wrist_gives_no_force_and_cannot_be_engaged() {
-    let plan = Plan {
-        rig: RigConfig::load("simulated").unwrap(),
-        scene: Scene::load("palpation").unwrap(),
-        calibrations: Default::default(),
-        engage: false,
-    };
-    run_virtual(&plan, 2.0, |tick| {
+    run_virtual(&Plan { engage: false, ..plan("palpation") }, 2.0, |tick| {
         assert_eq!(tick.force.source, ForceSource::Uncalibrated);
         assert_eq!(tick.state, LoopState::Idle);
         assert!(tick.rendered_n.norm() < 1e-12 && tick.measured_n.norm() < 1e-12);

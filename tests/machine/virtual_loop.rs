@@ -8,16 +8,8 @@ use nima_machine::{
     runtime::Summary,
     teleop::{Calibrations, Pair, Timing},
 };
-use nima_world::{Plan, World, run_virtual, scene::Scene};
-
-fn plan(scene: &str) -> Plan {
-    Plan {
-        rig: RigConfig::load("simulated").unwrap(),
-        scene: Scene::load(scene).unwrap(),
-        calibrations: Default::default(),
-        engage: true,
-    }
-}
+use nima_tests::plan;
+use nima_world::{Plan, World, run_virtual};
 
 fn error_of(summary: &Summary, mode: Mode) -> f64 {
     summary.error.iter().find(|error| error.mode == mode).unwrap().mae_n

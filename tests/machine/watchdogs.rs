@@ -9,16 +9,15 @@ use std::{
 
 use nima_devices::Lever;
 use nima_machine::{
-    config::RigConfig,
     messages::{Command, Event, LoopState, Refusal, Tick, Watchdog},
     rig::{Inputs, Outputs, Rig, Roster, SIDES, Side},
     teleop::{Calibrations, Loop, Timing},
 };
-use nima_world::{Plan, Worlds, run_virtual, scene::Scene, start_on};
+use nima_world::{Plan, Worlds, run_virtual, start_on};
 
 fn plan(engage: bool) -> Plan {
-    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
-    Plan { rig, scene: scene.with_left_hand(), calibrations: Default::default(), engage }
+    let plan = nima_tests::plan("peg_transfer");
+    Plan { scene: plan.scene.with_left_hand(), engage, ..plan }
 }
 
 /// States of both arms in turn; the test begins at 0.3 s, is released as soon as both are faulted, and engaged half a second later.

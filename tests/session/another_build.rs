@@ -6,11 +6,9 @@
 use std::path::PathBuf;
 
 use nima_core::impedance::Mode;
-use nima_machine::{
-    config::RigConfig,
-    messages::{Command, Tick},
-};
-use nima_world::{Plan, scene::Scene};
+use nima_machine::messages::{Command, Tick};
+use nima_tests::plan;
+use nima_world::scene::Scene;
 
 use crate::file::{recorded, replayed};
 
@@ -32,12 +30,7 @@ fn sessions_of_another_build_replay_bit_for_bit() {
     let build = if cfg!(debug_assertions) { "debug" } else { "release" };
     let baselines = Mode::BASELINES.into_iter().map(|mode| ("peg_transfer", Some(mode)));
     for (scene, mode) in Scene::names().map(|scene| (scene, None)).chain(baselines) {
-        let mut plan = Plan {
-            rig: RigConfig::load("simulated").unwrap(),
-            scene: Scene::load(scene).unwrap(),
-            calibrations: Default::default(),
-            engage: true,
-        };
+        let mut plan = plan(scene);
         plan.rig.mode = mode.unwrap_or(plan.rig.mode);
         plan.rig.identification.compare = true;
         let path = folder.join(format!("{scene}-{}.mcap", plan.rig.mode));

@@ -19,8 +19,9 @@ use nima_session::{
     recorder::{RecordError, Recorder},
     replay::replay,
 };
+use nima_tests::plan;
 
-use crate::file::{about, plan, replayed};
+use crate::file::{about, replayed};
 
 /// Somebody who watches, and who can keep the recorder's thread waiting as a slow disk does.
 #[derive(Clone, Debug, Default)]

@@ -7,18 +7,15 @@ use std::{
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
-    calibration::{
-        frames::FrameSample,
-        gravity::{GravityModel, Parameters, Source},
-    },
+    calibration::gravity::{GravityModel, Parameters, Source},
     frames::{GRAVITY_M_S2, Wrench, WristSample},
     kinematics::Hand,
 };
-use nima_devices::{Device, Health, Identity, Loss, Slot, Stamped, Standing};
+use nima_devices::{Loss, SlotView, Standing};
 use nima_machine::{
-    config::{RigConfig, SchedulingClass},
+    config::SchedulingClass,
     messages::{Command, Fault, ForceSource, LoopState},
-    rig::{DeviceEvent, Inputs, Outputs, Part, Rig, RosterEntry, SIDES, Sensed, Side, Switches, View},
+    rig::{DeviceEvent, Inputs, Outputs, Part, Rig, RosterEntry, SIDES, Sensed, Side},
     runtime::{self, Assembly, Clock, tap},
     teleop::{Calibrations, Timing},
 };
@@ -27,18 +24,10 @@ use nima_session::{
     journal::{Block, BlockWriter, Encoder, Message, Noted, Start, decode},
     replay::{Differs, Hole, ReplayError},
 };
-use nima_world::{Plan, Worlds, scene::Scene};
+use nima_tests::plan;
+use nima_world::Worlds;
 
 use crate::bench::{Kept, record, record_on, start_of};
-
-fn plan(scene: &str) -> Plan {
-    Plan {
-        rig: RigConfig::load("simulated").unwrap(),
-        scene: Scene::load(scene).unwrap(),
-        calibrations: Default::default(),
-        engage: true,
-    }
-}
 
 /// A world whose measurements are spoilt at times.
 struct Spoilt<F> {
@@ -111,20 +100,6 @@ fn faults_are_replayed_with_their_causes() {
     }
 }
 
-struct Silent(Health, Identity);
-
-impl Device for Silent {
-    type Reading = ();
-
-    fn poll(&mut self, _: f64) -> Option<Stamped<()>> {
-        None
-    }
-
-    fn about(&self) -> (&Health, &Identity) {
-        (&self.0, &self.1)
-    }
-}
-
 /// A resting arm with a wrist sensor that comes, goes and comes again.
 struct AtWrist {
     t_s: f64,
@@ -134,32 +109,18 @@ struct AtWrist {
 impl Rig for AtWrist {
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         self.t_s = now_s;
+        let force_n = Vector3::new(0.3 * now_s.sin(), 0.0, -0.4 * GRAVITY_M_S2 + 1e-3 * now_s);
         let sample = WristSample {
-            raw: Wrench {
-                force_n: Vector3::new(0.3 * now_s.sin(), 0.0, -0.4 * GRAVITY_M_S2 + 1e-3 * now_s),
-                torque_nm: Vector3::zeros(),
-            },
             acceleration_m_s2: Some(Vector3::new(1e-3 * now_s, 0.0, GRAVITY_M_S2)),
             world_from_s1: Some(UnitQuaternion::identity()),
-            world_from_m: None,
-            m_from_c: None,
-            insertion_m: None,
-            tissue_n: None,
+            ..WristSample::of(Wrench { force_n, torque_nm: Vector3::zeros() })
         };
         let right = Inputs {
             hand: Hand::at(Vector3::new(1e-6 * now_s, 0.0, 0.0)),
-            gripper_rad: None,
-            grip_n: None,
             tip_m: Vector3::new(0.0, 1e-7 * now_s, 0.0),
-            world_from_jaws: None,
             sensed: Sensed::AtWrist(sample),
-            view: View::Fixed,
-            frames: FrameSample::default(),
-            switches: Switches::default(),
             powered: true,
-            obstacle: None,
-            age_s: 0.0,
-            silent_s: 0.0,
+            ..Inputs::NOTHING
         };
         [Some(right), None]
     }
@@ -187,8 +148,7 @@ fn calibrated(mass_kg: f64) -> Calibrations {
 fn calibrations_put_in_force_while_the_loop_runs_are_in_the_journal() {
     let mut plan = plan("peg_transfer");
     plan.engage = false;
-    let slot = Slot::start("test", || Ok(Silent(Health::default(), Identity::default()))).unwrap();
-    let roster = vec![RosterEntry::of(Part::Sensor(Side::Right), "", slot.view())];
+    let roster = vec![RosterEntry::of(Part::Sensor(Side::Right), "", SlotView::default())];
     let lost = Standing::Lost(Loss::Disconnected);
     let events = vec![(0.2, Standing::Connected), (1.5, lost), (2.0, Standing::Connected)];
     let rig = Box::new(AtWrist { t_s: 0.0, events });

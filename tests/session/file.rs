@@ -8,7 +8,6 @@ use std::{
 
 use nima_core::impedance::Mode;
 use nima_machine::{
-    config::RigConfig,
     messages::{Command, Tick},
     runtime::{self, Assembly, Clock, tap},
 };
@@ -20,16 +19,8 @@ use nima_session::{
     recorder::{About, Attached, JOURNAL_TOPIC, Progress, RecordError, Recorder},
     replay::{Change, Outcome, ReplayError, compare, replay},
 };
-use nima_world::{Plan, scene::Scene};
-
-pub(crate) fn plan(scene: &str) -> Plan {
-    Plan {
-        rig: RigConfig::load("simulated").unwrap(),
-        scene: Scene::load(scene).unwrap(),
-        calibrations: Default::default(),
-        engage: true,
-    }
-}
+use nima_tests::plan;
+use nima_world::Plan;
 
 pub(crate) fn about() -> About {
     let seed = BTreeMap::from([("seed".to_owned(), "1".to_owned())]);

@@ -8,8 +8,9 @@ use nima_session::{
     outlet::Destination,
     recorder::{JOURNAL_TOPIC, Recorder},
 };
+use nima_tests::plan;
 
-use crate::file::{about, plan};
+use crate::file::about;
 
 /// Memory of this process, MB; `None` where the system does not say.
 fn memory_mb() -> Option<f64> {

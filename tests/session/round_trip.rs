@@ -1,22 +1,11 @@
 //! Every scene, commands and faults: what is replayed is what was recorded.
 
 use nima_core::impedance::Mode;
-use nima_machine::{
-    config::RigConfig,
-    messages::{Command, Tick},
-};
-use nima_world::{Plan, scene::Scene};
+use nima_machine::messages::{Command, Tick};
+use nima_tests::plan;
+use nima_world::scene::Scene;
 
 use crate::bench::record;
-
-fn plan(scene: &str) -> Plan {
-    Plan {
-        rig: RigConfig::load("simulated").unwrap(),
-        scene: Scene::load(scene).unwrap(),
-        calibrations: Default::default(),
-        engage: true,
-    }
-}
 
 #[test]
 fn every_scene_replays_bit_for_bit() {

@@ -15,7 +15,7 @@ use nima_machine::{
     rig::{ArmSet, DeviceRig, Outputs, Rig as _, SIDES, Settings, Side, View},
 };
 use nima_testing::real_time::{alone, judged, too_busy};
-use nima_tests::emulated::{elsewhere, right_arm, started};
+use nima_tests::emulated::{DEVICES, elsewhere, right_arm, started};
 use nima_world::{
     emulated::{EmulatedRig, HandFrame},
     emulators::EmulatedFault,
@@ -49,20 +49,7 @@ fn every_device_of_the_embedded_rig_delivers_at_its_place() {
     let devices = elsewhere(folder.path());
     let rig = started(&devices);
     let names: Vec<_> = rig.servings().iter().map(|device| device.name.as_str()).collect();
-    let expected = [
-        "right handle",
-        "right arm",
-        "right sensor",
-        "right servos",
-        "left handle",
-        "left arm",
-        "left sensor",
-        "left servos",
-        "tissue sensor",
-        "tracker",
-        "pedal",
-    ];
-    assert_eq!(names, expected);
+    assert_eq!(names, DEVICES);
     // What a busy machine holds up looks damaged.
     judged(|| {
         std::thread::scope(|scope| {

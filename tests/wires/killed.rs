@@ -12,12 +12,14 @@ use nima_machine::{
     rig::{Settings, Side},
 };
 use nima_testing::real_time::{alone, judged};
-use nima_tests::emulated::{right_arm, started};
+use nima_tests::{
+    emulated::{right_arm, started},
+    plan,
+};
 use nima_world::{
     Plan,
     emulated::{Truth, provide_handles},
     emulators::force_dimension::Mode as Motors,
-    scene::Scene,
 };
 
 /// Names the rig file of the process that is killed.
@@ -35,12 +37,7 @@ const SLACK_S: f64 = 0.030;
 fn the_loop_of_another_process() {
     let Ok(rig) = std::env::var(RIG) else { return };
     provide_handles();
-    let plan = Plan {
-        rig: RigConfig::load(&rig).unwrap(),
-        scene: Scene::load("peg_transfer").unwrap(),
-        calibrations: Default::default(),
-        engage: true,
-    };
+    let plan = Plan { rig: RigConfig::load(&rig).unwrap(), ..plan("peg_transfer") };
     let _handle = nima_world::start(&plan).unwrap();
     std::thread::sleep(Duration::from_mins(1));
 }

@@ -135,36 +135,18 @@ impl WristDoor {
 mod tests {
     use nalgebra::{UnitQuaternion, Vector3};
     use nima_core::{
-        calibration::{
-            frames::FrameSample,
-            gravity::{GravityModel, Parameters, Source},
-        },
+        calibration::gravity::{GravityModel, Parameters, Source},
         frames::{GRAVITY_M_S2, Wrench, WristSample},
-        kinematics::Hand,
     };
-    use nima_devices::{Device, Health, Identity, Loss, Slot, Stamped};
+    use nima_devices::{Loss, SlotView};
 
     use super::*;
     use crate::{
         config::RigConfig,
         messages::{Command, ForceSource, LoopState},
-        rig::{Awaited, Inputs, Obstacle, Part, Sensed, Switches, View},
+        rig::{Awaited, Inputs, Obstacle, Part, Sensed},
         teleop::Timing,
     };
-
-    struct Silent(Health, Identity);
-
-    impl Device for Silent {
-        type Reading = ();
-
-        fn poll(&mut self, _: f64) -> Option<Stamped<()>> {
-            None
-        }
-
-        fn about(&self) -> (&Health, &Identity) {
-            (&self.0, &self.1)
-        }
-    }
 
     struct Bench {
         control: Loop,
@@ -177,8 +159,7 @@ mod tests {
     impl Bench {
         fn new() -> Self {
             let rig = RigConfig::load("simulated").unwrap();
-            let slot = Slot::start("test", || Ok(Silent(Health::default(), Identity::default()))).unwrap();
-            let entry = RosterEntry::of(Part::Sensor(Side::Right), "", slot.view());
+            let entry = RosterEntry::of(Part::Sensor(Side::Right), "", SlotView::default());
             let (wrists, door) = ends(&[entry], 1e-3, None);
             let mut control = Loop::new(&rig, &[Some(calibrated()), None]).unwrap();
             control.suspend_calibrations(Side::Right);
@@ -204,29 +185,11 @@ mod tests {
     fn at_wrist(load_n: f64, t_s: f64) -> Inputs {
         let force_n = Vector3::new(load_n, 0.0, -0.4 * GRAVITY_M_S2 + 1e-3 * t_s);
         let sample = WristSample {
-            raw: Wrench { force_n, torque_nm: Vector3::zeros() },
             acceleration_m_s2: Some(Vector3::new(1e-3 * t_s, 0.0, GRAVITY_M_S2)),
             world_from_s1: Some(UnitQuaternion::identity()),
-            world_from_m: None,
-            m_from_c: None,
-            insertion_m: None,
-            tissue_n: None,
+            ..WristSample::of(Wrench { force_n, torque_nm: Vector3::zeros() })
         };
-        Inputs {
-            hand: Hand::at(Vector3::zeros()),
-            gripper_rad: None,
-            grip_n: None,
-            tip_m: Vector3::zeros(),
-            world_from_jaws: None,
-            sensed: Sensed::AtWrist(sample),
-            view: View::Fixed,
-            frames: FrameSample::default(),
-            switches: Switches::default(),
-            powered: true,
-            obstacle: None,
-            age_s: 0.0,
-            silent_s: 0.0,
-        }
+        Inputs { sensed: Sensed::AtWrist(sample), powered: true, ..Inputs::NOTHING }
     }
 
     fn calibrated() -> Calibrations {

@@ -15,12 +15,11 @@ use nima_machine::{
     rig::{Settings, Side},
 };
 use nima_testing::real_time::{alone, judged, too_busy};
-use nima_tests::emulated;
+use nima_tests::{emulated, plan};
 use nima_world::{
     Plan,
     emulated::{Truth, provide_handles},
     emulators::force_dimension::Mode as Motors,
-    scene::Scene,
     start,
 };
 use serde_json::Value;
@@ -318,12 +317,7 @@ fn the_loop_of_another_process() {
     let Ok(rig) = std::env::var(RIG) else { return };
     provide_handles();
     let leave = Leave::on_signals().unwrap();
-    let plan = Plan {
-        rig: RigConfig::load(&rig).unwrap(),
-        scene: Scene::load("peg_transfer").unwrap(),
-        calibrations: Default::default(),
-        engage: true,
-    };
+    let plan = Plan { rig: RigConfig::load(&rig).unwrap(), ..plan("peg_transfer") };
     let handle = start(&plan).unwrap();
     let ender = handle.ender();
     leave.at_once(move || ender.end());

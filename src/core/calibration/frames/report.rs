@@ -94,7 +94,7 @@ pub struct FrameReport<F> {
 
 impl<F> FrameReport<F> {
     /// A report without a result.
-    pub(super) fn nothing(poses: usize, cause: Cause) -> Self {
+    pub fn nothing(poses: usize, cause: Cause) -> Self {
         let none = Sizes::default();
         Self {
             verdict: cause.verdict(),

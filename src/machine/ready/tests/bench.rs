@@ -16,7 +16,7 @@ use crate::{
     config::RigConfig,
     messages::{Command, LoopState, Tick},
     ready::{Arm, Ask, Check, Session, State, Subject},
-    rig::{DEVICES_MAX, Gauge, Gauges, Healths, Inputs, Part, Sensed, Side, Switches, View},
+    rig::{DEVICES_MAX, Gauge, Gauges, Healths, Inputs, Part, Sensed, Side},
     runtime::STALL_MAX_S,
     teleop::{Calibrations, Loop, Timing},
 };
@@ -251,18 +251,11 @@ impl Bench {
         };
         Inputs {
             hand: Hand::at(handle_m),
-            gripper_rad: None,
-            grip_n: None,
             tip_m: trocar_m + down * 0.1,
-            world_from_jaws: None,
             sensed: Sensed::AtWrist(sample),
-            view: View::Fixed,
             frames,
-            switches: Switches::default(),
             powered: true,
-            obstacle: None,
-            age_s: 0.0,
-            silent_s: 0.0,
+            ..Inputs::NOTHING
         }
     }
 }

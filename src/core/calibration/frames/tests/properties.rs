@@ -46,17 +46,21 @@ fn tried<C: Calibration>(calibration: C, samples: &[FrameSample]) {
     let _ = session.report();
 }
 
+fn all_tried(samples: &[FrameSample]) {
+    tried(Tip::by_tracker(), samples);
+    tried(HandEye::new(TIP_IN_FLANGE_M), samples);
+    tried(Trocar::by_arm(&arm()), samples);
+    tried(Table::by_arm(TIP_IN_FLANGE_M, Vector3::z()), samples);
+    tried(View::by_handle(), samples);
+    tried(SensorMount::new(UnitQuaternion::identity(), Vector3::z()), samples);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
     fn no_input_makes_a_calibration_panic(samples in prop::collection::vec(any_sample(), 0..40)) {
-        tried(Tip::by_tracker(), &samples);
-        tried(HandEye::new(TIP_IN_FLANGE_M), &samples);
-        tried(Trocar::by_arm(&arm()), &samples);
-        tried(Table::by_arm(TIP_IN_FLANGE_M, Vector3::z()), &samples);
-        tried(View::by_handle(), &samples);
-        tried(SensorMount::new(UnitQuaternion::identity(), Vector3::z()), &samples);
+        all_tried(&samples);
     }
 
     #[test]
@@ -75,12 +79,7 @@ proptest! {
                 ..FrameSample::default()
             })
             .collect();
-        tried(Tip::by_tracker(), &samples);
-        tried(HandEye::new(TIP_IN_FLANGE_M), &samples);
-        tried(Trocar::by_arm(&arm()), &samples);
-        tried(Table::by_arm(TIP_IN_FLANGE_M, Vector3::z()), &samples);
-        tried(View::by_handle(), &samples);
-        tried(SensorMount::new(UnitQuaternion::identity(), Vector3::z()), &samples);
+        all_tried(&samples);
     }
 
     #[test]

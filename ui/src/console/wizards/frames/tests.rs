@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
-    calibration::frames::{FrameSample, Phase},
+    calibration::frames::{Carrier, Cause, FrameReport, FrameSample, Phase, StoredPose, TableFound},
     frames::from_roll_pitch_yaw_deg,
 };
 use nima_machine::{
@@ -263,11 +263,8 @@ fn a_table_moves_the_base_and_leaves_the_trocar_where_it_is_on_the_patient() {
     let bench = Bench::new(Kind::Table);
     let subject = bench.subject();
     let base_from_table = at(Vector3::new(-0.38, 0.02, -0.26), from_roll_pitch_yaw_deg(&Vector3::new(0.5, -0.3, 4.0)));
-    let found = nima_core::calibration::frames::TableFound {
-        carrier: nima_core::calibration::frames::Carrier::Flange,
-        from_table: stored(&base_from_table),
-    };
-    let report = nima_core::calibration::frames::FrameReport { found: Some(found), ..empty() };
+    let found = TableFound { carrier: Carrier::Flange, from_table: stored(&base_from_table) };
+    let report = FrameReport { found: Some(found), ..FrameReport::nothing(6, Cause::Proven) };
     let (all, _) = numbers::of(&Outcome::Table(report), &subject, None).unwrap();
     let of =
         |name: &str| Vector3::from_column_slice(&all.iter().find(|number| number.key.ends_with(name)).unwrap().after);
@@ -280,25 +277,7 @@ fn a_table_moves_the_base_and_leaves_the_trocar_where_it_is_on_the_patient() {
     assert!((in_base(&world_from_base, of("trocar_m")) - was).norm() < 1e-12);
 }
 
-fn stored(pose: &Isometry3<f64>) -> nima_core::calibration::frames::StoredPose {
+fn stored(pose: &Isometry3<f64>) -> StoredPose {
     let q = pose.rotation;
-    nima_core::calibration::frames::StoredPose {
-        place_m: pose.translation.vector.into(),
-        rotation_wxyz: [q.w, q.i, q.j, q.k],
-    }
-}
-
-fn empty<F>() -> nima_core::calibration::frames::FrameReport<F> {
-    let none = nima_core::calibration::frames::Sizes::default();
-    nima_core::calibration::frames::FrameReport {
-        verdict: Verdict::Accepted,
-        cause: nima_core::calibration::frames::Cause::Proven,
-        poses: 6,
-        outliers: Vec::new(),
-        fitted: none,
-        held_out: none,
-        held_out_max: none,
-        uncertainty: none,
-        found: None,
-    }
+    StoredPose { place_m: pose.translation.vector.into(), rotation_wxyz: [q.w, q.i, q.j, q.k] }
 }

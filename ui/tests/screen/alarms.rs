@@ -1,7 +1,5 @@
 //! Alarms in the window: pinned, folded, acknowledged, listed; and the stop above whatever is open.
 
-use std::time::{Duration, Instant};
-
 use eframe::App as _;
 use egui::{Key, accesskit::Role, pos2, vec2};
 use egui_kittest::{
@@ -12,21 +10,11 @@ use nima_console::console::{ConsoleApp, Options, settings::Kept, wizards::Which}
 use nima_machine::{config::RigConfig, messages::LoopState};
 use nima_world::{Plan, scene::Scene, start};
 
-use crate::bench::{TIMEOUT, console_of, press, until};
+use crate::bench::{console_of, press, read, until};
 
 const SIZE: [f32; 2] = [1100.0, 680.0];
 const SILENT: &str = "The control loop has stopped sending data";
 const STUCK: &str = "The stop has not reached the control loop";
-
-/// Steps until these words are on the screen.
-fn read(harness: &mut Harness<'_, ConsoleApp>, words: &str) {
-    let began = Instant::now();
-    while harness.query_all_by_label_contains(words).next().is_none() {
-        assert!(began.elapsed() < TIMEOUT, "never came: {words}");
-        std::thread::sleep(Duration::from_millis(20));
-        harness.step();
-    }
-}
 
 fn reads(harness: &Harness<'_, ConsoleApp>, words: &str) -> usize {
     harness.query_all_by_label_contains(words).count()

@@ -4,35 +4,33 @@ use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui_kittest::{
-    Harness,
+    Harness, Node,
     kittest::{NodeT as _, Queryable as _},
 };
 use nima_console::console::ConsoleApp;
-use nima_machine::{config::RigConfig, messages::Tick};
-use nima_world::{Plan, scene::Scene, start_simulated};
+use nima_machine::messages::Tick;
+use nima_tests::plan;
+use nima_world::{Plan, start_simulated};
 
 /// Far longer than anything takes, also on a busy machine.
 pub(crate) const TIMEOUT: Duration = Duration::from_mins(3);
 /// How much faster than real time a simulated person works in a wizard.
 pub(crate) const WIZARD_SPEED: f64 = 4.0;
 
+/// A window with the console.
+pub(crate) type Console = Harness<'static, ConsoleApp>;
+
 /// The console on the simulated rig in this scene, made ready by `prepare`; both hands of a scene that has two.
 pub(crate) fn console_of(
     scene: &str,
     size: [f32; 2],
     prepare: impl FnOnce(ConsoleApp) -> ConsoleApp + 'static,
-) -> Harness<'static, ConsoleApp> {
-    let rig = RigConfig::load("simulated").unwrap();
-    let scene = Scene::load(scene).unwrap();
-    shown(&Plan { rig, scene, calibrations: Default::default(), engage: true }, size, prepare)
+) -> Console {
+    shown(&plan(scene), size, prepare)
 }
 
 /// The console on a loop that is started by this plan, made ready by `prepare`. In simulated time: a busy machine faults no loop.
-pub(crate) fn shown(
-    plan: &Plan,
-    size: [f32; 2],
-    prepare: impl FnOnce(ConsoleApp) -> ConsoleApp + 'static,
-) -> Harness<'static, ConsoleApp> {
+pub(crate) fn shown(plan: &Plan, size: [f32; 2], prepare: impl FnOnce(ConsoleApp) -> ConsoleApp + 'static) -> Console {
     shown_at(1.0, plan, size, prepare)
 }
 
@@ -42,7 +40,7 @@ pub(crate) fn shown_at(
     plan: &Plan,
     size: [f32; 2],
     prepare: impl FnOnce(ConsoleApp) -> ConsoleApp + 'static,
-) -> Harness<'static, ConsoleApp> {
+) -> Console {
     let handle = start_simulated(plan, speed).unwrap();
     let (rig, scene) = (plan.rig.clone(), plan.scene.clone());
     Harness::builder()
@@ -54,30 +52,74 @@ pub(crate) fn shown_at(
 /// As a window that draws fifty times a second: drawing all the time would only slow down what it waits for.
 const FRAME: Duration = Duration::from_millis(20);
 
-/// Steps the window until the newest tick on the screen is as wanted. The window never settles, so `run` is of no use.
-pub(crate) fn until(harness: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&Tick) -> bool) {
+/// Steps the window until it is as wanted, for so long at most; whether it came to that. The window never settles, so `run` is of no use.
+pub(crate) fn comes<'a, A>(
+    window: &mut Harness<'a, A>,
+    within: Duration,
+    wanted: impl Fn(&Harness<'a, A>) -> bool,
+) -> bool {
     let began = Instant::now();
-    while !harness.state().tick().is_some_and(&good) {
-        assert!(began.elapsed() < TIMEOUT, "the loop never was: {what}");
+    while !wanted(window) {
+        if began.elapsed() > within {
+            return false;
+        }
         std::thread::sleep(FRAME);
-        harness.step();
+        window.step();
     }
+    true
 }
 
-/// A button that must first become ready.
-pub(crate) fn press(harness: &mut Harness<'_, ConsoleApp>, label: &str) {
-    let began = Instant::now();
-    loop {
-        harness.step();
-        if let Some(button) = harness.query_by_role_and_label(Role::Button, label)
-            && !button.accesskit_node().is_disabled()
-        {
-            button.click();
-            break;
-        }
-        assert!(began.elapsed() < TIMEOUT, "no button \"{label}\" that can be pressed");
-        std::thread::sleep(FRAME);
-    }
-    harness.step();
-    harness.step();
+/// Steps the window until it is as wanted.
+pub(crate) fn wait<A>(window: &mut Harness<'_, A>, what: &str, wanted: impl Fn(&Harness<'_, A>) -> bool) {
+    assert!(comes(window, TIMEOUT, wanted), "never: {what}; there is: {:?}", texts(window));
+}
+
+/// Steps the window until the newest tick on the screen is as wanted.
+pub(crate) fn until(console: &mut Harness<'_, ConsoleApp>, what: &str, wanted: impl Fn(&Tick) -> bool) {
+    wait(console, what, |console| console.state().tick().is_some_and(&wanted));
+}
+
+/// Steps the window until these words are on the screen.
+pub(crate) fn read<A>(window: &mut Harness<'_, A>, words: &str) {
+    wait(window, words, |window| shows(window, words));
+}
+
+/// Whether these words are on the screen.
+pub(crate) fn shows<A>(window: &Harness<'_, A>, words: &str) -> bool {
+    window.query_all_by_label_contains(words).next().is_some()
+}
+
+/// All that can be read, for the words of a failure.
+pub(crate) fn texts<A>(window: &Harness<'_, A>) -> Vec<String> {
+    let words = |node: Node<'_>| node.accesskit_node().value().or_else(|| node.accesskit_node().label());
+    window.query_all_by_label_contains("").filter_map(words).collect()
+}
+
+/// Whether there is this button, and it can be pressed.
+pub(crate) fn can_press<A>(window: &Harness<'_, A>, label: &str) -> bool {
+    let button = window.query_by_role_and_label(Role::Button, label);
+    button.is_some_and(|button| !button.accesskit_node().is_disabled())
+}
+
+/// Clicks a button, which must first become ready, where it is.
+pub(crate) fn press<A>(window: &mut Harness<'_, A>, label: &str) {
+    window.step();
+    wait(window, label, |window| can_press(window, label));
+    window.get_by_role_and_label(Role::Button, label).click();
+    window.run_steps(2);
+}
+
+/// Presses a button, which must first become ready, by its name: it may be scrolled out of sight.
+pub(crate) fn pick<A>(window: &mut Harness<'_, A>, label: &str) {
+    wait(window, label, |window| can_press(window, label));
+    window.get_by_role_and_label(Role::Button, label).click_accesskit();
+    window.run_steps(2);
+}
+
+/// Types into a field.
+pub(crate) fn write_into<A>(window: &mut Harness<'_, A>, label: &str, text: &str) {
+    window.get_by_role_and_label(Role::TextInput, label).focus();
+    window.step();
+    window.get_by_role_and_label(Role::TextInput, label).type_text(text);
+    window.run_steps(2);
 }

@@ -1,10 +1,7 @@
 //! The devices panel on an emulated rig: which device is which, their test, and other devices for a part.
 #![cfg(target_os = "linux")]
 
-use std::{
-    path::Path,
-    time::{Duration, Instant},
-};
+use std::{path::Path, time::Duration};
 
 use egui::accesskit::Role;
 use egui_kittest::{
@@ -22,10 +19,13 @@ use nima_machine::{
     rig::{Settings, Side},
 };
 use nima_testing::real_time::{alone, judged, too_busy};
-use nima_tests::emulated::{elsewhere, rig_file};
-use nima_world::{Plan, scene::Scene, start_simulated};
+use nima_tests::{
+    emulated::{elsewhere, rig_file},
+    plan,
+};
+use nima_world::start_simulated;
 
-use crate::bench::{press, until};
+use crate::bench::{comes, press, until};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 /// Far longer than emulators and devices need to start; a machine on which they do not is too busy.
@@ -35,8 +35,7 @@ const NIMA: &str = env!("CARGO_BIN_EXE_nima");
 /// A console with the devices panel in front, on the simulated rig; its data folder is `folder`.
 fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     let folder = folder.to_path_buf();
-    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
-    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    let plan = plan("peg_transfer");
     let handle = start_simulated(&plan, 1.0).unwrap();
     // The loop of an emulated rig runs in real time, as its devices do.
     let mut harness = Harness::builder().with_size(SIZE).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
@@ -76,14 +75,9 @@ fn told(harness: &Harness<'_, ConsoleApp>) -> Vec<String> {
 }
 
 fn wait(harness: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&Harness<'_, ConsoleApp>) -> bool) {
-    let began = Instant::now();
-    while !good(harness) {
-        if began.elapsed() > WITHIN {
-            eprintln!("never: {what}; {:?}", told(harness));
-            too_busy();
-        }
-        std::thread::sleep(Duration::from_millis(5));
-        harness.step();
+    if !comes(harness, WITHIN, good) {
+        eprintln!("never: {what}; {:?}", told(harness));
+        too_busy();
     }
 }
 

@@ -14,18 +14,14 @@ use nima_core::{
     impedance::{Baseline, Mode},
     safety::Gate,
 };
-use nima_machine::{
-    config::RigConfig,
-    messages::{LoopState, Tick},
-};
-use nima_world::{Plan, scene::Scene};
+use nima_machine::messages::{LoopState, Tick};
+use nima_tests::plan;
+use nima_world::Plan;
 
 use crate::bench::{press, shown, until};
 
 fn console_of(scene: &str, size: [f32; 2], engage: bool) -> Harness<'static, ConsoleApp> {
-    let rig = RigConfig::load("simulated").unwrap();
-    let scene = Scene::load(scene).unwrap();
-    shown(&Plan { rig, scene, calibrations: Default::default(), engage }, size, |app| app)
+    shown(&Plan { engage, ..plan(scene) }, size, |app| app)
 }
 
 fn console() -> Harness<'static, ConsoleApp> {
@@ -129,9 +125,8 @@ fn every_mode_can_be_chosen_and_comes_back() {
 #[test]
 fn the_baseline_that_the_rig_names_is_offered_and_no_other() {
     let kalman = Mode::Baseline(Baseline::Kalman);
-    let rig = RigConfig { mode: kalman, ..RigConfig::load("simulated").unwrap() };
-    let scene = Scene::load("peg_transfer").unwrap();
-    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    let mut plan = plan("peg_transfer");
+    plan.rig.mode = kalman;
     let mut harness = shown(&plan, [1600.0, 1000.0], |app| app);
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged && tick.mode == kalman);
     for (label, mode) in [("Direct (DFR)", Mode::Dfr), ("Kalman", kalman)] {

@@ -1,23 +1,13 @@
 //! The check of a saved calibration at the start of the console, of a sensor whose bias has moved and of one whose has not.
 
-use std::{
-    path::Path,
-    process::Command,
-    time::{Duration, Instant},
-};
+use std::{path::Path, process::Command};
 
-use egui::accesskit::Role;
-use egui_kittest::{
-    Harness,
-    kittest::{NodeT as _, Queryable as _},
-};
-use nima_console::console::ConsoleApp;
 use nima_machine::{config::RigConfig, teleop::Calibrations};
 use nima_recording::store::Store;
 use nima_tests::gravity::gravity;
 use nima_world::{Plan, scene::Scene};
 
-use crate::bench::{TIMEOUT, shown};
+use crate::bench::{Console, can_press, read, shown, shows};
 
 /// A wrist that nobody guides and no trocar touches, with its bias off by `step_n` along x.
 fn free_scene(step_n: f64) -> Scene {
@@ -27,7 +17,7 @@ fn free_scene(step_n: f64) -> Scene {
     scene
 }
 
-fn console(store: &Path, step_n: f64) -> Harness<'static, ConsoleApp> {
+fn console(store: &Path, step_n: f64) -> Console {
     let record = gravity();
     Store::open(store).save(&record).unwrap();
     let (rig, scene) = (RigConfig::load("simulated").unwrap(), free_scene(step_n));
@@ -37,39 +27,25 @@ fn console(store: &Path, step_n: f64) -> Harness<'static, ConsoleApp> {
     shown(&Plan { rig, scene, calibrations, engage: false }, [1600.0, 1000.0], move |app| app.with_store(&store))
 }
 
-fn until(console: &mut Harness<'_, ConsoleApp>, words: &str) {
-    let began = Instant::now();
-    while console.query_all_by_label_contains(words).next().is_none() {
-        assert!(began.elapsed() < TIMEOUT, "never came: {words}; {:?}", console.state().in_force().lines());
-        std::thread::sleep(Duration::from_millis(10));
-        console.step();
-    }
-}
-
-fn can_engage(console: &Harness<'_, ConsoleApp>) -> bool {
-    let engage = console.query_by_role_and_label(Role::Button, "Engage");
-    engage.is_some_and(|button| !button.accesskit_node().is_disabled())
-}
-
 #[test]
 fn a_bias_that_moved_warns_with_its_figure_and_blocks_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(folder.path(), 0.4);
-    until(&mut console, "do not touch the tool");
-    until(&mut console, "drifted by 0.4");
-    until(&mut console, "its bias has drifted since the calibration");
-    assert!(can_engage(&console));
+    read(&mut console, "do not touch the tool");
+    read(&mut console, "drifted by 0.4");
+    read(&mut console, "its bias has drifted since the calibration");
+    assert!(can_press(&console, "Engage"));
 }
 
 #[test]
 fn a_bias_that_did_not_move_is_fine_with_the_time_of_the_check() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(folder.path(), 0.0);
-    until(&mut console, "N without contact, good");
+    read(&mut console, "N without contact, good");
     let lines = console.state().in_force().lines();
     assert!(lines.iter().any(|line| line.starts_with("Bias, checked at ") && line.contains(" UTC: 0.0")), "{lines:?}");
-    assert!(console.query_all_by_label_contains("its bias has drifted").next().is_none());
-    assert!(can_engage(&console));
+    assert!(!shows(&console, "its bias has drifted"));
+    assert!(can_press(&console, "Engage"));
 }
 
 /// What `nima run` prints of the bias, with calibrations in this folder.

@@ -15,13 +15,14 @@ use egui_kittest::{
 };
 use nima_console::console::{ConsoleApp, roles::Role, settings::Kept};
 use nima_machine::{
-    config::{RigConfig, SchedulingClass},
+    config::SchedulingClass,
     messages::{Command, LoopState},
     runtime::{self, Assembly, Clock, Next, Operation, Passed, TapEnd, tap},
 };
-use nima_world::{Plan, scene::Scene};
+use nima_tests::plan;
+use nima_world::Plan;
 
-use crate::bench::{TIMEOUT, console_of, press, until};
+use crate::bench::{TIMEOUT, console_of, press, until, wait};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
@@ -33,12 +34,7 @@ pub(crate) fn record(path: &Path, scene: &str, seconds: &str) {
 
 /// Steps the window until the past on the screen is as it was.
 pub(crate) fn until_whole(harness: &mut Harness<'_, ConsoleApp>) {
-    let began = Instant::now();
-    while harness.state().past_ticks().is_none() {
-        assert!(began.elapsed() < TIMEOUT, "the session was never replayed");
-        thread::sleep(Duration::from_millis(5));
-        harness.step();
-    }
+    wait(harness, "the session is replayed", |harness| harness.state().past_ticks().is_some());
     harness.run_steps(3);
 }
 
@@ -105,13 +101,11 @@ fn nothing_in_the_past_reaches_the_machine_but_a_stop() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
     record(&path, "bimanual", "6");
-    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
-    let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: true };
+    let plan = plan("peg_transfer");
     let (handle, commands) = watched(&plan);
-    let mut harness = Harness::builder()
-        .with_size(SIZE)
-        .with_step_dt(1.0 / 30.0)
-        .build_eframe(move |cc| ConsoleApp::new(cc, handle, rig, scene).with_simulated_time(1.0).with_session(&path));
+    let mut harness = Harness::builder().with_size(SIZE).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
+        ConsoleApp::new(cc, handle, plan.rig, plan.scene).with_simulated_time(1.0).with_session(&path)
+    });
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
     until_whole(&mut harness);
     commands.lock().unwrap().clear();
@@ -174,12 +168,8 @@ fn the_past_looks_like_the_past_and_one_key_leaves_it() {
 
 /// Steps the window until this session is in the list and its row stands still.
 pub(crate) fn until_listed(harness: &mut Harness<'_, ConsoleApp>, name: &str) {
-    let began = Instant::now();
-    while harness.query_by_role_and_label(Kind::Button, &format!("Open {name}")).is_none() {
-        assert!(began.elapsed() < TIMEOUT, "{name} is not listed");
-        thread::sleep(Duration::from_millis(5));
-        harness.step();
-    }
+    let open = format!("Open {name}");
+    wait(harness, &open, |harness| harness.query_by_role_and_label(Kind::Button, &open).is_some());
     harness.run_steps(4);
 }
 
@@ -214,21 +204,13 @@ fn sessions_are_listed_kept_deleted_and_opened() {
     assert!(other.exists(), "it is asked once");
     press(&mut harness, "Delete it? 2.mcap");
     // The rows below move up.
-    let began = Instant::now();
-    while harness.query_by_role_and_label(Kind::Button, "Open 2.mcap").is_some() {
-        assert!(began.elapsed() < TIMEOUT, "it is still listed");
-        thread::sleep(Duration::from_millis(5));
-        harness.step();
-    }
+    wait(&mut harness, "it is not listed any more", |harness| {
+        harness.query_by_role_and_label(Kind::Button, "Open 2.mcap").is_none()
+    });
     harness.run_steps(4);
     press(&mut harness, "Report 1.mcap");
     let page = sessions.join("reports/1/report.html");
-    let began = Instant::now();
-    while !page.exists() {
-        assert!(began.elapsed() < TIMEOUT, "no report");
-        thread::sleep(Duration::from_millis(10));
-        harness.step();
-    }
+    wait(&mut harness, "a report", |_| page.exists());
     assert!(sessions.join("1.mcap.kept").exists() && !other.exists() && bad.exists());
     harness.run_steps(5);
     let delete = harness.get_by_role_and_label(Kind::Button, "Delete 1.mcap");

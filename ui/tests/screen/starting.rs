@@ -1,13 +1,13 @@
 //! The start page: another rig and another scene without leaving the program.
 
-use std::{path::Path, time::Instant};
+use std::path::Path;
 
 use egui::{Key, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use nima_console::console::{ConsoleApp, settings::Kept, start::Choice};
 use nima_machine::messages::LoopState;
 
-use crate::bench::{TIMEOUT, console_of, press, until};
+use crate::bench::{console_of, press, until, wait};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
@@ -23,13 +23,8 @@ fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
 }
 
 fn until_runs(harness: &mut Harness<'_, ConsoleApp>, rig: &str, scene: &str) {
-    let began = Instant::now();
     let wanted = Choice { rig: rig.to_owned(), scene: scene.to_owned() };
-    while *harness.state().running() != wanted {
-        assert!(began.elapsed() < TIMEOUT, "{:?} runs, not {wanted:?}", harness.state().running());
-        std::thread::sleep(std::time::Duration::from_millis(5));
-        harness.step();
-    }
+    wait(harness, &format!("{wanted:?} runs"), |harness| *harness.state().running() == wanted);
 }
 
 #[test]

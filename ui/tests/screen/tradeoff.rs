@@ -3,20 +3,17 @@ use std::{
     fmt::Write as _,
     path::{Path, PathBuf},
     process::{Command, Output},
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use egui::accesskit::Role;
-use egui_kittest::{
-    Harness,
-    kittest::{NodeT as _, Queryable as _},
-};
-use nima_console::console::{ConsoleApp, desk::Panel};
-use nima_machine::{config::RigConfig, messages::LoopState};
-use nima_world::{Plan, scene::Scene};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use nima_console::console::desk::Panel;
+use nima_machine::messages::LoopState;
+use nima_tests::plan;
 use serde_json::Value;
 
-use crate::bench::{TIMEOUT, shown};
+use crate::bench::{Console, comes, pick, shown, shows, until, wait};
 
 fn nima(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_nima")).args(["study", "tradeoff"]).args(arguments).output().unwrap()
@@ -112,47 +109,26 @@ fn bad_input_is_refused_in_one_line() {
 }
 
 /// In free motion, if nothing rests there, a mode with degrees is on the front (degree 1 costs little); in contact none is.
-fn console() -> Harness<'static, ConsoleApp> {
-    let mut rig = RigConfig::load("simulated").unwrap();
-    rig.identification.rest_n = 0.0;
-    let scene = Scene::load("free_motion").unwrap();
-    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+fn console() -> Console {
+    let mut plan = plan("free_motion");
+    plan.rig.identification.rest_n = 0.0;
     let mut harness = shown(&plan, [1600.0, 2400.0], |app| app);
-    until(&mut harness, "engaged", |app| app.tick().is_some_and(|tick| tick.state == LoopState::Engaged));
+    until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
     harness.run_steps(3);
     // Its tile lies behind others.
-    press(&mut harness, Panel::Tradeoff.title());
+    pick(&mut harness, Panel::Tradeoff.title());
     harness
-}
-
-fn until(harness: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&ConsoleApp) -> bool) {
-    let began = Instant::now();
-    while !good(harness.state()) {
-        assert!(began.elapsed() < TIMEOUT, "never: {what}");
-        std::thread::sleep(Duration::from_millis(5));
-        harness.step();
-    }
-}
-
-fn press(harness: &mut Harness<'_, ConsoleApp>, label: &str) {
-    harness.get_by_role_and_label(Role::Button, label).click_accesskit();
-    harness.step();
-    harness.step();
 }
 
 #[test]
 fn a_measurement_can_be_cancelled() {
     let mut harness = console();
     assert!(harness.query_by_role_and_label(Role::Button, "Cancel").is_none());
-    press(&mut harness, "Measure on this machine…");
+    pick(&mut harness, "Measure on this machine…");
     assert!(harness.query_by_label_contains("Trade-off measured:").is_some());
-    press(&mut harness, "Cancel");
-    let began = Instant::now();
-    while harness.query_by_label_contains("Cancelled").is_none() {
-        assert!(began.elapsed() < Duration::from_secs(10), "it did not stop");
-        std::thread::sleep(Duration::from_millis(5));
-        harness.step();
-    }
+    pick(&mut harness, "Cancel");
+    let stopped = comes(&mut harness, Duration::from_secs(10), |harness| shows(harness, "Cancelled"));
+    assert!(stopped, "it did not stop");
     assert!(harness.state().tradeoff().figures().is_none());
     harness.get_by_role_and_label(Role::Button, "Measure on this machine…");
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged, "the loop went on");
@@ -160,7 +136,7 @@ fn a_measurement_can_be_cancelled() {
 
 /// Clicks a point with a degree that the running loop cannot change to, and returns its degree. Which points the front has is
 /// a matter of measured times.
-fn choose_another(harness: &Harness<'_, ConsoleApp>) -> usize {
+fn choose_another(harness: &Console) -> usize {
     let points = harness.get_all_by_label_contains(", N = ");
     let another = |label: &str| !label.contains("N = 5, 300 ms");
     let point = points.into_iter().find(|node| node.accesskit_node().label().is_some_and(|l| another(&l))).unwrap();
@@ -172,8 +148,8 @@ fn choose_another(harness: &Harness<'_, ConsoleApp>) -> usize {
 #[test]
 fn a_measured_point_is_applied_and_a_restart_comes_back_idle() {
     let mut harness = console();
-    press(&mut harness, "Measure on this machine…");
-    until(&mut harness, "measured", |app| app.tradeoff().figures().is_some());
+    pick(&mut harness, "Measure on this machine…");
+    wait(&mut harness, "measured", |harness| harness.state().tradeoff().figures().is_some());
     harness.step();
     harness.check_accessibility();
     harness.get_by_label_contains("Trade-off plot:");
@@ -182,38 +158,31 @@ fn a_measured_point_is_applied_and_a_restart_comes_back_idle() {
         .get_by(|node| node.role() == Role::Button && node.label().is_some_and(|l| l.starts_with("Direct (DFR): ")))
         .click_accesskit();
     harness.step();
-    press(&mut harness, "Apply");
-    until(&mut harness, "direct", |app| app.tick().is_some_and(|tick| tick.mode == nima_core::impedance::Mode::Dfr));
+    pick(&mut harness, "Apply");
+    until(&mut harness, "direct", |tick| tick.mode == nima_core::impedance::Mode::Dfr);
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged);
     // Another degree or window: the loop is built anew and waits for the operator.
     let degree = choose_another(&harness);
     harness.step();
-    press(&mut harness, "Apply");
+    pick(&mut harness, "Apply");
     assert_eq!(harness.state().rig().identification.max_degree, degree);
-    until(&mut harness, "idle", |app| app.tick().is_some_and(|tick| tick.state == LoopState::Idle));
+    until(&mut harness, "idle", |tick| tick.state == LoopState::Idle);
     assert_ne!(harness.state().tick().unwrap().mode, nima_core::impedance::Mode::Dfr);
     harness.get_by_label_contains("is idle: press Engage");
-    let waiting = |harness: &Harness<'_, ConsoleApp>| {
-        harness.get_by_role_and_label(Role::Button, "Engage").accesskit_node().is_disabled()
-    };
-    while waiting(&harness) {
-        std::thread::sleep(Duration::from_millis(5));
-        harness.step();
-    }
-    press(&mut harness, "Engage");
-    until(&mut harness, "engaged", |app| app.tick().is_some_and(|tick| tick.state == LoopState::Engaged));
+    pick(&mut harness, "Engage");
+    until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
 }
 
 #[test]
 fn a_restart_is_no_way_out_of_a_stop() {
     let mut harness = console();
-    press(&mut harness, "Measure on this machine…");
-    until(&mut harness, "measured", |app| app.tradeoff().figures().is_some());
+    pick(&mut harness, "Measure on this machine…");
+    wait(&mut harness, "measured", |harness| harness.state().tradeoff().figures().is_some());
     harness.step();
     choose_another(&harness);
     harness.step();
-    press(&mut harness, "Stop");
-    until(&mut harness, "stopped", |app| app.tick().is_some_and(|tick| tick.state == LoopState::Stopped));
+    pick(&mut harness, "Stop");
+    until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped);
     harness.step();
     let apply = harness.get_by_role_and_label(Role::Button, "Apply");
     assert!(apply.accesskit_node().is_disabled());

@@ -5,12 +5,7 @@ use std::{
     time::{Duration, Instant, SystemTime},
 };
 
-use egui::accesskit::Role;
-use egui_kittest::{
-    Harness,
-    kittest::{NodeT as _, Queryable as _},
-};
-use nima_console::console::ConsoleApp;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nima_core::{
     calibration::{Verdict, correspondence::CorrespondenceRecord},
     frames::from_roll_pitch_yaw_deg,
@@ -27,39 +22,13 @@ use nima_world::{
     scene::{Flaw, Scene},
 };
 
-use crate::bench::{TIMEOUT, WIZARD_SPEED, shown_at};
+use crate::bench::{Console, WIZARD_SPEED, can_press, pick, read, shown_at, write_into};
 
-fn console(scene: Scene, store: &Path, calibrations: Calibrations) -> Harness<'static, ConsoleApp> {
+fn console(scene: Scene, store: &Path, calibrations: Calibrations) -> Console {
     let rig = RigConfig::load("simulated").unwrap();
     let plan = Plan { rig, scene, calibrations: [calibrations, Calibrations::default()], engage: false };
     let store = store.to_owned();
     shown_at(WIZARD_SPEED, &plan, [1600.0, 1500.0], move |app| app.with_store(&store))
-}
-
-/// Steps the window until it is as wanted. The window never settles, so `run` is of no use.
-fn until(harness: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&Harness<'_, ConsoleApp>) -> bool) {
-    let began = Instant::now();
-    while !good(harness) {
-        assert!(began.elapsed() < TIMEOUT, "never: {what}");
-        std::thread::sleep(Duration::from_millis(5));
-        harness.step();
-    }
-}
-
-fn read(harness: &mut Harness<'_, ConsoleApp>, words: &str) {
-    until(harness, words, |harness| harness.query_all_by_label_contains(words).next().is_some());
-}
-
-fn is_ready(harness: &Harness<'_, ConsoleApp>, label: &str) -> bool {
-    let button = harness.query_by_role_and_label(Role::Button, label);
-    button.is_some_and(|button| !button.accesskit_node().is_disabled())
-}
-
-fn press(harness: &mut Harness<'_, ConsoleApp>, label: &str) {
-    until(harness, label, |harness| is_ready(harness, label));
-    harness.get_by_role_and_label(Role::Button, label).click_accesskit();
-    harness.step();
-    harness.step();
 }
 
 fn saved(store: &Store) -> Option<CorrespondenceRecord> {
@@ -75,20 +44,20 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
     store.save(&gravity()).unwrap();
     let scene = Scene::load("correspondence").unwrap();
     let mut harness = console(Scene::load("peg_transfer").unwrap(), folder.path(), Calibrations::default());
-    press(&mut harness, "Calibrate correspondence…");
-    press(&mut harness, "Next");
+    pick(&mut harness, "Calibrate correspondence…");
+    pick(&mut harness, "Next");
     read(&mut harness, "Pushes: 2 recorded of 9");
-    press(&mut harness, "Remove the last push");
+    pick(&mut harness, "Remove the last push");
     read(&mut harness, "Pushes: 1 recorded of 9");
-    assert!(!is_ready(&harness, "Next"), "one push is no calibration");
+    assert!(!can_press(&harness, "Next"), "one push is no calibration");
     read(&mut harness, "Pushes: 9 recorded of 9");
-    press(&mut harness, "Next");
+    pick(&mut harness, "Next");
     read(&mut harness, "Euler cross-check");
     read(&mut harness, "held out: MAE");
     harness.check_accessibility();
-    press(&mut harness, "Next");
+    pick(&mut harness, "Next");
     assert!(saved(&store).is_none(), "nothing is kept without being asked");
-    press(&mut harness, "Save and use");
+    pick(&mut harness, "Save and use");
     read(&mut harness, "Saved and in use");
     let record = saved(&store).unwrap();
     assert_eq!((record.judgement.verdict, record.judgement.override_by.as_deref()), (Verdict::Accepted, None));
@@ -100,8 +69,8 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
     let lines = harness.state().in_force().lines();
     assert!(lines.iter().any(|line| line.starts_with("Correspondence: 2") && line.contains("pushes")), "{lines:?}");
     // Saving started the loop, and with it its clock, anew: the pushes go on where they were.
-    press(&mut harness, "Back");
-    press(&mut harness, "Back");
+    pick(&mut harness, "Back");
+    pick(&mut harness, "Back");
     read(&mut harness, &format!("Pushes: {} recorded of 9", record.pairs + 1));
 }
 
@@ -109,13 +78,13 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
 fn without_gravity_no_push_is_asked_for() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = console(Scene::load("peg_transfer").unwrap(), folder.path(), Calibrations::default());
-    press(&mut harness, "Calibrate correspondence…");
+    pick(&mut harness, "Calibrate correspondence…");
     read(&mut harness, "Gravity is not calibrated: calibrate it first");
     read(&mut harness, "Force under the tissue: fine");
     let from = Instant::now();
     while from.elapsed() < Duration::from_secs(1) {
         harness.step();
-        assert!(!is_ready(&harness, "Next"));
+        assert!(!can_press(&harness, "Next"));
     }
     assert_eq!(harness.state().tick().map(|tick| tick.prompt), Some(Prompt::Rest));
 }
@@ -130,22 +99,18 @@ fn pushes_along_one_line_are_kept_only_under_a_name() {
     scene.person.as_mut().unwrap().flaw = Some(Flaw::PushesOneLine);
     let mut harness =
         console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), ..Calibrations::default() });
-    press(&mut harness, "Calibrate correspondence…");
-    press(&mut harness, "Next");
-    press(&mut harness, "Next");
+    pick(&mut harness, "Calibrate correspondence…");
+    pick(&mut harness, "Next");
+    pick(&mut harness, "Next");
     read(&mut harness, "Insufficient motion");
     read(&mut harness, "along one line");
-    press(&mut harness, "Next");
+    pick(&mut harness, "Next");
     let button = "Save in spite of the verdict";
-    assert!(!is_ready(&harness, button) && harness.query_by_label("Save and use").is_none());
+    assert!(!can_press(&harness, button) && harness.query_by_label("Save and use").is_none());
     for (label, text) in [("Your name", "A. Technician"), ("Reason", "practice")] {
-        let field = harness.get_by_role_and_label(Role::TextInput, label);
-        field.focus();
-        field.type_text(text);
-        harness.step();
-        harness.step();
+        write_into(&mut harness, label, text);
     }
-    press(&mut harness, button);
+    pick(&mut harness, button);
     read(&mut harness, "Saved and in use");
     let record = saved(&store).unwrap();
     assert_eq!(record.judgement.verdict, Verdict::InsufficientMotion);
@@ -164,14 +129,14 @@ fn a_sensor_of_the_opposite_sign_is_named_and_the_switch_cures_it_without_new_pu
     scene.tissue_sensor.as_mut().unwrap().reads_tissue = true;
     let mut harness =
         console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), ..Calibrations::default() });
-    press(&mut harness, "Calibrate correspondence…");
-    press(&mut harness, "Next");
+    pick(&mut harness, "Calibrate correspondence…");
+    pick(&mut harness, "Next");
     read(&mut harness, "Pushes: 9 recorded of 9");
-    press(&mut harness, "Next");
+    pick(&mut harness, "Next");
     read(&mut harness, "opposite forces");
-    press(&mut harness, "Back");
-    press(&mut harness, "Back");
-    let switch = |harness: &mut Harness<'_, ConsoleApp>, words: &str| {
+    pick(&mut harness, "Back");
+    pick(&mut harness, "Back");
+    let switch = |harness: &mut Console, words: &str| {
         harness.query_all_by_label_contains(words).next().unwrap().click();
         harness.step();
         harness.step();
@@ -179,15 +144,15 @@ fn a_sensor_of_the_opposite_sign_is_named_and_the_switch_cures_it_without_new_pu
     let tracker = harness.query_all_by_label_contains("No tracker").next().unwrap();
     assert!(tracker.accesskit_node().is_disabled(), "what is in the pushes cannot be changed");
     switch(&mut harness, "reports the force on the tissue");
-    press(&mut harness, "Next");
-    press(&mut harness, "Next");
+    pick(&mut harness, "Next");
+    pick(&mut harness, "Next");
     read(&mut harness, "Accepted");
-    press(&mut harness, "Next");
-    press(&mut harness, "Save and use");
+    pick(&mut harness, "Next");
+    pick(&mut harness, "Save and use");
     read(&mut harness, "Saved and in use");
     let record = saved(&store).unwrap();
     assert!(record.flip_s2 && record.judgement.verdict == Verdict::Accepted, "{}", record.judgement.reason);
-    press(&mut harness, "Start over");
+    pick(&mut harness, "Start over");
     switch(&mut harness, "No tracker");
     read(&mut harness, "Arm and tracker (not used): fine");
 }

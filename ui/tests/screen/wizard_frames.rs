@@ -1,13 +1,9 @@
 //! The frame wizards, walked by accessible names over the wires of an emulated rig whose rig file is wrong.
 #![cfg(target_os = "linux")]
 
-use std::{path::Path, time::Instant};
+use std::path::Path;
 
-use egui::accesskit::Role;
-use egui_kittest::{
-    Harness,
-    kittest::{NodeT as _, Queryable as _},
-};
+use egui_kittest::Harness;
 use nima_console::console::{ConsoleApp, reader::Reader, settings::Kept};
 use nima_machine::{
     config::{RigConfig, RigFile},
@@ -17,9 +13,7 @@ use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{elsewhere, started};
 use nima_world::{Plan, emulated::EmulatedRig, scene::Scene, start};
 
-use crate::bench::{TIMEOUT, console_of};
-
-type Console = Harness<'static, ConsoleApp>;
+use crate::bench::{Console, TIMEOUT, can_press, comes, console_of, pick, shows, texts};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
@@ -75,36 +69,17 @@ fn console(folder: &Path) -> (Console, EmulatedRig, String) {
     (console, emulators, name)
 }
 
-fn texts(console: &Console) -> Vec<String> {
-    console.query_all_by_role(Role::Label).filter_map(|node| node.accesskit_node().value()).collect()
-}
-
-/// Steps the window until `good`; a machine that is too busy for that is not judged.
-fn until(console: &mut Console, what: &str, good: impl Fn(&Console) -> bool) {
-    let began = Instant::now();
-    while !good(console) {
-        if began.elapsed() > TIMEOUT {
-            println!("never came: {what}; there is: {:?}", texts(console));
-            too_busy();
-        }
-        std::thread::sleep(std::time::Duration::from_millis(15));
-        console.step();
+/// Steps the window until it is as wanted; a machine that is too busy for that is not judged.
+fn until(console: &mut Console, what: &str, wanted: impl Fn(&Console) -> bool) {
+    if !comes(console, TIMEOUT, wanted) {
+        println!("never: {what}; there is: {:?}", texts(console));
+        too_busy();
     }
-}
-
-fn shows(console: &Console, words: &str) -> bool {
-    console.query_all_by_label_contains(words).next().is_some()
-}
-
-fn can_press(console: &Console, label: &str) -> bool {
-    console.query_by_role_and_label(Role::Button, label).is_some_and(|button| !button.accesskit_node().is_disabled())
 }
 
 fn press(console: &mut Console, label: &str) {
     until(console, label, |console| can_press(console, label));
-    console.get_by_role_and_label(Role::Button, label).click_accesskit();
-    console.step();
-    console.step();
+    pick(console, label);
 }
 
 fn shaft_m(rig: &str) -> f64 {
@@ -148,8 +123,11 @@ fn a_technician_finds_the_tip_sees_the_change_saves_it_and_undoes_it() {
 
 #[test]
 fn a_rig_without_an_arm_of_joints_says_what_to_do() {
-    use nima_console::console::{Options, wizards::Which};
-    for which in Which::ALL.into_iter().filter(|which| which.frames().is_some()) {
+    use nima_console::console::{
+        Options,
+        wizards::{Kind, Which},
+    };
+    for which in Kind::ALL.map(Which::Frame) {
         let options = Options { wizard: Some(which), ..Options::default() };
         let mut console = console_of("peg_transfer", SIZE, move |app| app.with_options(options));
         console.run_steps(4);

@@ -6,20 +6,14 @@ use std::{
 };
 
 use egui::accesskit::Role;
-use egui_kittest::{
-    Harness,
-    kittest::{NodeT as _, Queryable as _},
-};
-use nima_console::console::ConsoleApp;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nima_machine::{config::RigConfig, messages::ForceSource, rig::Prompt};
 use nima_world::{
     Plan,
     scene::{Flaw, Scene},
 };
 
-use crate::bench::{TIMEOUT, WIZARD_SPEED, shown_at};
-
-type Console = Harness<'static, ConsoleApp>;
+use crate::bench::{Console, TIMEOUT, WIZARD_SPEED, can_press, pick, shown_at, shows, texts, wait, write_into};
 
 fn console(scene: Scene, store: &Path) -> Console {
     let rig = RigConfig::load("simulated").unwrap();
@@ -32,31 +26,6 @@ fn gravity_scene(flaw: Option<Flaw>) -> Scene {
     let mut scene = Scene::load("gravity").unwrap();
     scene.person.as_mut().unwrap().flaw = flaw;
     scene
-}
-
-/// Steps the window until `good`; fails after a while.
-fn until(console: &mut Console, what: &str, good: impl Fn(&Console) -> bool) {
-    let began = Instant::now();
-    while !good(console) {
-        assert!(began.elapsed() < TIMEOUT, "never came: {what}; there is: {:?}", texts(console));
-        std::thread::sleep(Duration::from_millis(15));
-        console.step();
-    }
-}
-
-fn texts(console: &Console) -> Vec<String> {
-    console.query_all_by_role(Role::Label).filter_map(|node| node.accesskit_node().value()).collect()
-}
-
-fn can_press(console: &Console, label: &str) -> bool {
-    console.query_by_role_and_label(Role::Button, label).is_some_and(|button| !button.accesskit_node().is_disabled())
-}
-
-fn press(console: &mut Console, label: &str) {
-    until(console, label, |console| can_press(console, label));
-    console.get_by_role_and_label(Role::Button, label).click_accesskit();
-    console.step();
-    console.step();
 }
 
 /// Goes on from the checks to the poses. On a busy computer a check may fail again between the look at the button and the
@@ -74,18 +43,6 @@ fn leave_the_checks(console: &mut Console) {
     }
 }
 
-fn shows(console: &Console, words: &str) -> bool {
-    console.query_all_by_label_contains(words).next().is_some()
-}
-
-fn write_into(console: &mut Console, label: &str, text: &str) {
-    console.get_by_role_and_label(Role::TextInput, label).focus();
-    console.step();
-    console.get_by_role_and_label(Role::TextInput, label).type_text(text);
-    console.step();
-    console.step();
-}
-
 fn files(folder: &Path) -> usize {
     std::fs::read_dir(folder).map_or(0, Iterator::count)
 }
@@ -94,31 +51,31 @@ fn files(folder: &Path) -> usize {
 fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(Scene::load("palpation").unwrap(), folder.path());
-    until(&mut console, "an unknown force", |c| shows(c, "the wrist sensor is not calibrated"));
-    press(&mut console, "Calibrate gravity…");
-    until(&mut console, "the first step", |c| shows(c, "let go of it: nothing may touch the tool"));
+    wait(&mut console, "an unknown force", |c| shows(c, "the wrist sensor is not calibrated"));
+    pick(&mut console, "Calibrate gravity…");
+    wait(&mut console, "the first step", |c| shows(c, "let go of it: nothing may touch the tool"));
     assert!(!can_press(&console, "Engage"), "nobody engages an arm that is being guided by hand");
     leave_the_checks(&mut console);
-    until(&mut console, "some poses", |c| shows(c, "4 of 12 recorded"));
+    wait(&mut console, "some poses", |c| shows(c, "4 of 12 recorded"));
     // Back and closing lose nothing that was good.
-    press(&mut console, "Back");
-    press(&mut console, "Back to the monitor");
-    until(&mut console, "the monitor", |c| shows(c, "Calibrate gravity…") && c.state().tick().is_some());
-    press(&mut console, "Calibrate gravity…");
+    pick(&mut console, "Back");
+    pick(&mut console, "Back to the monitor");
+    wait(&mut console, "the monitor", |c| shows(c, "Calibrate gravity…") && c.state().tick().is_some());
+    pick(&mut console, "Calibrate gravity…");
     leave_the_checks(&mut console);
     assert!(!shows(&console, "0 of 12 recorded"), "the poses were lost");
-    until(&mut console, "all poses", |c| shows(c, "12 of 12 recorded"));
-    press(&mut console, "Next");
-    until(&mut console, "a verdict", |c| shows(c, "Accepted"));
+    wait(&mut console, "all poses", |c| shows(c, "12 of 12 recorded"));
+    pick(&mut console, "Next");
+    wait(&mut console, "a verdict", |c| shows(c, "Accepted"));
     assert!(shows(&console, "Paper") && shows(&console, "Physical"), "the models side by side");
-    press(&mut console, "Next");
-    until(&mut console, "the proof", |c| shows(c, "Passed: free motion reads near zero"));
-    press(&mut console, "Next");
-    press(&mut console, "Save and use");
-    until(&mut console, "saved", |c| shows(c, "Saved and in use"));
+    pick(&mut console, "Next");
+    wait(&mut console, "the proof", |c| shows(c, "Passed: free motion reads near zero"));
+    pick(&mut console, "Next");
+    pick(&mut console, "Save and use");
+    wait(&mut console, "saved", |c| shows(c, "Saved and in use"));
     assert_eq!(files(folder.path()), 1);
-    press(&mut console, "Back to the monitor");
-    until(&mut console, "a known force", |c| {
+    pick(&mut console, "Back to the monitor");
+    wait(&mut console, "a known force", |c| {
         c.state().tick().is_some_and(|tick| tick.force.source == ForceSource::Wrist && tick.t_s > 0.1)
     });
     assert!(shows(&console, "held-out error"), "what is in force is on the monitor");
@@ -128,9 +85,9 @@ fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
 fn a_hand_on_the_tool_is_told_and_cannot_be_saved_without_a_name() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(gravity_scene(Some(Flaw::Touches)), folder.path());
-    press(&mut console, "Calibrate gravity…");
+    pick(&mut console, "Calibrate gravity…");
     leave_the_checks(&mut console);
-    until(&mut console, "the touch", |c| shows(c, "something touches it") || shows(c, "something touches the tool"));
+    wait(&mut console, "the touch", |c| shows(c, "something touches it") || shows(c, "something touches the tool"));
     assert_eq!(files(folder.path()), 0);
 }
 
@@ -138,11 +95,11 @@ fn a_hand_on_the_tool_is_told_and_cannot_be_saved_without_a_name() {
 fn a_trembling_tool_never_gives_a_pose() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(gravity_scene(Some(Flaw::Trembles)), folder.path());
-    press(&mut console, "Calibrate gravity…");
+    pick(&mut console, "Calibrate gravity…");
     leave_the_checks(&mut console);
-    until(&mut console, "the trembling", |c| shows(c, "hold the tool still"));
+    wait(&mut console, "the trembling", |c| shows(c, "hold the tool still"));
     let began = Instant::now();
-    until(&mut console, "five seconds", |_| began.elapsed() > Duration::from_secs(5));
+    wait(&mut console, "five seconds", |_| began.elapsed() > Duration::from_secs(5));
     assert!(shows(&console, "0 of 12 recorded"));
     assert!(!can_press(&console, "Next"), "too few poses lead nowhere");
 }
@@ -153,15 +110,15 @@ fn a_wrong_sign_is_named_and_an_override_is_written_into_the_file() {
     let mut scene = gravity_scene(None);
     scene.wrist.as_mut().unwrap().imu.as_mut().unwrap().reads_gravity = true;
     let mut console = console(scene, folder.path());
-    press(&mut console, "Calibrate gravity…");
+    pick(&mut console, "Calibrate gravity…");
     leave_the_checks(&mut console);
-    until(&mut console, "enough poses", |c| shows(c, "8 of 12 recorded"));
-    press(&mut console, "Next");
-    until(&mut console, "the verdict", |c| shows(c, "Poor data") && shows(c, "sign"));
+    wait(&mut console, "enough poses", |c| shows(c, "8 of 12 recorded"));
+    pick(&mut console, "Next");
+    wait(&mut console, "the verdict", |c| shows(c, "Poor data") && shows(c, "sign"));
     // The switch cures it without a new pose; and back again.
     for verdict in ["Accepted", "Poor data"] {
-        press(&mut console, "Back");
-        press(&mut console, "Back");
+        pick(&mut console, "Back");
+        pick(&mut console, "Back");
         let by_arm = console.query_all_by_label_contains("Take the orientation from the arm").next().unwrap();
         assert!(by_arm.accesskit_node().is_disabled(), "what is in the poses cannot be changed");
         console.query_all_by_label_contains("points down at rest").next().unwrap().click();
@@ -170,22 +127,22 @@ fn a_wrong_sign_is_named_and_an_override_is_written_into_the_file() {
         console.step();
         assert!(!can_press(&console, "Next"));
         leave_the_checks(&mut console);
-        press(&mut console, "Next");
-        until(&mut console, verdict, |c| shows(c, verdict));
+        pick(&mut console, "Next");
+        wait(&mut console, verdict, |c| shows(c, verdict));
     }
-    press(&mut console, "Next");
-    until(&mut console, "a reading", |c| shows(c, "Not passed yet"));
-    press(&mut console, "Next");
-    until(&mut console, "the last step", |c| shows(c, "not proven"));
+    pick(&mut console, "Next");
+    wait(&mut console, "a reading", |c| shows(c, "Not passed yet"));
+    pick(&mut console, "Next");
+    wait(&mut console, "the last step", |c| shows(c, "not proven"));
     assert!(!can_press(&console, "Save in spite of the verdict"), "a name and a reason come first");
     write_into(&mut console, "Your name", "Ada Lovelace");
     write_into(&mut console, "Reason", "bench test");
-    press(&mut console, "Save in spite of the verdict");
-    until(&mut console, "saved", |c| shows(c, "Saved and in use"));
+    pick(&mut console, "Save in spite of the verdict");
+    wait(&mut console, "saved", |c| shows(c, "Saved and in use"));
     let path = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap().path();
     let text = std::fs::read_to_string(path).unwrap();
     assert!(text.contains("Ada Lovelace") && text.contains("bench test"), "{text}");
-    until(&mut console, "who kept it", |c| shows(c, "NOT PROVEN, kept by Ada Lovelace"));
+    wait(&mut console, "who kept it", |c| shows(c, "NOT PROVEN, kept by Ada Lovelace"));
 }
 
 #[test]
@@ -194,9 +151,9 @@ fn a_noisy_sensor_is_told_with_its_figure_and_the_way_on_stays_shut() {
     let mut scene = gravity_scene(None);
     scene.wrist.as_mut().unwrap().force_noise_n = 0.3;
     let mut console = console(scene, folder.path());
-    press(&mut console, "Calibrate gravity…");
-    until(&mut console, "the noise", |c| shows(c, "Force noise: 0.3") && shows(c, "check shield and earth"));
-    until(&mut console, "the good lines", |c| shows(c, "Rate: ") && shows(c, "of the loop's 1000 Hz, fine"));
+    pick(&mut console, "Calibrate gravity…");
+    wait(&mut console, "the noise", |c| shows(c, "Force noise: 0.3") && shows(c, "check shield and earth"));
+    wait(&mut console, "the good lines", |c| shows(c, "Rate: ") && shows(c, "of the loop's 1000 Hz, fine"));
     assert!(!can_press(&console, "Next"));
 }
 
@@ -206,30 +163,30 @@ fn a_sensor_without_an_accelerometer_uses_the_orientation_of_the_arm() {
     let mut scene = gravity_scene(None);
     scene.wrist.as_mut().unwrap().imu = None;
     let mut console = console(scene, folder.path());
-    press(&mut console, "Calibrate gravity…");
-    until(&mut console, "the cure", |c| shows(c, "take the orientation from the arm"));
+    pick(&mut console, "Calibrate gravity…");
+    wait(&mut console, "the cure", |c| shows(c, "take the orientation from the arm"));
     assert!(!can_press(&console, "Next"));
     console.query_all_by_label_contains("Take the orientation from the arm, not").next().unwrap().click();
     console.step();
     console.step();
     leave_the_checks(&mut console);
-    until(&mut console, "a pose by the arm", |c| shows(c, "1 of 12 recorded"));
+    wait(&mut console, "a pose by the arm", |c| shows(c, "1 of 12 recorded"));
 }
 
 #[test]
 fn the_left_arm_is_calibrated_by_itself_and_keeps_nothing_of_the_right_one() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(gravity_scene(None).with_left_hand(), folder.path());
-    until(&mut console, "a tick", |c| c.state().tick().is_some());
-    press(&mut console, "Left arm");
-    press(&mut console, "Calibrate gravity…");
-    until(&mut console, "the left sensor", |c| shows(c, "Left: Sensor SIM-S1-0002"));
+    wait(&mut console, "a tick", |c| c.state().tick().is_some());
+    pick(&mut console, "Left arm");
+    pick(&mut console, "Calibrate gravity…");
+    wait(&mut console, "the left sensor", |c| shows(c, "Left: Sensor SIM-S1-0002"));
     leave_the_checks(&mut console);
-    until(&mut console, "a pose of the left arm", |c| shows(c, "1 of 12 recorded"));
+    wait(&mut console, "a pose of the left arm", |c| shows(c, "1 of 12 recorded"));
     assert_eq!(console.state().tick().map(|tick| tick.prompt), Some(Prompt::Rest), "nobody asks at the right arm");
-    press(&mut console, "Right arm");
-    until(&mut console, "the first step anew", |c| shows(c, "let go of it: nothing may touch the tool"));
+    pick(&mut console, "Right arm");
+    wait(&mut console, "the first step anew", |c| shows(c, "let go of it: nothing may touch the tool"));
     leave_the_checks(&mut console);
     assert!(shows(&console, "0 of 12 recorded"), "poses of the left arm");
-    until(&mut console, "a pose of the right arm", |c| shows(c, "1 of 12 recorded"));
+    wait(&mut console, "a pose of the right arm", |c| shows(c, "1 of 12 recorded"));
 }

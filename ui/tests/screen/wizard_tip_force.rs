@@ -2,8 +2,7 @@
 
 use std::{
     path::{Path, PathBuf},
-    thread,
-    time::{Duration, Instant, SystemTime},
+    time::{Instant, SystemTime},
 };
 
 use egui::{ScrollArea, accesskit::Role};
@@ -34,7 +33,7 @@ use nima_world::{
 };
 
 use crate::{
-    bench::{TIMEOUT, shown},
+    bench::{TIMEOUT, can_press, pick, read, shown, shows, texts, wait, write_into},
     virtual_rig::{VirtualRig, records},
 };
 
@@ -108,7 +107,7 @@ impl Console {
     }
 
     fn shows(&self, words: &str) -> bool {
-        self.window.query_all_by_label_contains(words).next().is_some()
+        shows(&self.window, words)
     }
 
     fn read(&mut self, words: &str) {
@@ -120,7 +119,7 @@ impl Console {
     }
 
     fn is_ready(&self, label: &str) -> bool {
-        is_ready(&self.window, label)
+        can_press(&self.window, label)
     }
 
     fn press(&mut self, label: &str) {
@@ -155,17 +154,6 @@ impl Console {
     }
 }
 
-fn is_ready<A>(window: &Harness<'_, A>, label: &str) -> bool {
-    let button = window.query_by_role_and_label(Role::Button, label);
-    button.is_some_and(|button| !button.accesskit_node().is_disabled())
-}
-
-/// All that can be read, for the words of a failure.
-fn texts<A>(window: &Harness<'_, A>) -> Vec<String> {
-    let words = |node: egui_kittest::Node<'_>| node.accesskit_node().value().or_else(|| node.accesskit_node().label());
-    window.query_all_by_label_contains("").filter_map(words).collect()
-}
-
 fn rows_of(folder: &Path, kind: &str) -> Option<usize> {
     let path = Store::open(folder).path_of(kind, &records().0.head.sensor, "csv").unwrap();
     path.exists().then(|| DataSet::read(&[path], &Selection::default()).unwrap().rows())
@@ -182,22 +170,6 @@ fn real_console(wizards: Wizards, folder: &Path) -> Harness<'static, ConsoleApp>
     let plan = Plan { rig, scene, calibrations, engage: false };
     let folder = folder.to_owned();
     shown(&plan, [1600.0, 1500.0], move |app| app.with_store(&folder).with_wizards(wizards))
-}
-
-fn until(window: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&Harness<'_, ConsoleApp>) -> bool) {
-    let began = Instant::now();
-    while !good(window) {
-        assert!(began.elapsed() < TIMEOUT, "never: {what}; there is: {:?}", texts(window));
-        thread::sleep(Duration::from_millis(5));
-        window.step();
-    }
-}
-
-fn press(window: &mut Harness<'_, ConsoleApp>, label: &str) {
-    until(window, label, |window| is_ready(window, label));
-    window.get_by_role_and_label(Role::Button, label).click_accesskit();
-    window.step();
-    window.step();
 }
 
 #[test]
@@ -231,14 +203,14 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     assert!(!model_path(folder.path()).exists(), "nothing is kept without being asked");
     let wizards = std::mem::take(&mut console.window.state_mut().wizards);
     let mut real = real_console(wizards, folder.path());
-    press(&mut real, "Save and use");
-    until(&mut real, "saved", |window| window.query_all_by_label_contains("Saved and in use").next().is_some());
+    pick(&mut real, "Save and use");
+    read(&mut real, "Saved and in use");
     let lines = real.state().in_force().lines();
     assert!(
         lines.iter().any(|line| line.starts_with("Tip force: 2") && line.contains("error on new data")),
         "{lines:?}"
     );
-    until(&mut real, "the network at work", |window| {
+    wait(&mut real, "the network at work", |window| {
         window.state().tick().is_some_and(|tick| tick.force.tip_force.is_some())
     });
     drop(real);
@@ -289,15 +261,15 @@ fn without_a_correspondence_nothing_can_be_recorded() {
     let folder = tempfile::tempdir().unwrap();
     Store::open(folder.path()).save(&records().0).unwrap();
     let mut real = real_console(Wizards::default(), folder.path());
-    press(&mut real, "Calibrate tip force…");
-    until(&mut real, "the reason", |window| {
+    pick(&mut real, "Calibrate tip force…");
+    wait(&mut real, "the reason", |window| {
         window.query_by_label_contains("The correspondence is not known: calibrate it first").is_some()
             && window.query_by_label_contains("Correspondence: not known; press").is_some()
             && window.query_by_label_contains("Gravity: fine").is_some()
     });
     for _ in 0..20 {
         real.step();
-        assert!(!is_ready(&real, "Next"));
+        assert!(!can_press(&real, "Next"));
     }
 }
 
@@ -340,11 +312,7 @@ fn sensors_that_do_not_agree_are_refused_and_an_override_is_written_into_the_fil
     console.press("Next");
     assert!(!console.is_ready("Save in spite of the verdict"), "a name and a reason come first");
     for (label, text) in [("Your name", "A. Technician"), ("Reason", "practice")] {
-        let field = console.window.get_by_role_and_label(Role::TextInput, label);
-        field.focus();
-        field.type_text(text);
-        console.step();
-        console.step();
+        write_into(&mut console.window, label, text);
     }
     console.press("Save in spite of the verdict");
     let saving = console.window.state_mut().saving.take().unwrap();

@@ -18,7 +18,7 @@ use nima_machine::{
 };
 use nima_session::STATES;
 
-use super::{commands::operation, events::event};
+use super::{commands::operation, events::event, refusals::REFUSALS};
 
 /// The lines of the log that are free of names.
 pub(crate) struct Lines(BTreeSet<String>);
@@ -118,23 +118,11 @@ const fn implausible() -> [Implausible; 8] {
 fn refusals() -> impl Iterator<Item = Refusal> {
     let exchanged =
         [Exchange::Handles, Exchange::Arms, Exchange::Sensors, Exchange::Servos, Exchange::Markers, Exchange::Trocars];
-    let others = [
-        Refusal::ForceUnknown,
-        Refusal::EndoscopeUnseen,
-        Refusal::DrivesOff,
-        Refusal::Moving,
-        Refusal::HandAbsent,
-        Refusal::ClutchPressed,
-        Refusal::NotChecked,
-        Refusal::OutOfRange,
-        Refusal::SimulatedOnly,
-        Refusal::NoSuchArm,
-    ];
     let waiting = [Awaited::Servos, Awaited::Markers].map(Obstacle::Waiting);
     let obstacles = exchanged.map(Obstacle::Exchanged).into_iter().chain(waiting).map(Refusal::Obstacle);
     let states = STATES.map(|state: LoopState| Refusal::State(state));
     let present = faults().map(Refusal::StillPresent).chain(implausible().map(Refusal::Implausible));
-    others.into_iter().chain(states).chain(obstacles).chain(present)
+    REFUSALS.into_iter().chain(states).chain(obstacles).chain(present)
 }
 
 fn commands() -> impl Iterator<Item = Command> {
@@ -191,6 +179,7 @@ mod tests {
             "command: gain 0.35",
             "command: lead the handle to 10, 0, -2 mm",
             "right arm: refused: engage the right arm: nobody holds the handle",
+            "right arm: refused: delay of the link 100 ms: the delay is that of the network, which is measured and not set",
             "the loop was silent for 612 ms",
             "right handle (Force Dimension): connected",
             "device 3: it sends no data",

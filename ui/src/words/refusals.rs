@@ -76,36 +76,43 @@ fn lower(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
 
+/// The refusals whose words depend on nothing else.
+pub(super) const REFUSALS: [Refusal; 11] = [
+    Refusal::ForceUnknown,
+    Refusal::EndoscopeUnseen,
+    Refusal::DrivesOff,
+    Refusal::Moving,
+    Refusal::HandAbsent,
+    Refusal::ClutchPressed,
+    Refusal::NotChecked,
+    Refusal::OutOfRange,
+    Refusal::DelayIsMeasured,
+    Refusal::SimulatedOnly,
+    Refusal::NoSuchArm,
+];
+
 #[cfg(test)]
 mod tests {
-    use nima_machine::messages::Fault;
+    use nima_machine::{messages::Fault, rig::Exchange};
 
     use super::*;
 
     #[test]
     fn no_two_refusals_say_the_same() {
         let fault = Fault::SourceSilent;
-        let all = [
+        let more = [
             Refusal::State(LoopState::Stopped),
             Refusal::State(LoopState::Faulted(fault)),
             Refusal::State(LoopState::Disconnected),
             Refusal::State(LoopState::Engaged),
             Refusal::StillPresent(fault),
-            Refusal::ForceUnknown,
-            Refusal::Obstacle(Obstacle::Exchanged(nima_machine::rig::Exchange::Arms)),
-            Refusal::EndoscopeUnseen,
-            Refusal::DrivesOff,
-            Refusal::Moving,
-            Refusal::HandAbsent,
-            Refusal::ClutchPressed,
-            Refusal::NotChecked,
-            Refusal::OutOfRange,
-            Refusal::NoSuchArm,
+            Refusal::Obstacle(Obstacle::Exchanged(Exchange::Arms)),
         ];
-        let mut told: Vec<_> = all.iter().map(|why| (refused_because(*why), cure_of_refusal(*why))).collect();
+        let all = REFUSALS.into_iter().chain(more);
+        let mut told: Vec<_> = all.map(|why| (refused_because(why), cure_of_refusal(why))).collect();
         told.sort();
         told.dedup();
-        assert_eq!(told.len(), all.len(), "{told:?}");
+        assert_eq!(told.len(), REFUSALS.len() + more.len(), "{told:?}");
         assert!(told.iter().all(|(cause, cure)| !cause.ends_with('.') && !cure.ends_with('.')), "{told:?}");
     }
 }

@@ -24,6 +24,7 @@ use nima_recording::{
 
 use super::in_use::InUse;
 use crate::console::{
+    chain,
     overview::{Kept, Line, found_since},
     text,
     wizards::{Saving, Wanted, Which},
@@ -224,7 +225,7 @@ impl OfSide {
             Saving::Gravity(record) => kept(store, *record, &mut self.gravity)?,
             Saving::Correspondence(record) => kept(store, *record, &mut self.correspondence)?,
             Saving::TipForce(model) => {
-                let path = keep_model(&model, store).map_err(|error| in_one_line(&error))?;
+                let path = keep_model(&model, store).map_err(|error| chain(&error))?;
                 self.tip_force = Some(Loaded { record: *model, age: Age::Fresh, path: path.clone() });
                 path
             }
@@ -271,14 +272,14 @@ fn usable<R>(
 ) -> Option<R> {
     loaded.unwrap_or_else(|error| {
         unusable.retain(|(known, _)| *known != what);
-        unusable.push((what, in_one_line(&error)));
+        unusable.push((what, chain(&error)));
         None
     })
 }
 
 /// Saves a record and puts it in force; returns its path.
 fn kept<R: Record>(store: &Store, record: R, in_force: &mut Option<Loaded<R>>) -> Result<PathBuf, String> {
-    let path = store.save(&record).map_err(|error| in_one_line(&error))?;
+    let path = store.save(&record).map_err(|error| chain(&error))?;
     *in_force = Some(Loaded { record, age: Age::Fresh, path: path.clone() });
     Ok(path)
 }
@@ -330,14 +331,4 @@ fn remarks(age: Age, override_by: Option<&str>) -> String {
     };
     let overridden = override_by.map_or_else(String::new, text::calibrations::not_proven);
     age + &overridden
-}
-
-fn in_one_line(error: &dyn std::error::Error) -> String {
-    let mut words = error.to_string();
-    let mut source = error.source();
-    while let Some(cause) = source {
-        words = format!("{words}: {cause}");
-        source = cause.source();
-    }
-    words
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nima_world::emulated::{Screen, Task};
 
-use super::wizards::Which;
+use super::wizards::{Kind, Which};
 
 /// Takes what the screen shows. Clones are the same reader.
 #[derive(Clone)]
@@ -36,13 +36,13 @@ pub const fn task_of(open: Option<Which>) -> Task {
     match open {
         None => Task::Surgery,
         // Both take poses in all directions of gravity.
-        Some(Which::Gravity | Which::Mount) => Task::Gravity,
+        Some(Which::Gravity | Which::Frame(Kind::Mount)) => Task::Gravity,
         Some(Which::Correspondence) => Task::Correspondence,
         Some(Which::TipForce) => Task::TipForce,
-        Some(Which::Tip) => Task::Tip,
-        Some(Which::HandEye) => Task::HandEye,
-        Some(Which::Table) => Task::Table,
-        Some(Which::View) => Task::View,
-        Some(Which::Trocar) => Task::Trocar,
+        Some(Which::Frame(Kind::Tip)) => Task::Tip,
+        Some(Which::Frame(Kind::HandEye)) => Task::HandEye,
+        Some(Which::Frame(Kind::Table)) => Task::Table,
+        Some(Which::Frame(Kind::View)) => Task::View,
+        Some(Which::Frame(Kind::Trocar)) => Task::Trocar,
     }
 }

@@ -59,7 +59,7 @@ pub(in crate::command) struct Arguments {
 impl Arguments {
     /// Those of the force, unless another was asked for: the frames of an emulated rig are those of its file.
     fn does(&self, which: Which) -> bool {
-        self.only.map_or(self.frames || which.frames().is_none(), |only| only == which)
+        self.only.map_or(self.frames || !matches!(which, Which::Frame(_)), |only| only == which)
     }
 }
 

@@ -95,7 +95,7 @@ pub(crate) fn following(arms: &[OfArm], after: Option<Wanted>) -> Option<Wanted>
 
 fn frames(store: &Store, wrist: &WristId, side: Side, last: Option<&ReadyRecord>, file: Option<&RigFile>) -> Vec<Line> {
     let of_wrist = [wrist.serial_number.as_str(), wrist.tool.as_str()];
-    let line = |which: Which, kind: Kind, by_handle: bool| {
+    let line = |kind: Kind, by_handle: bool| {
         let found = frame_kept(store, kind, by_handle, of_wrist);
         let since = match &found {
             Ok(Some(kept)) if kind == Kind::Trocar => {
@@ -105,15 +105,13 @@ fn frames(store: &Store, wrist: &WristId, side: Side, last: Option<&ReadyRecord>
             _ => String::new(),
         };
         let kept = found.map_err(|error| chain(&error)).map(|kept| kept.map(Kept::from));
-        Line { wanted: Wanted { side, which, by_handle }, kept, since }
+        Line { wanted: Wanted { side, which: Which::Frame(kind), by_handle }, kept, since }
     };
-    let frames = Which::ALL.into_iter().filter_map(|which| Some((which, which.frames()?)));
-    frames
-        .flat_map(|(which, kind)| {
-            let handle = (kind == Kind::View).then(|| line(which, kind, true));
-            std::iter::once(line(which, kind, false)).chain(handle)
-        })
-        .collect()
+    let lines = Kind::ALL.into_iter().flat_map(|kind| {
+        let handle = (kind == Kind::View).then(|| line(kind, true));
+        std::iter::once(line(kind, false)).chain(handle)
+    });
+    lines.collect()
 }
 
 impl From<FrameKept> for Kept {

@@ -8,7 +8,7 @@ use nima_world::scene::Scene;
 
 use super::{InForce, Line, OfArm, following, found_since, made_words, overview, verdict_words};
 use crate::{
-    console::wizards::{Wanted, Which},
+    console::wizards::{Kind, Wanted, Which},
     words::check_name,
 };
 
@@ -89,10 +89,11 @@ fn what_is_to_be_calibrated_next_is_the_first_that_is_not_in_order_after_what_wa
     store.save(&gravity()).unwrap();
     let [good, missing] = [listed(&store)[0].lines[0].kept.clone(), Ok(None)];
     let wanted = |side, which| Wanted { side, which, by_handle: false };
+    let tip = Which::Frame(Kind::Tip);
     let arm = |side, kept: [&Result<_, _>; 2]| OfArm {
         side,
         wrist: None,
-        lines: [Which::Tip, Which::Gravity]
+        lines: [tip, Which::Gravity]
             .into_iter()
             .zip(kept)
             .map(|(which, kept)| Line { wanted: wanted(side, which), kept: kept.clone(), since: String::new() })
@@ -100,10 +101,10 @@ fn what_is_to_be_calibrated_next_is_the_first_that_is_not_in_order_after_what_wa
     };
     let (right, left) = (Side::Right, Side::Left);
     let next = |right_kept, left_kept, after| following(&[arm(right, right_kept), arm(left, left_kept)], after);
-    assert_eq!(next([&missing, &good], [&good, &missing], None), Some(wanted(right, Which::Tip)));
+    assert_eq!(next([&missing, &good], [&good, &missing], None), Some(wanted(right, tip)));
     let after = |side, which| Some(wanted(side, which));
-    assert_eq!(next([&good, &good], [&missing, &missing], after(right, Which::Tip)), after(left, Which::Tip));
-    assert_eq!(next([&missing, &good], [&good, &good], after(left, Which::Gravity)), after(right, Which::Tip));
+    assert_eq!(next([&good, &good], [&missing, &missing], after(right, tip)), after(left, tip));
+    assert_eq!(next([&missing, &good], [&good, &good], after(left, Which::Gravity)), after(right, tip));
     // What was kept without proof is not asked for again at once.
     assert_eq!(next([&good, &missing], [&good, &good], after(right, Which::Gravity)), None);
     assert_eq!(next([&good; 2], [&good; 2], None), None);

@@ -49,8 +49,7 @@ impl Wizards {
             self.tip_force = TipForceWizard::default();
         }
         if matches!(saving, Saving::Frame(_) | Saving::Undo(_)) {
-            let open = self.open.and_then(Which::frames);
-            for kind in Kind::ALL.into_iter().filter(|kind| Some(*kind) != open) {
+            for kind in Kind::ALL.into_iter().filter(|kind| self.open != Some(Which::Frame(*kind))) {
                 self.frames[kind as usize] = FrameWizard::new(kind);
             }
         }

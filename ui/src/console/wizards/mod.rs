@@ -14,6 +14,7 @@ mod pictures;
 mod report;
 mod tip_force;
 
+use clap::{ValueEnum, builder::PossibleValue};
 use egui::{RichText, Ui};
 use nima_core::{
     calibration::{
@@ -70,7 +71,7 @@ impl Binding {
 }
 
 /// Which wizard.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
     /// Weight and bias.
     Gravity,
@@ -78,46 +79,40 @@ pub enum Which {
     Correspondence,
     /// The network that removes the trocar's friction.
     TipForce,
-    /// How the wrist sensor is mounted on the flange.
-    Mount,
-    /// Where the instrument's tip is.
-    Tip,
-    /// Where the marker is on the instrument, and the tracker beside the arm.
-    HandEye,
-    /// Origin and plane of the workspace.
-    Table,
-    /// How the endoscope's picture is turned against arm and handle.
-    View,
-    /// The remote centre of motion.
-    Trocar,
+    /// A calibration of the frames.
+    Frame(Kind),
+}
+
+/// As an argument of a command: by one word, whether it is of the frames or not.
+impl ValueEnum for Which {
+    fn value_variants<'a>() -> &'a [Self] {
+        &Self::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let value = match self {
+            Self::Gravity => PossibleValue::new("gravity"),
+            Self::Correspondence => PossibleValue::new("correspondence"),
+            Self::TipForce => PossibleValue::new("tip-force"),
+            Self::Frame(kind) => kind.to_possible_value()?,
+        };
+        Some(value.help(self.meaning()))
+    }
 }
 
 impl Which {
     /// All wizards, in the order of use: what is measured at the wrist is turned by the frames, so these come first.
     pub const ALL: [Self; 9] = [
-        Self::Mount,
-        Self::Tip,
-        Self::HandEye,
-        Self::Table,
-        Self::View,
-        Self::Trocar,
+        Self::Frame(Kind::Mount),
+        Self::Frame(Kind::Tip),
+        Self::Frame(Kind::HandEye),
+        Self::Frame(Kind::Table),
+        Self::Frame(Kind::View),
+        Self::Frame(Kind::Trocar),
         Self::Gravity,
         Self::Correspondence,
         Self::TipForce,
     ];
-
-    /// The frame calibration that it is; `None` for those of the force.
-    pub const fn frames(self) -> Option<Kind> {
-        match self {
-            Self::Gravity | Self::Correspondence | Self::TipForce => None,
-            Self::Mount => Some(Kind::Mount),
-            Self::Tip => Some(Kind::Tip),
-            Self::HandEye => Some(Kind::HandEye),
-            Self::Table => Some(Kind::Table),
-            Self::View => Some(Kind::View),
-            Self::Trocar => Some(Kind::Trocar),
-        }
-    }
 
     /// Name on buttons.
     pub const fn name(self) -> &'static str {
@@ -125,12 +120,7 @@ impl Which {
             Self::Gravity => text::wizards::GRAVITY,
             Self::Correspondence => text::wizards::CORRESPONDENCE,
             Self::TipForce => text::wizards::TIP_FORCE,
-            Self::Mount => text::frames::MOUNT,
-            Self::Tip => text::frames::TIP,
-            Self::HandEye => text::frames::HAND_EYE,
-            Self::Table => text::frames::TABLE,
-            Self::View => text::frames::VIEW,
-            Self::Trocar => text::frames::TROCAR,
+            Self::Frame(kind) => kind.name(),
         }
     }
 
@@ -140,12 +130,7 @@ impl Which {
             Self::Gravity => text::wizards::GRAVITY_MEANING,
             Self::Correspondence => text::wizards::CORRESPONDENCE_MEANING,
             Self::TipForce => text::wizards::TIP_FORCE_MEANING,
-            Self::Mount => text::frames::MOUNT_MEANING,
-            Self::Tip => text::frames::TIP_MEANING,
-            Self::HandEye => text::frames::HAND_EYE_MEANING,
-            Self::Table => text::frames::TABLE_MEANING,
-            Self::View => text::frames::VIEW_MEANING,
-            Self::Trocar => text::frames::TROCAR_MEANING,
+            Self::Frame(kind) => kind.meaning(),
         }
     }
 
@@ -155,7 +140,7 @@ impl Which {
             Self::Gravity => Some("gravity"),
             Self::Correspondence => Some("correspondence"),
             Self::TipForce => Some("isolation"),
-            _ => None,
+            Self::Frame(_) => None,
         }
     }
 
@@ -167,7 +152,7 @@ impl Which {
             Self::Gravity => guided,
             Self::Correspondence => guided && scene.tissue_sensor.is_some(),
             Self::TipForce => guided && scene.tissue_sensor.is_some() && scene.trocar.is_some(),
-            _ => true,
+            Self::Frame(_) => true,
         }
     }
 }
@@ -277,20 +262,20 @@ impl Wizards {
     }
 
     fn the(&self, which: Which) -> &dyn Wizard {
-        match which.frames() {
-            Some(kind) => &self.frames[kind as usize],
-            None if which == Which::Gravity => &self.gravity,
-            None if which == Which::Correspondence => &self.correspondence,
-            None => &self.tip_force,
+        match which {
+            Which::Gravity => &self.gravity,
+            Which::Correspondence => &self.correspondence,
+            Which::TipForce => &self.tip_force,
+            Which::Frame(kind) => &self.frames[kind as usize],
         }
     }
 
     fn the_mut(&mut self, which: Which) -> &mut dyn Wizard {
-        match which.frames() {
-            Some(kind) => &mut self.frames[kind as usize],
-            None if which == Which::Gravity => &mut self.gravity,
-            None if which == Which::Correspondence => &mut self.correspondence,
-            None => &mut self.tip_force,
+        match which {
+            Which::Gravity => &mut self.gravity,
+            Which::Correspondence => &mut self.correspondence,
+            Which::TipForce => &mut self.tip_force,
+            Which::Frame(kind) => &mut self.frames[kind as usize],
         }
     }
 
@@ -308,15 +293,15 @@ impl Wizards {
 
     /// Chooses between the two parts of a view.
     pub fn choose_part(&mut self, wanted: Wanted) {
-        if let Some(kind) = wanted.which.frames().filter(|kind| *kind == Kind::View) {
-            self.frames[kind as usize].choose_way(wanted.by_handle);
+        if wanted.which == Which::Frame(Kind::View) {
+            self.frames[Kind::View as usize].choose_way(wanted.by_handle);
         }
     }
 
     /// The calibration of the open wizard.
     pub fn wanted(&self, side: Side) -> Option<Wanted> {
         let which = self.open?;
-        let by_handle = which == Which::View && self.frames[Kind::View as usize].goes_the_other_way();
+        let by_handle = which == Which::Frame(Kind::View) && self.frames[Kind::View as usize].goes_the_other_way();
         Some(Wanted { side, which, by_handle })
     }
 

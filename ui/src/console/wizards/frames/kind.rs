@@ -11,17 +11,17 @@ use super::{Subject, job::Job};
 use crate::console::text::frames as texts;
 
 /// The frame calibrations, in the order of use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Kind {
     /// How the wrist sensor is mounted on the flange.
     Mount,
-    /// Where the tip is.
+    /// Where the instrument's tip is.
     Tip,
-    /// Where the marker is on the flange, and the tracker beside the arm.
+    /// Where the marker is on the instrument, and the tracker beside the arm.
     HandEye,
     /// Origin and plane of the workspace.
     Table,
-    /// How the picture is turned against arm and handle.
+    /// How the endoscope's picture is turned against arm and handle.
     View,
     /// The remote centre of motion.
     Trocar,
@@ -43,6 +43,30 @@ pub(super) struct Texts {
 impl Kind {
     /// All of them, in the order of use.
     pub const ALL: [Self; 6] = [Self::Mount, Self::Tip, Self::HandEye, Self::Table, Self::View, Self::Trocar];
+
+    /// Name on buttons.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Mount => texts::MOUNT,
+            Self::Tip => texts::TIP,
+            Self::HandEye => texts::HAND_EYE,
+            Self::Table => texts::TABLE,
+            Self::View => texts::VIEW,
+            Self::Trocar => texts::TROCAR,
+        }
+    }
+
+    /// Its purpose.
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::Mount => texts::MOUNT_MEANING,
+            Self::Tip => texts::TIP_MEANING,
+            Self::HandEye => texts::HAND_EYE_MEANING,
+            Self::Table => texts::TABLE_MEANING,
+            Self::View => texts::VIEW_MEANING,
+            Self::Trocar => texts::TROCAR_MEANING,
+        }
+    }
 
     pub(super) const fn texts(self, other_way: bool) -> Texts {
         let by_tracker = Some([texts::BY_TRACKER, texts::BY_TRACKER_HOVER]);

@@ -3,7 +3,7 @@
 //! The receiver measures how many datagrams are lost and how often two in a row, and tells the sender. The sender takes the least n at which
 //! a payload is lost with all its copies less often than [`LEFT_OVER`], as far as the datagram and the limit of the rate have room.
 
-use crate::wire::{AGE_MAX_S, COPIES_MAX, Record};
+use crate::wire::{AGE_MAX_S, COPIES_MAX, RECORD_LEN, Record};
 
 /// Share of payloads that may be lost with all their copies.
 pub const LEFT_OVER: f64 = 1e-4;
@@ -76,23 +76,55 @@ impl History {
         true
     }
 
-    /// Writes the last payloads, newest first, at most this many and as far as there is room; the number of bytes and of payloads.
-    pub fn write(&self, copies: usize, now_s: f64, room: &mut [u8]) -> (usize, usize) {
-        let (mut end, mut written) = (0, 0);
-        for back in 0..(copies.min(COPIES_MAX) as u64).min(self.count) {
+    /// Length of the longest payload of late, bytes.
+    pub fn longest(&self) -> usize {
+        let known = (self.count as usize).min(COPIES_MAX);
+        self.sent.iter().take(known).map(|(len, _)| *len).max().unwrap_or(0)
+    }
+
+    fn len(&self, back: u64) -> usize {
+        self.sent[((self.count - 1 - back) % COPIES_MAX as u64) as usize].0
+    }
+
+    /// Writes the last payloads, newest first, at most this many and as far as there is room. The first `fresh` of them have not been sent
+    /// yet; the others are copies, which take the first `for_copies` bytes at most. Where not all copies fit, those much longer than
+    /// the mean are left out, so that one of them does not cost many short ones their copy.
+    pub fn write(&self, copies: usize, fresh: usize, now_s: f64, room: &mut [u8], for_copies: usize) -> Written {
+        let mut written = Written::default();
+        let count = (copies.min(COPIES_MAX) as u64).min(self.count);
+        let total: usize = (0..count).map(|back| self.len(back)).sum();
+        let all_fit = total + RECORD_LEN * count as usize <= for_copies;
+        for back in 0..count {
             let index = ((self.count - 1 - back) % COPIES_MAX as u64) as usize;
             let (len, sent_s) = self.sent[index];
+            let is_fresh = back < fresh as u64;
             let age_s = now_s - sent_s;
-            let record = Record { age_s, bytes: &self.bytes[index * self.payload_max..index * self.payload_max + len] };
-            let Some(bytes) = room.get_mut(end..).and_then(|room| record.write(room)) else { break };
             if age_s > AGE_MAX_S {
                 break;
             }
-            end += bytes;
-            written += 1;
+            let is_long = 2 * len * count as usize > 3 * total;
+            let is_carried = is_fresh || all_fit || !is_long;
+            let at = index * self.payload_max;
+            let record = Record { age_s, bytes: is_carried.then(|| &self.bytes[at..at + len]) };
+            let end = if is_fresh { room.len() } else { for_copies.min(room.len()) };
+            let Some(bytes) = room.get_mut(written.bytes..end).and_then(|room| record.write(room)) else { break };
+            written.bytes += bytes;
+            written.records += 1;
+            written.carried += usize::from(is_carried);
         }
-        (end, written)
+        written
     }
+}
+
+/// What was written into a datagram.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Written {
+    /// Length.
+    pub bytes: usize,
+    /// Payloads that stand in it, those that are left out included.
+    pub records: usize,
+    /// Payloads that it carries.
+    pub carried: usize,
 }
 
 #[derive(Clone, Copy, Debug, Default)]

@@ -5,22 +5,40 @@ use crate::wire;
 fn the_history_gives_the_last_payloads_newest_first() {
     let mut history = History::new(16);
     let mut room = [0; 100];
-    assert_eq!(history.write(4, 0.0, &mut room), (0, 0));
+    assert_eq!(history.write(4, 1, 0.0, &mut room, 100), Written::default());
     for i in 0..40_u8 {
         assert!(history.add(&[i; 5], f64::from(i) * 1e-3));
     }
     assert!(!history.add(&[0; 17], 0.0));
-    let (len, count) = history.write(4, 0.040, &mut room);
-    assert_eq!((len, count), (36, 4));
-    let mut rest = &room[..len];
+    let written = history.write(4, 1, 0.040, &mut room, 100);
+    assert_eq!(written, Written { bytes: 36, records: 4, carried: 4 });
+    let mut rest = &room[..36];
     for i in (36..40).rev() {
         let (record, more) = wire::record(rest).unwrap();
-        assert_eq!(record.bytes, [i; 5]);
+        assert_eq!(record.bytes, Some(&[i; 5][..]));
         assert!((record.age_s - (0.040 - f64::from(i) * 1e-3)).abs() < 1e-9);
         rest = more;
     }
-    assert_eq!(history.write(30, 0.040, &mut room).1, 11, "as many as there is room for");
-    assert_eq!(history.write(30, 5.0, &mut room), (0, 0), "too old to be of use");
+    assert_eq!(history.write(30, 1, 0.040, &mut room, 100).records, 11, "as many as there is room for");
+    assert_eq!(history.write(30, 1, 0.040, &mut room, 50).records, 5, "copies leave the rest free");
+    assert_eq!(history.write(30, 8, 0.040, &mut room, 50).records, 8, "what was not sent yet may use it");
+    assert_eq!(history.write(30, 1, 5.0, &mut room, 100), Written::default(), "too old to be of use");
+}
+
+#[test]
+fn a_long_payload_does_not_cost_the_short_ones_their_copies() {
+    let mut history = History::new(64);
+    let mut room = [0; 200];
+    for i in 0..8_u8 {
+        history.add(&[i; 60][..if i == 5 { 60 } else { 5 }], f64::from(i) * 1e-3);
+    }
+    assert_eq!(history.longest(), 60);
+    let all = history.write(8, 1, 0.008, &mut room, 200);
+    assert_eq!((all.records, all.carried), (8, 8), "where there is room for all, all are carried");
+    let few = history.write(8, 1, 0.008, &mut room, 100);
+    assert_eq!((few.records, few.carried), (8, 7), "its place is kept");
+    let fresh = history.write(8, 3, 0.008, &mut room, 100);
+    assert_eq!((fresh.records, fresh.carried), (5, 5), "before it was sent it comes first");
 }
 
 fn measured(lost: impl Fn(u64) -> bool, count: u64) -> Losses {

@@ -10,7 +10,7 @@ use crate::{
     keys::KeyError,
     playout::{Payload, Playout, PlayoutSettings},
     rate::Bucket,
-    redundancy::{History, Losses, copies_for},
+    redundancy::{History, Losses, Written, copies_for},
     replay::{Refused, Window},
     secure,
     wire::{self, DATAGRAM_MAX, HEAD_LEN, Head, OUTER_LEN, PAYLOAD_MAX, RECORD_LEN, TAG_LEN, UDP_LEN},
@@ -33,6 +33,14 @@ pub struct StreamSettings {
 impl Default for StreamSettings {
     fn default() -> Self {
         Self { payload_max: 256, rate_max_bit_s: 1e6, playout: PlayoutSettings::default() }
+    }
+}
+
+impl StreamSettings {
+    /// For the messages of a console and a follower with this many arms: for each 2 Mbit/s, what two copies of each message take. A line
+    /// with less room than that holds fewer.
+    pub fn of_arms(arms: usize) -> Self {
+        Self { payload_max: PAYLOAD_MAX, rate_max_bit_s: 2e6 * arms as f64, ..Self::default() }
     }
 }
 
@@ -184,12 +192,15 @@ impl Stream {
         let is_limited = room < DATAGRAM_MAX - frame;
         // Those that were held have not been sent at all.
         let wanted = copies_for(self.told_loss.0, self.told_loss.1).max(self.waiting);
+        // Copies leave room for the next long payload: one that is held goes behind newer ones, and may never fit.
+        let for_copies = room.saturating_sub(RECORD_LEN + self.history.longest());
         let end = HEAD_LEN + room.min(DATAGRAM_MAX - frame);
-        let (records, count) = self.history.write(wanted, now_s, &mut self.plain[HEAD_LEN..end]);
-        if payload.is_some() && count == 0 {
+        let plain = &mut self.plain[HEAD_LEN..end];
+        let Written { bytes, records, carried } = self.history.write(wanted, self.waiting, now_s, plain, for_copies);
+        if payload.is_some() && records == 0 {
             return self.hold(payload);
         }
-        let limit = if count >= wanted || self.history.count() < wanted as u64 {
+        let limit = if carried >= wanted || self.history.count() < wanted as u64 {
             Limit::None
         } else if is_limited {
             Limit::Rate
@@ -197,7 +208,7 @@ impl Stream {
             Limit::Datagram
         };
         if payload.is_some() {
-            self.copies = Copies { wanted, used: count, limit };
+            self.copies = Copies { wanted, used: carried, limit };
         }
         let sent_us = micros(now_s);
         let head = Head {
@@ -209,15 +220,15 @@ impl Stream {
             loss_again: byte(self.losses.shares().1),
             control,
             newest: self.history.count().saturating_sub(1) as u32,
-            count: count as u8,
+            count: records as u8,
         };
         self.plain[..HEAD_LEN].copy_from_slice(&head.bytes());
         out[..OUTER_LEN].copy_from_slice(&wire::outer(self.session, self.counter));
-        let plain = &self.plain[..HEAD_LEN + records];
+        let plain = &self.plain[..HEAD_LEN + bytes];
         // It fails only for datagrams that are too long, and these are not.
         let Ok(sealed) = self.keys.write_message(self.counter, plain, &mut out[OUTER_LEN..]) else { return Sent::Held };
         self.counter += 1;
-        self.waiting = self.waiting.saturating_sub(count);
+        self.waiting = self.waiting.saturating_sub(records);
         self.bucket.spend((OUTER_LEN + sealed + UDP_LEN) as f64, now_s);
         self.sent.add(OUTER_LEN + sealed + UDP_LEN, now_s);
         Sent::Datagram(OUTER_LEN + sealed)
@@ -283,7 +294,9 @@ impl Stream {
                 return;
             };
             records = rest;
-            self.playout.insert(number, sent_s - record.age_s, arrived_s, back == 0, record.bytes);
+            if let Some(bytes) = record.bytes {
+                self.playout.insert(number, sent_s - record.age_s, arrived_s, back == 0, bytes);
+            }
         }
     }
 

@@ -13,6 +13,8 @@ struct Link {
     offset_s: f64,
     tick: u32,
     len: usize,
+    /// Length of every tenth payload.
+    tenth_len: usize,
 }
 
 impl Link {
@@ -27,6 +29,7 @@ impl Link {
             offset_s: 100.0,
             tick: 0,
             len,
+            tenth_len: len,
         }
     }
 
@@ -43,7 +46,8 @@ impl Link {
                         self.steps[i] += u32::from(accepted.step.is_some());
                     }
                 }
-                let mut payload = vec![i as u8; self.len];
+                let is_tenth = self.ends[i].payloads().is_multiple_of(10);
+                let mut payload = vec![i as u8; if is_tenth { self.tenth_len } else { self.len }];
                 payload[..8].copy_from_slice(&self.ends[i].payloads().to_le_bytes());
                 if let Sent::Datagram(len) = self.ends[i].send(local_s, Some(&payload), 0, &mut datagram) {
                     self.lines[i].send(now_s, &datagram[..len]);
@@ -125,6 +129,24 @@ fn the_limit_of_the_rate_is_kept_and_named() {
         // What could not be sent alone goes with the next.
         assert!(len == 40 || figures.held > 100, "{figures:?}");
     }
+}
+
+/// What a follower sends: its force in every tick, parameters with every tenth.
+#[test]
+fn long_payloads_arrive_although_the_rate_has_no_room_for_their_copies() {
+    let settings = Settings { delay_s: 20e-3, loss: Loss::Independent { share: 0.3 }, ..Settings::default() };
+    let mut link = Link::new(settings, StreamSettings::of_arms(1), 40);
+    link.tenth_len = 350;
+    link.run(5.0);
+    link.got[0].clear();
+    link.run(30.0);
+    let figures = link.figures(0);
+    let long = link.got[0].iter().filter(|(number, _)| number.is_multiple_of(10)).count();
+    let (all, rate_bit_s) = (link.got[0].len(), figures.received.rate_bit_s / (1.0 - figures.loss));
+    println!("{long} of 3000 long ones, {all} of 30 000 in all, {:?}, {rate_bit_s:.0} bit/s", figures.copies);
+    assert!(long > 1900, "{long} of 3000");
+    assert!(all > 27_500, "{all} of 30 000");
+    assert!(rate_bit_s < 2.1e6, "{rate_bit_s}");
 }
 
 #[test]

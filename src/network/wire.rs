@@ -207,24 +207,29 @@ impl Head {
     }
 }
 
+/// Length of a payload that stands in a datagram by its place only.
+const LEFT_OUT: u16 = u16::MAX;
+
 /// One payload as it stands in a datagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Record<'a> {
     /// How long before the datagram it was first sent, s.
     pub age_s: f64,
-    /// Its content.
-    pub bytes: &'a [u8],
+    /// Its content; `None` if it is left out here, because it was sent before and there is no room for it.
+    pub bytes: Option<&'a [u8]>,
 }
 
 impl Record<'_> {
     /// Writes it at the beginning of `room`; the number of bytes, or `None` if it does not fit.
     pub fn write(&self, room: &mut [u8]) -> Option<usize> {
-        let end = RECORD_LEN + self.bytes.len();
+        let bytes = self.bytes.unwrap_or(&[]);
+        let end = RECORD_LEN + bytes.len();
         let room = room.get_mut(..end)?;
+        let len = if self.bytes.is_some() { u16::try_from(bytes.len()).ok()? } else { LEFT_OUT };
         let age = (self.age_s / AGE_UNIT_S).round().clamp(0.0, f64::from(u16::MAX)) as u16;
-        room[..2].copy_from_slice(&u16::try_from(self.bytes.len()).ok()?.to_le_bytes());
+        room[..2].copy_from_slice(&len.to_le_bytes());
         room[2..RECORD_LEN].copy_from_slice(&age.to_le_bytes());
-        room[RECORD_LEN..].copy_from_slice(self.bytes);
+        room[RECORD_LEN..].copy_from_slice(bytes);
         Some(end)
     }
 }
@@ -232,9 +237,13 @@ impl Record<'_> {
 /// The first payload in these bytes, and what follows it.
 pub fn record(bytes: &[u8]) -> Option<(Record<'_>, &[u8])> {
     let ([len0, len1, age0, age1], rest) = bytes.split_first_chunk::<RECORD_LEN>()?;
-    let (content, rest) = rest.split_at_checked(usize::from(u16::from_le_bytes([*len0, *len1])))?;
     let age_s = f64::from(u16::from_le_bytes([*age0, *age1])) * AGE_UNIT_S;
-    Some((Record { age_s, bytes: content }, rest))
+    let len = u16::from_le_bytes([*len0, *len1]);
+    if len == LEFT_OUT {
+        return Some((Record { age_s, bytes: None }, rest));
+    }
+    let (content, rest) = rest.split_at_checked(usize::from(len))?;
+    Some((Record { age_s, bytes: Some(content) }, rest))
 }
 
 #[cfg(test)]
@@ -255,15 +264,17 @@ mod tests {
         let mut bytes = [0; 200];
         bytes[..HEAD_LEN].copy_from_slice(&head.bytes());
         let mut end = HEAD_LEN;
-        for (age_s, content) in [(0.0, &b"newest"[..]), (0.00123, b"")] {
+        for (age_s, content) in [(0.0, Some(&b"newest"[..])), (0.0, None), (0.00123, Some(b""))] {
             end += Record { age_s, bytes: content }.write(&mut bytes[end..]).unwrap();
         }
         let (read, rest) = Head::from_bytes(&bytes[..end]).unwrap();
         assert_eq!(read, head);
         let (first, rest) = record(rest).unwrap();
-        assert_eq!(first.bytes, b"newest");
-        let (second, rest) = record(rest).unwrap();
-        assert!((second.age_s - 0.00123).abs() < 1e-9 && second.bytes.is_empty() && rest.is_empty());
+        assert_eq!(first.bytes, Some(&b"newest"[..]));
+        let (left_out, rest) = record(rest).unwrap();
+        assert_eq!(left_out.bytes, None);
+        let (last, rest) = record(rest).unwrap();
+        assert!((last.age_s - 0.00123).abs() < 1e-9 && last.bytes == Some(&[]) && rest.is_empty());
         assert!(record(&bytes[HEAD_LEN..HEAD_LEN + 5]).is_none(), "cut");
     }
 

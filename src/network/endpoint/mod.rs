@@ -47,8 +47,9 @@ pub const CONSOLES_MAX: usize = 6;
 const SESSIONS: usize = CONSOLES_MAX + 2;
 /// Datagrams that are taken from the socket in one call.
 const RECEIVE_MAX: usize = 128;
-/// Without payloads, datagrams are sent this often, s: by the holder and to it, and otherwise.
-const ALIVE_S: f64 = 0.02;
+/// Without payloads, datagrams are sent this often, s, by the holder and to it.
+pub const ALIVE_S: f64 = 0.02;
+/// The same for those who wait.
 const ALIVE_WAITING_S: f64 = 0.05;
 /// A session that the other side has not confirmed for this long is none, s.
 const CONFIRM_S: f64 = 3.0;

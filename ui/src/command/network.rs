@@ -13,7 +13,6 @@ use nima_network::{
     endpoint::{Config, Endpoint, PORT, Role},
     keys::{Keys, Peers, PublicKey},
     stream::StreamSettings,
-    wire::PAYLOAD_MAX,
 };
 
 use nima_world::scene::Scene;
@@ -69,10 +68,7 @@ fn arms(rig: &RigConfig, scene: &Scene) -> usize {
 }
 
 fn open(arms: usize, role: Role, keys: Keys, ends: Ends) -> anyhow::Result<Line> {
-    // For each arm 2 Mbit/s: what two copies of each message take. A line with less room than that holds fewer.
-    let stream =
-        StreamSettings { payload_max: PAYLOAD_MAX, rate_max_bit_s: 2e6 * arms as f64, ..StreamSettings::default() };
-    let endpoint = Endpoint::open(Config { stream, ..Config::new(role, keys) })?;
+    let endpoint = Endpoint::open(Config { stream: StreamSettings::of_arms(arms), ..Config::new(role, keys) })?;
     Ok(Line::new(endpoint, ends))
 }
 

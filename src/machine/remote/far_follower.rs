@@ -77,6 +77,16 @@ impl<R: Rig, W: Wire> FarFollower<R, W> {
         Self { local, wire, rate_hz, heard: None, sides: [Told::default(); SIDES], buffer: [0; MESSAGE_MAX] }
     }
 
+    /// The rig that is at this machine.
+    pub const fn local(&self) -> &R {
+        &self.local
+    }
+
+    /// The rig that is at this machine.
+    pub const fn local_mut(&mut self) -> &mut R {
+        &mut self.local
+    }
+
     /// What carries the messages.
     pub const fn wire(&self) -> &W {
         &self.wire

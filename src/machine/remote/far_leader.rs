@@ -23,6 +23,10 @@ const ERRORS_EVERY: u64 = 100;
 const ANSWERS_FOR_S: f64 = 1.0;
 /// Two messages are of one loop if their times differ by what passed here, to this, s.
 const SAME_CLOCK_S: f64 = 0.2;
+/// The identification learns what happens over the delay, and begins anew with another one. It keeps the one that it has while the true one
+/// differs by no more than this share, or these ticks: a line with jitter changes it by a tick every second.
+const SAME_DELAY: f64 = 0.05;
+const SAME_DELAY_TICKS: f64 = 2.0;
 /// Most commands that follow from one message.
 const COMMANDS_MAX: usize = 8;
 
@@ -48,6 +52,8 @@ pub struct FarLeader<R, W> {
     states: [Option<LoopState>; SIDES],
     inputs: [Option<Inputs>; SIDES],
     commands: [Option<Command>; COMMANDS_MAX],
+    /// Delay over which the identification here learns, ticks.
+    learnt_ticks: Option<u16>,
     ticks: u64,
     buffer: [u8; MESSAGE_MAX],
 }
@@ -72,6 +78,7 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
             states: [None; SIDES],
             inputs: [None; SIDES],
             commands: [None; COMMANDS_MAX],
+            learnt_ticks: None,
             ticks: 0,
             buffer: [0; MESSAGE_MAX],
         }
@@ -80,6 +87,16 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
     /// What the rig here measured last: the hands there have no part in it.
     pub const fn measured(&self) -> &[Option<Inputs>; SIDES] {
         &self.inputs
+    }
+
+    /// The rig that is at this machine.
+    pub const fn local(&self) -> &R {
+        &self.local
+    }
+
+    /// The rig that is at this machine.
+    pub const fn local_mut(&mut self) -> &mut R {
+        &mut self.local
     }
 
     /// What carries the messages.
@@ -135,7 +152,8 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
         if before.is_none_or(|before| before.compares != now.compares) {
             self.push(Command::Compare(now.compares));
         }
-        if before.is_none_or(|before| before.delay_ticks != now.delay_ticks) {
+        if before.is_none() || !self.learnt_ticks.is_some_and(|learnt| is_same_delay(learnt, now.delay_ticks)) {
+            self.learnt_ticks = Some(now.delay_ticks);
             self.push(Command::SetDelay(f64::from(now.delay_ticks) / self.rate_hz));
         }
         let told = |side: Side| now.sides[side.index()].zip(before.and_then(|before| before.sides[side.index()]));
@@ -217,6 +235,11 @@ impl<R: Rig, W: Wire> Rig for FarLeader<R, W> {
     }
 
     devices_of!(self, self.local);
+}
+
+pub(super) fn is_same_delay(learnt_ticks: u16, now_ticks: u16) -> bool {
+    let learnt = f64::from(learnt_ticks);
+    (f64::from(now_ticks) - learnt).abs() <= SAME_DELAY_TICKS.max(SAME_DELAY * learnt)
 }
 
 fn join(here: &Inputs, told: &LeaderSide, position_m: Vector3<f64>) -> Inputs {

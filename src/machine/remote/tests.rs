@@ -3,6 +3,7 @@ use nima_core::impedance::{Mode, ModeSet, Packed, SLOTS};
 
 use super::{
     MESSAGE_MAX,
+    far_leader::is_same_delay,
     follower_message::{FollowerMessage, FollowerSide},
     leader_message::{Intent, LeaderMessage, LeaderSide},
 };
@@ -87,6 +88,13 @@ fn sent_without_parameters() -> usize {
     let mut message = follower_message();
     message.sides.iter_mut().flatten().for_each(|side| (side.packed, side.errors_n) = (None, None));
     message.pack(&mut [0; MESSAGE_MAX]).unwrap().len()
+}
+
+#[test]
+fn a_delay_that_jitter_moves_is_the_same_to_what_learns_over_it() {
+    for (learnt, now, is_same) in [(0, 2, true), (0, 3, false), (200, 191, true), (200, 210, true), (200, 211, false)] {
+        assert_eq!(is_same_delay(learnt, now), is_same, "{learnt} {now}");
+    }
 }
 
 #[test]

@@ -296,6 +296,8 @@ impl<L: Link> Pair<L> {
         let rendered = self.renderer.step(&motion_m, parcel);
         let delayed_n = parcel.map_or_else(Vector3::zeros, |parcel| parcel.force_n);
         let age_s = parcel.map_or(f64::INFINITY, |parcel| now_s - parcel.t_s - self.delay_s + seen.age_s);
+        // Over a network a parcel may be younger than the delay says; its force still ends with the line.
+        let age_s = age_s.max(seen.silent_s);
         if parcel_is_there && age_s > LINK_SILENT_AFTER_S {
             self.fail_if_driven(Fault::LinkSilent, now_s);
         }

@@ -95,6 +95,10 @@ pub struct Observed {
     pub hand_force_n: Vector3<f64>,
     /// The handle is led from the screen: then it may stand still under a force.
     pub guided: bool,
+    /// How long ago tip and handle came over a network, s; 0 for what is at this machine. After a gap they may have gone farther.
+    pub tip_silent_s: f64,
+    /// See above.
+    pub hand_silent_s: f64,
 }
 
 /// What may be used of it.
@@ -145,6 +149,8 @@ pub struct Plausibility {
     /// Since when the handle has not stood for [`RESTFUL_S`], s.
     trembles_since_s: f64,
     ways_m: [f64; WAY_TICKS],
+    /// How long tip and handle had been silent at the last look, s.
+    silent_s: [f64; 2],
     last_t_s: f64,
     /// When this watch began, s; not known before the first look.
     began_s: Option<f64>,
@@ -170,6 +176,7 @@ impl Plausibility {
             unmoved_since_s: f64::INFINITY,
             trembles_since_s: f64::INFINITY,
             ways_m: [0.0; WAY_TICKS],
+            silent_s: [0.0; 2],
             last_t_s: f64::NEG_INFINITY,
             began_s: None,
             doubt: None,
@@ -203,8 +210,10 @@ impl Plausibility {
         }
         self.last_t_s = seen.t_s;
         let dt_s = if dt_s.is_finite() { dt_s.max(self.period_s) } else { self.period_s };
-        let (tip_m, tip_jumped) = self.tip.admit(&seen.tip_m, POSITION_SLACK_M + TIP_MAX_M_S * dt_s);
-        let (hand_m, hand_jumped) = self.hand.admit(&seen.hand_m, POSITION_SLACK_M + HAND_MAX_M_S * dt_s);
+        let [tip_s, hand_s] = self.silent_s.map(|silent_s| dt_s + silent_s);
+        self.silent_s = [seen.tip_silent_s, seen.hand_silent_s];
+        let (tip_m, tip_jumped) = self.tip.admit(&seen.tip_m, POSITION_SLACK_M + TIP_MAX_M_S * tip_s);
+        let (hand_m, hand_jumped) = self.hand.admit(&seen.hand_m, POSITION_SLACK_M + HAND_MAX_M_S * hand_s);
         let way_m = self.tip.moved().norm();
         self.ways_m.rotate_right(1);
         self.ways_m[0] = way_m;

@@ -31,6 +31,8 @@ impl Bench {
             command_m: Some(at_m),
             hand_force_n: Vector3::zeros(),
             guided: false,
+            tip_silent_s: 0.0,
+            hand_silent_s: 0.0,
         }
     }
 
@@ -210,4 +212,27 @@ fn link_doubted_after(force_n: Vector3<f64>) -> bool {
 fn a_link_that_repeats_a_force_is_frozen_and_one_without_any_force_is_not() {
     assert!(link_doubted_after(Vector3::new(0.4, 0.0, -1.2)));
     assert!(!link_doubted_after(Vector3::zeros()));
+}
+
+/// What moves at 0.2 m/s and is not heard of for 40 ms is 8 mm farther.
+#[test]
+fn what_went_on_while_the_line_was_silent_has_not_jumped() {
+    let told = |is_known: bool, is_tip: bool| {
+        let (mut from_m, mut kept) = (None, None);
+        after(|k, seen| {
+            seen.command_m = None;
+            let at_m = *from_m.get_or_insert(seen.tip_m) + Vector3::x() * 0.2e-3 * f64::from(k);
+            let silent = if (101..140).contains(&k) { k - 100 } else { 0 };
+            let at_m = if silent > 0 { *kept.get_or_insert(at_m) } else { at_m };
+            let silent_s = if is_known { f64::from(silent) * 1e-3 } else { 0.0 };
+            if is_tip {
+                (seen.tip_m, seen.tip_silent_s) = (at_m, silent_s);
+            } else {
+                (seen.hand_m, seen.hand_silent_s) = (at_m, silent_s);
+            }
+        })
+    };
+    assert_eq!([told(true, true), told(true, false)], [None; 2]);
+    assert!(matches!(told(false, true), Some((140..=143, Implausible::TipJumped))), "{:?}", told(false, true));
+    assert!(matches!(told(false, false), Some((140..=143, Implausible::HandleJumped))), "{:?}", told(false, false));
 }

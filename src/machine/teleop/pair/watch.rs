@@ -37,6 +37,8 @@ impl<L: Link> Pair<L> {
             command_m: self.command_in_force(inputs.silent_s),
             hand_force_n: self.hand_force_n,
             guided: self.guide_m.is_some(),
+            tip_silent_s: if self.far.is_there { inputs.silent_s } else { 0.0 },
+            hand_silent_s: if self.far.is_there { 0.0 } else { inputs.silent_s },
         });
         (self.force.tip_n, inputs.tip_m, inputs.hand.position_m) = (admitted.force_n, admitted.tip_m, admitted.hand_m);
         self.hand_speed_m_s = self.speed.step(now_s - inputs.age_s, inputs.hand.position_m);

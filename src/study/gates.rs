@@ -17,11 +17,9 @@ use nima_core::safety::{Chain, GATES, Gate};
 use serde::Serialize;
 
 pub use watch::Breaches;
+pub(crate) use watch::Watch;
 
-use self::{
-    adversary::{Adversary, Meddling, settings},
-    watch::Watch,
-};
+use self::adversary::{Adversary, Meddling, settings};
 use crate::{Experiment, Findings};
 
 /// Requests to one chain.
@@ -109,15 +107,7 @@ impl Tally {
         let period_s = [1e-4, 1e-3, 1e-2][rng.usize(..3)];
         let mut chain = Chain::<D>::new(settings(rng), period_s);
         let in_force = *chain.settings();
-        let mut watch = Watch {
-            most_n: in_force.ceiling_n.min(in_force.device_limit_n),
-            step_n: in_force.slew_n_per_s * period_s,
-            gain_step: in_force.gain_rate_per_s * period_s,
-            last_n: SVector::zeros(),
-            gain: in_force.gain,
-            governed: false,
-            above_one: false,
-        };
+        let mut watch = Watch::of(&in_force, period_s);
         let mut adversary = Adversary::<D>::new(rng);
         for _ in 0..count {
             meddle(&mut chain, &mut watch, adversary.meddling());

@@ -7,6 +7,7 @@
 pub mod baselines;
 pub mod faults;
 pub mod gates;
+pub mod network;
 mod pair;
 pub mod passivity;
 pub mod picture;

@@ -1,7 +1,7 @@
 //! Checks everything that leaves a chain and counts violations. It knows the limits, not how the gates keep them.
 
 use nalgebra::SVector;
-use nima_core::safety::{Gate, GateReport, MAX_GAIN, MOST_J, Reason};
+use nima_core::safety::{ChainSettings, Gate, GateReport, MAX_GAIN, MOST_J, Reason};
 use serde::Serialize;
 
 /// Rounding allowed in a limit, relative.
@@ -36,7 +36,7 @@ impl Breaches {
 
 /// The limits of one chain, and its last output.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Watch<const D: usize> {
+pub(crate) struct Watch<const D: usize> {
     pub(super) most_n: f64,
     pub(super) step_n: f64,
     pub(super) gain_step: f64,
@@ -49,8 +49,21 @@ pub(super) struct Watch<const D: usize> {
 }
 
 impl<const D: usize> Watch<D> {
+    /// The limits of a chain with these settings and this period (s), before its first force.
+    pub(crate) fn of(settings: &ChainSettings, period_s: f64) -> Self {
+        Self {
+            most_n: settings.ceiling_n.min(settings.device_limit_n),
+            step_n: settings.slew_n_per_s * period_s,
+            gain_step: settings.gain_rate_per_s * period_s,
+            last_n: SVector::zeros(),
+            gain: settings.gain,
+            governed: false,
+            above_one: false,
+        }
+    }
+
     /// Checks one force (N) and its report; `chosen` is the gain that was set.
-    pub(super) fn look(&mut self, now_n: &SVector<f64, D>, report: &GateReport, chosen: f64, breaches: &mut Breaches) {
+    pub(crate) fn look(&mut self, now_n: &SVector<f64, D>, report: &GateReport, chosen: f64, breaches: &mut Breaches) {
         let within = |value: f64, limit: f64| value <= limit * (1.0 + ROUNDING) + f64::MIN_POSITIVE;
         let finite = now_n.iter().all(|f| f.is_finite()) && report.gain.is_finite();
         let let_go = [Gate::Permission, Gate::Validity].iter().any(|gate| report.acted(*gate))

@@ -6,6 +6,7 @@
 mod baselines;
 mod faults;
 mod gates;
+mod network;
 mod passivity;
 mod release;
 mod sources;
@@ -79,6 +80,8 @@ studies! {
     Faults(faults::Faults),
     /// Send extreme force requests through the gates and count violations of their limits
     Gates(gates::Gates),
+    /// Run two machines over a bad line, in every mode: force error, energy, stops, over delay, jitter, loss, outages and clock faults
+    Network(network::Network),
     /// Let go of a handle pressed with up to 5 N: every mode, method of others and delay, without and with the governor
     Release(release::Release),
     /// Measure whether the loop gives the hand energy, and whether a loose grip oscillates, in every mode and at every delay

@@ -132,3 +132,27 @@ fn the_methods_of_others_are_compared_on_a_recording() {
     refused(&["study", "baselines", "--recording", path, "--delay-ms", "2000"], "1000 ms");
     refused(&["study", "baselines", "--recording", path, "--delay-ms", "0"], "--delay-ms");
 }
+
+#[test]
+fn two_machines_over_a_bad_line_are_compared_with_a_perfect_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let output = nima(&["study", "network", "--quick", "--mode", "best", "--json", "--out", out]);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let rows = report["rows"].as_array().unwrap();
+    assert_eq!((rows.len(), report["extent"].as_str()), (6, Some("quick")));
+    for row in rows {
+        assert!(row["ceiling_breaches"] == 0 && row["slew_breaches"] == 0 && row["resumed"] == 0, "{row}");
+        assert!(row["error_n"].as_f64().unwrap() > 0.0 && row["over_clean"].as_f64().unwrap() > 0.0, "{row}");
+        assert_eq!(row["stops"].as_u64() > Some(0), row["happening"] == "outages", "{row}");
+    }
+    let missed: u64 = report["aims"].as_array().unwrap().iter().map(|aim| aim["missed"].as_u64().unwrap()).sum();
+    assert_eq!(output.status.success(), missed == 0, "{}", String::from_utf8_lossy(&output.stderr));
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(serde_json::from_str::<Value>(&read("network.json")).unwrap(), report);
+    assert!(read("network.md").contains("Every factor alone") && read("network.svg").starts_with("<svg"));
+    assert_eq!(read("network.csv").lines().count(), 1 + rows.len());
+
+    refused(&["study", "network", "--quick", "--full"], "--full");
+    refused(&["study", "network", "--mode", "sideways"], "sideways");
+}

@@ -1,0 +1,90 @@
+//! What must be reached, and what was.
+
+use nima_core::impedance::Mode;
+use serde::Serialize;
+
+use super::{
+    Row,
+    plan::{CLOCK_JITTER, judged_line},
+};
+
+/// The aims: error by loss and jitter (%), energy (mJ), force after the last data (ms), step on return (mm), error of the clock (ms),
+/// time until its step is named (ms).
+const COST_PERCENT: f64 = 10.0;
+const INJECTED_MJ: f64 = 1.0;
+const FORCE_AFTER_MS: f64 = 20.0;
+const RETURN_MM: f64 = 0.2;
+const CLOCK_MS: f64 = 0.2;
+const NAMED_MS: f64 = 1000.0;
+
+/// One aim and what was reached.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Aim {
+    /// What is measured, with its unit.
+    pub what: String,
+    /// At most this.
+    pub limit: f64,
+    /// Largest of all cells that it concerns.
+    pub worst: f64,
+    /// In which cell.
+    pub place: String,
+    /// Number of cells that it concerns, and of those that missed it.
+    pub cells: usize,
+    /// See above.
+    pub missed: usize,
+}
+
+impl Aim {
+    /// Over the cells for which `of` gives a number; `None` if there is none.
+    fn over<'a>(
+        what: &str,
+        limit: f64,
+        rows: impl Iterator<Item = &'a Row>,
+        of: impl Fn(&Row) -> Option<f64>,
+    ) -> Option<Self> {
+        let measured: Vec<_> = rows.filter_map(|row| Some((of(row)?, row))).collect();
+        let (worst, row) = measured.iter().max_by(|(one, _), (other, _)| one.total_cmp(other))?;
+        Some(Self {
+            what: what.to_owned(),
+            limit,
+            worst: *worst,
+            place: row.place(),
+            cells: measured.len(),
+            // A value that is not a number is a miss.
+            missed: measured.iter().filter(|(value, _)| value.is_nan() || *value > limit).count(),
+        })
+    }
+}
+
+/// All aims. Limits of the gates and what happens after a stop concern every mode, the quality of the force the one that is judged.
+pub(super) fn aims(rows: &[Row], judged: Mode) -> Vec<Aim> {
+    let all = || rows.iter();
+    let ours = || rows.iter().filter(move |row| row.mode == judged);
+    let cost = |row: &Row| {
+        let is_it = row.condition == judged_line(row.condition.delay_ms);
+        row.over_clean.filter(|_| is_it).map(|ratio| 100.0 * (ratio - 1.0))
+    };
+    let cost_of_loss = |row: &Row| row.over_same_playout.map(|ratio| 100.0 * (ratio - 1.0));
+    let injected = |row: &Row| (row.stops == 0).then_some((row.injected_mj - row.tissue_injected_mj).max(0.0));
+    let clock = |row: &Row| {
+        let is_it = row.condition.jitter == CLOCK_JITTER && !row.condition.happening.sets_clock();
+        is_it.then_some(row.clock_error_ms)
+    };
+    let named =
+        |row: &Row| row.condition.happening.sets_clock().then_some(row.clock_step_named_ms.unwrap_or(f64::INFINITY));
+    [
+        Aim::over("forces above the ceiling", 0.0, all(), |row| Some(row.ceiling_breaches as f64)),
+        Aim::over("changes above the slew limit", 0.0, all(), |row| Some(row.slew_breaches as f64)),
+        Aim::over("more error by 30 % loss and 20 ms jitter, %", COST_PERCENT, ours(), cost),
+        Aim::over("the same, over a perfect line as long as the play-out, %", COST_PERCENT, ours(), cost_of_loss),
+        Aim::over("energy beyond the tissue's own without a latched stop, mJ", INJECTED_MJ, ours(), injected),
+        Aim::over("force after the last data, ms", FORCE_AFTER_MS, all(), |row| Some(row.force_after_data_ms)),
+        Aim::over("step of the tip on return, mm", RETURN_MM, all(), |row| row.return_step_mm),
+        Aim::over("machines that drove again unasked", 0.0, all(), |row| Some(f64::from(row.resumed))),
+        Aim::over("error of the clock with 1 ms jitter, ms", CLOCK_MS, all(), clock),
+        Aim::over("until a step of 50 ms of the clock is named, ms", NAMED_MS, all(), named),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}

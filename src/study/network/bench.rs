@@ -1,0 +1,237 @@
+//! Two whole machines on one virtual clock: the console's with the hand, the follower's with arm and tissue, and a bad line between them.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Event, LoopState, Tick},
+    remote::{FarFollower, FarLeader, Wire as _, at_follower},
+    rig::{Inputs, Outputs, Rig, SIDES, Side},
+    teleop::{Calibrations, Loop, Timing},
+};
+use nima_network::{
+    impairment::Line,
+    stream::{Stream, StreamSettings},
+};
+use nima_world::{World, scene::Scene};
+
+use super::{Condition, NetworkError, end::End};
+
+/// Ticks per second.
+pub(super) const RATE_HZ: f64 = 1000.0;
+/// Seeds of the two directions: the same in every cell, so that cells compare.
+const SEEDS: [u64; 2] = [1, 2];
+/// What is due within this counts as due now, s: the rounding of times.
+const ROUNDING_S: f64 = 1e-9;
+
+/// A simulated workplace. It lives in true time, whatever the clock of its machine says.
+#[derive(Debug)]
+pub(super) struct Place {
+    pub(super) world: World,
+    outputs: Outputs,
+    ahead_s: f64,
+}
+
+impl Place {
+    fn new(scene: &Scene) -> Self {
+        Self { world: World::new(scene, RATE_HZ), outputs: Outputs::SAFE, ahead_s: 0.0 }
+    }
+}
+
+impl Rig for Place {
+    fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
+        let mut inputs = [None; SIDES];
+        inputs[Side::Right.index()] = self.world.exchange(now_s - self.ahead_s, &self.outputs);
+        inputs
+    }
+
+    fn write(&mut self, _: f64, outputs: &[Outputs; SIDES]) {
+        self.outputs = outputs[Side::Right.index()];
+    }
+}
+
+/// One machine: a loop and its rig.
+struct Machine<R> {
+    control: Loop,
+    rig: R,
+    tick: Option<Tick>,
+    /// Faults that it has raised, and how often.
+    faults: BTreeMap<String, u32>,
+}
+
+impl<R: Rig> Machine<R> {
+    fn new(rig: &RigConfig, place: R) -> Result<Self, NetworkError> {
+        let control = Loop::new(rig, &[Some(Calibrations::default()), None])?;
+        Ok(Self { control, rig: place, tick: None, faults: BTreeMap::new() })
+    }
+
+    fn step(&mut self, command: Option<Command>, now_s: f64) {
+        let inputs = self.rig.read(now_s);
+        self.control.clear_events();
+        for command in command.into_iter().chain(std::iter::from_fn(|| self.rig.command())) {
+            self.control.obey(command, now_s);
+        }
+        let (outputs, ticks) = self.control.step(inputs, &Timing { now_s, ..Timing::default() });
+        self.rig.write(now_s, &outputs);
+        self.rig.hear(now_s, &self.control.bulletins());
+        self.tick = ticks[Side::Right.index()];
+        for event in self.control.events() {
+            if let Event::FaultRaised { fault, .. } = event {
+                *self.faults.entry(format!("{fault:?}")).or_default() += 1;
+            }
+        }
+    }
+
+    fn state(&self) -> LoopState {
+        self.tick.map_or(LoopState::Disconnected, |tick| tick.state)
+    }
+}
+
+/// Both machines and the line.
+pub(super) struct Bench {
+    console: Machine<FarFollower<Place, End>>,
+    follower: Machine<FarLeader<Place, End>>,
+    /// From the console to the follower, and back.
+    lines: [Line; 2],
+    condition: Condition,
+    pub(super) rig: RigConfig,
+    /// Since the line was opened, and since the loops were started.
+    pub(super) tick: u32,
+    begun: u32,
+    /// Tick in which the newest command that the follower has was given.
+    newest: Option<u32>,
+}
+
+/// What is seen of one tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    /// Of the console's loop.
+    pub(super) console: Tick,
+    pub(super) states: [LoopState; 2],
+    /// True positions of hand and tip, m, and true force of the tissue on the tip, N.
+    pub(super) hand_m: Vector3<f64>,
+    pub(super) tip_m: Vector3<f64>,
+    pub(super) tip_n: Vector3<f64>,
+    /// Tick in which the newest command that the follower has was given.
+    pub(super) newest: Option<u32>,
+    /// How long the payloads of this tick were under way to the follower and to the console, ticks: sum and number.
+    pub(super) under_way: [(u32, u32); 2],
+}
+
+impl Bench {
+    /// The line has been open for `known_s` when the loops start.
+    pub(super) fn new(condition: Condition, mode: Mode, known_s: f64) -> Result<Self, NetworkError> {
+        let mut rig = RigConfig::load("simulated")?;
+        (rig.mode, rig.delay_s) = (mode, 0.0);
+        let scene = Scene::load("peg_transfer")?;
+        let (one, other) = Stream::pair(&StreamSettings::of_arms(1))?;
+        let [there, back] = condition.lines();
+        let mut ends = [End::new(one), End::new(other)];
+        let mut lines = [Line::new(there, SEEDS[0]), Line::new(back, SEEDS[1])];
+        let begun = (known_s * RATE_HZ) as u32;
+        for tick in 0..begun {
+            measure(&mut ends, &mut lines, tick, condition.ahead_s(0.0));
+        }
+        let [one, other] = ends;
+        let console = FarFollower::new(Place::new(&scene), one, RATE_HZ);
+        let follower = FarLeader::new(Place::new(&scene), other, RATE_HZ);
+        Ok(Self {
+            console: Machine::new(&rig, console)?,
+            follower: Machine::new(&at_follower(&rig), follower)?,
+            lines,
+            condition,
+            rig,
+            tick: begun,
+            begun,
+            newest: None,
+        })
+    }
+
+    /// Time since the line was opened, s.
+    pub(super) fn now_s(&self) -> f64 {
+        f64::from(self.tick) / RATE_HZ
+    }
+
+    /// Ticks since the loops were started.
+    pub(super) const fn ticks(&self) -> u32 {
+        self.tick - self.begun
+    }
+
+    /// The follower's clock minus the console's, s.
+    pub(super) fn ahead_s(&self) -> f64 {
+        self.condition.ahead_s(f64::from(self.ticks()) / RATE_HZ)
+    }
+
+    /// The ends of the stream: the console's and the follower's.
+    pub(super) const fn ends(&self) -> [&End; 2] {
+        [self.console.rig.wire(), self.follower.rig.wire()]
+    }
+
+    /// Faults that the console and the follower have raised.
+    pub(super) const fn faults(&self) -> [&BTreeMap<String, u32>; 2] {
+        [&self.console.faults, &self.follower.faults]
+    }
+
+    /// One tick of both machines; `None` before the console's loop has one.
+    pub(super) fn step(&mut self, command: Option<Command>) -> Option<Seen> {
+        let (now_s, ahead_s, tick) = (self.now_s(), self.ahead_s(), self.tick);
+        let [there, back] = &mut self.lines;
+
+        let end = self.console.rig.wire_mut();
+        end.tick = tick;
+        while let Some((came_s, bytes)) = back.receive(now_s + ROUNDING_S) {
+            end.arrive(&bytes, came_s);
+        }
+        self.console.step(command, now_s);
+        self.console.rig.wire_mut().out.drain(..).for_each(|bytes| there.send(now_s, &bytes));
+
+        self.follower.rig.local_mut().ahead_s = ahead_s;
+        let end = self.follower.rig.wire_mut();
+        end.tick = tick;
+        while let Some((came_s, bytes)) = there.receive(now_s + ROUNDING_S) {
+            end.arrive(&bytes, came_s + ahead_s);
+        }
+        self.follower.step(None, now_s + ahead_s);
+        self.follower.rig.wire_mut().out.drain(..).for_each(|bytes| back.send(now_s, &bytes));
+
+        let (console, follower) = (self.console.rig.wire(), self.follower.rig.wire());
+        let under_way = [under_way(console, follower), under_way(follower, console)];
+        let newest = follower.taken.last().and_then(|number| console.sent.get(*number as usize).copied());
+        self.newest = newest.and_then(|tick| tick.checked_sub(self.begun)).or(self.newest);
+        self.tick += 1;
+        Some(Seen {
+            console: self.console.tick?,
+            states: [self.console.state(), self.follower.state()],
+            hand_m: self.console.rig.local().world.hand().position_m(),
+            tip_m: self.follower.rig.measured()[Side::Right.index()]?.tip_m,
+            tip_n: self.follower.rig.local().world.true_tip_n(),
+            newest: self.newest,
+            under_way,
+        })
+    }
+}
+
+/// One tick of the line alone: play-out and copies become what they are on a line that has been open for a while.
+fn measure([console, follower]: &mut [End; 2], [there, back]: &mut [Line; 2], tick: u32, ahead_s: f64) {
+    let now_s = f64::from(tick) / RATE_HZ;
+    let pass = |end: &mut End, from: &mut Line, to: &mut Line, ahead_s: f64| {
+        end.tick = tick;
+        while let Some((came_s, bytes)) = from.receive(now_s + ROUNDING_S) {
+            end.arrive(&bytes, came_s + ahead_s);
+        }
+        end.receive(now_s + ahead_s, &mut |_| {});
+        // As long as what a follower sends in most ticks, and no message.
+        end.send(now_s + ahead_s, &[0xff; 40]);
+        end.out.drain(..).for_each(|bytes| to.send(now_s, &bytes));
+    };
+    pass(console, back, there, 0.0);
+    pass(follower, there, back, ahead_s);
+}
+
+/// How long the payloads that `to` has just handed over were under way, ticks: sum and number.
+fn under_way(from: &End, to: &End) -> (u32, u32) {
+    let sent = to.taken.iter().filter_map(|number| from.sent.get(*number as usize));
+    sent.fold((0, 0), |(sum, count), sent| (sum + to.tick - sent, count + 1))
+}

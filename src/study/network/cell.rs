@@ -1,0 +1,207 @@
+//! One cell: a run of both machines over one line in one mode, and what was seen in it.
+
+use nalgebra::Vector3;
+use nima_core::impedance::Mode;
+use nima_machine::messages::LoopState;
+use nima_network::playout::Counts;
+
+use super::{
+    Condition, Jitter, NetworkError, Row,
+    bench::{Bench, RATE_HZ, Seen},
+    operator::Operator,
+    trace::{Sample, Trace},
+};
+use crate::gates::{Breaches, Watch};
+
+/// Parts of a run, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::struct_field_names, reason = "the unit is in the name")]
+pub(super) struct Lengths {
+    /// The line is open and measured, the loops do not run yet; with jitter, and without.
+    pub(super) known_s: [f64; 2],
+    /// Nobody is engaged.
+    pub(super) settle_s: f64,
+    /// Engaged, and not judged yet: the models learn.
+    pub(super) learn_s: f64,
+    /// Judged.
+    pub(super) task_s: f64,
+}
+
+/// A machine that has been stopped for so long holds still, s; after an engagement its tip is watched for so long, s.
+const HOLDS_AFTER_S: f64 = 0.1;
+const WATCHED_S: f64 = 0.1;
+/// The clock's estimate is compared with the truth every so many ticks.
+const CLOCK_EVERY: u32 = 50;
+
+/// What is counted while a cell runs.
+struct Counting {
+    watch: Watch<3>,
+    breaches: Breaches,
+    /// Ticks since a payload was last handed over to the console, and the most at which there was still force.
+    silent: u32,
+    force_after: u32,
+    /// Ticks for which the follower has been stopped, and for which it has been engaged again since.
+    stopped: u32,
+    engaged: u32,
+    has_returned: bool,
+    tip_m: Option<Vector3<f64>>,
+    step_m: Option<f64>,
+    under_way: [(u64, u64); 2],
+    clock_error_s: f64,
+    clock_bound_s: f64,
+}
+
+impl Counting {
+    fn look(&mut self, seen: &Seen, is_judged: bool) {
+        let tick = &seen.console;
+        self.watch.look(&tick.rendered_n, &tick.gates, 1.0, &mut self.breaches);
+        self.silent = if seen.under_way[1].1 > 0 { 0 } else { self.silent + 1 };
+        if tick.rendered_n.norm() > 0.0 {
+            self.force_after = self.force_after.max(self.silent);
+        }
+        self.look_at_tip(seen);
+        if is_judged {
+            for (all, (ticks, count)) in self.under_way.iter_mut().zip(seen.under_way) {
+                *all = (all.0 + u64::from(ticks), all.1 + u64::from(count));
+            }
+        }
+    }
+
+    /// The largest step of a tip that was held, until it has followed again for a moment.
+    fn look_at_tip(&mut self, seen: &Seen) {
+        let [_, follower] = seen.states;
+        self.stopped = if follower.is_latched() { self.stopped + 1 } else { 0 };
+        self.has_returned |= f64::from(self.stopped) > HOLDS_AFTER_S * RATE_HZ;
+        self.engaged = if follower == LoopState::Engaged { self.engaged + 1 } else { 0 };
+        self.has_returned &= f64::from(self.engaged) < WATCHED_S * RATE_HZ;
+        if let Some(before_m) = self.tip_m.replace(seen.tip_m).filter(|_| self.has_returned) {
+            self.step_m = Some(self.step_m.unwrap_or(0.0).max((seen.tip_m - before_m).norm()));
+        }
+    }
+
+    fn look_at_clock(&mut self, bench: &Bench) {
+        let estimate = bench.ends()[0].stream.clock().estimate(bench.now_s());
+        if let Some(estimate) = estimate {
+            self.clock_error_s = self.clock_error_s.max((estimate.offset_s - bench.ahead_s()).abs());
+            self.clock_bound_s = self.clock_bound_s.max(estimate.bound_s);
+        }
+    }
+}
+
+/// Runs a cell.
+pub(super) fn measured(condition: Condition, mode: Mode, lengths: Lengths) -> Result<Row, NetworkError> {
+    let Lengths { known_s, settle_s, learn_s, task_s } = lengths;
+    let known_s = known_s[usize::from(condition.jitter == Jitter::None)];
+    let mut bench = Bench::new(condition, mode, known_s)?;
+    let mut operator = Operator::new(bench.now_s() + settle_s);
+    let ticks = ((settle_s + learn_s + task_s) * RATE_HZ) as u32;
+    let mut counting = Counting {
+        watch: Watch::of(&bench.rig.gates, 1.0 / RATE_HZ),
+        breaches: Breaches::default(),
+        silent: 0,
+        force_after: 0,
+        stopped: 0,
+        engaged: 0,
+        has_returned: false,
+        tip_m: None,
+        step_m: None,
+        under_way: [(0, 0); 2],
+        clock_error_s: 0.0,
+        clock_bound_s: 0.0,
+    };
+    let judged_from = ((settle_s + learn_s) * RATE_HZ) as u32;
+    let mut trace = Trace::new(judged_from as usize);
+    let mut before = [Counts::default(); 2];
+    let (mut clock_set, mut round_trip_s) = (None, 0.0);
+    while bench.ticks() < ticks {
+        let (tick, ahead_s) = (bench.ticks(), bench.ahead_s());
+        if tick == judged_from {
+            before = counts(&bench);
+        }
+        let command = operator.command(bench.now_s());
+        let Some(seen) = bench.step(command) else { continue };
+        if condition.happening.sets_clock() && (bench.ahead_s() - ahead_s).abs() > 1e-3 {
+            clock_set = Some(bench.tick);
+        }
+        operator.look(bench.now_s(), seen.states);
+        counting.look(&seen, tick >= judged_from);
+        if tick >= judged_from && tick.is_multiple_of(CLOCK_EVERY) && !condition.happening.sets_clock() {
+            counting.look_at_clock(&bench);
+        }
+        round_trip_s = seen.console.delay_s;
+        trace.push(Sample {
+            hand_m: seen.hand_m,
+            tip_n: seen.tip_n,
+            rendered_n: seen.console.rendered_n,
+            asked_n: seen.console.asked_n[mode.index()],
+            is_engaged: seen.states[0] == LoopState::Engaged,
+            newest: seen.newest,
+        });
+    }
+    let named = |set: u32| {
+        let found = bench.ends().map(|end| end.stepped.map(|tick| f64::from(tick.saturating_sub(set)) * 1e3 / RATE_HZ));
+        found[0].zip(found[1]).map(|(one, other)| one.max(other))
+    };
+    let shares = shares(&before, &counts(&bench));
+    let felt = trace.felt();
+    let [console, follower] = bench.faults();
+    Ok(Row {
+        condition,
+        mode,
+        error_n: felt.error_n,
+        asked_error_n: felt.asked_error_n,
+        tissue_n: felt.tissue_n,
+        over_clean: None,
+        over_same_playout: None,
+        over_reflection: None,
+        injected_mj: 1e3 * felt.injected_j,
+        tissue_injected_mj: 1e3 * felt.tissue_injected_j,
+        oscillation_n: felt.oscillation_n,
+        tissue_oscillation_n: felt.tissue_oscillation_n,
+        ceiling_breaches: counting.breaches.ceiling + counting.breaches.not_finite,
+        slew_breaches: counting.breaches.slew,
+        without_force_ms: felt.without_force_ms,
+        force_after_data_ms: f64::from(counting.force_after) * 1e3 / RATE_HZ,
+        engaged: felt.engaged,
+        stops: operator.stops,
+        resumed: operator.resumed,
+        console_faults: console.clone(),
+        follower_faults: follower.clone(),
+        return_step_mm: counting.step_m.map(|step_m| 1e3 * step_m),
+        under_way_ms: counting.under_way.map(|(ticks, count)| ticks as f64 / count.max(1) as f64 * 1e3 / RATE_HZ),
+        round_trip_ms: 1e3 * round_trip_s,
+        late_percent: shares.map(|shares| shares[0]),
+        lost_percent: shares.map(|shares| shares[1]),
+        recovered_percent: shares.map(|shares| shares[2]),
+        copies: copies(&bench),
+        clock_error_ms: 1e3 * counting.clock_error_s,
+        clock_bound_ms: 1e3 * counting.clock_bound_s,
+        clock_step_named_ms: clock_set.and_then(named),
+    })
+}
+
+/// What became of the payloads to the follower and to the console.
+fn counts(bench: &Bench) -> [Counts; 2] {
+    let [console, follower] = bench.ends();
+    [follower, console].map(|end| end.stream.figures(bench.now_s()).counts)
+}
+
+/// Copies wanted and used at the end, to the follower and to the console.
+fn copies(bench: &Bench) -> [[usize; 2]; 2] {
+    bench.ends().map(|end| end.stream.figures(bench.now_s()).copies).map(|copies| [copies.wanted, copies.used])
+}
+
+/// Shares of the payloads that were late, lost and recovered, %.
+fn shares(before: &[Counts; 2], after: &[Counts; 2]) -> [[f64; 3]; 2] {
+    std::array::from_fn(|way| {
+        let (before, after) = (&before[way], &after[way]);
+        let [delivered, late, lost, recovered] = [
+            after.delivered - before.delivered,
+            after.late - before.late,
+            after.lost - before.lost,
+            after.recovered - before.recovered,
+        ];
+        let all = (delivered + lost).max(1) as f64;
+        [late, lost, recovered].map(|count| 100.0 * count as f64 / all)
+    })
+}

@@ -1,0 +1,179 @@
+//! What happens to the datagrams and to the clocks: the factors of the study.
+
+use nima_network::impairment::{Flap, Jitter as LineJitter, Loss, OUTAGES, Settings};
+use serde::{Serialize, Serializer};
+
+/// Delays of the line in each direction, ms.
+pub const DELAYS_MS: [f64; 11] = [0.0, 5.0, 15.0, 36.0, 72.0, 100.0, 150.0, 300.0, 450.0, 600.0, 900.0];
+/// Jitters.
+pub const JITTERS: [Jitter; 5] =
+    [Jitter::None, Jitter::Normal(5.0), Jitter::Normal(20.0), Jitter::Normal(50.0), Jitter::Pareto];
+/// Shares of datagrams that are lost, %.
+pub const LOSSES_PERCENT: [f64; 6] = [0.0, 1.0, 5.0, 10.0, 20.0, 30.0];
+/// Mean lengths of bursts of loss, ms.
+pub const BURSTS_MS: [f64; 3] = [10.0, 50.0, 200.0];
+/// Mean (s) and shape of the Pareto jitter: one datagram in a thousand is 90 ms late.
+const PARETO: LineJitter = LineJitter::Pareto { mean_s: 5e-3, shape: 3.0 };
+/// A line that breaks off for a moment, too short for a fault.
+const FLAP: Flap = Flap { down_s: 0.05, every_s: 1.0 };
+/// How far the follower's clock is ahead, s, and when it is set (s of the run) and by how much (s), and how much faster it may run.
+const AHEAD_S: f64 = 1800.0;
+const CLOCK_SET_AT_S: f64 = 12.0;
+const CLOCK_STEP_S: f64 = 0.05;
+const CLOCK_DRIFT: f64 = 1e-4;
+/// Delay of the longer direction where they differ, ms.
+const LONG_WAY_MS: f64 = 100.0;
+
+/// How much longer than the delay a datagram takes. A late one holds up those behind it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Jitter {
+    /// No longer.
+    None,
+    /// The absolute value of a normal number with this deviation, ms.
+    Normal(f64),
+    /// A Pareto number with a mean of 5 ms: rarely by very much.
+    Pareto,
+}
+
+impl Jitter {
+    /// For tables.
+    pub fn word(self) -> String {
+        match self {
+            Self::None => "0".to_owned(),
+            Self::Normal(deviation_ms) => format!("{deviation_ms}"),
+            Self::Pareto => "Pareto".to_owned(),
+        }
+    }
+}
+
+impl Serialize for Jitter {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.word())
+    }
+}
+
+/// What happens besides delay, jitter and loss.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Happening {
+    /// Nothing.
+    Nothing,
+    /// No connection for 0.8 s of every 4 s, the published profile.
+    Outages,
+    /// No connection for 50 ms of every second.
+    Flap,
+    /// The follower's clock is set 50 ms forward.
+    ClockForward,
+    /// The follower's clock is set 50 ms back.
+    ClockBack,
+    /// The follower's clock runs 100 ppm fast.
+    ClockDrift,
+    /// One datagram in twenty is overtaken by those of the next 10 ms.
+    Reorder,
+    /// Every fifth datagram comes twice.
+    Duplicates,
+    /// The way back takes 100 ms.
+    Asymmetric,
+}
+
+impl Happening {
+    /// Each of them.
+    pub const ALL: [Self; 9] = [
+        Self::Nothing,
+        Self::Outages,
+        Self::Flap,
+        Self::ClockForward,
+        Self::ClockBack,
+        Self::ClockDrift,
+        Self::Reorder,
+        Self::Duplicates,
+        Self::Asymmetric,
+    ];
+
+    /// For tables.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Nothing => "-",
+            Self::Outages => "outages 0.8 s of 4 s",
+            Self::Flap => "flap 50 ms of 1 s",
+            Self::ClockForward => "clock +50 ms",
+            Self::ClockBack => "clock -50 ms",
+            Self::ClockDrift => "clock 100 ppm fast",
+            Self::Reorder => "5 % reordered",
+            Self::Duplicates => "20 % doubled",
+            Self::Asymmetric => "100 ms back",
+        }
+    }
+
+    /// Whether the follower's clock is set.
+    pub const fn sets_clock(self) -> bool {
+        matches!(self, Self::ClockForward | Self::ClockBack)
+    }
+}
+
+/// One combination of the factors.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Condition {
+    /// Delay in each direction, ms.
+    pub delay_ms: f64,
+    /// On top of it.
+    pub jitter: Jitter,
+    /// Share of datagrams lost, %.
+    pub loss_percent: f64,
+    /// Mean length of the bursts in which they are lost, ms; `None`: each for itself.
+    pub burst_ms: Option<f64>,
+    /// What else happens.
+    pub happening: Happening,
+}
+
+impl Condition {
+    /// A line that only takes this long, ms.
+    pub const fn clean(delay_ms: f64) -> Self {
+        Self { delay_ms, jitter: Jitter::None, loss_percent: 0.0, burst_ms: None, happening: Happening::Nothing }
+    }
+
+    /// Whether there is nothing but a delay.
+    pub fn is_clean(&self) -> bool {
+        *self == Self::clean(self.delay_ms)
+    }
+
+    /// The line from console to follower, and the one back.
+    pub(super) fn lines(&self) -> [Settings; 2] {
+        let share = self.loss_percent / 100.0;
+        let there = Settings {
+            delay_s: self.delay_ms * 1e-3,
+            jitter: match self.jitter {
+                Jitter::None => LineJitter::None,
+                Jitter::Normal(deviation_ms) => LineJitter::Normal { deviation_s: deviation_ms * 1e-3 },
+                Jitter::Pareto => PARETO,
+            },
+            loss: match self.burst_ms {
+                _ if share <= 0.0 => Loss::None,
+                Some(burst_ms) => Loss::Bursts { share, burst_s: burst_ms * 1e-3 },
+                None => Loss::Independent { share },
+            },
+            ..Settings::default()
+        };
+        let both = match self.happening {
+            Happening::Outages => Settings { flap: Some(OUTAGES), ..there },
+            Happening::Flap => Settings { flap: Some(FLAP), ..there },
+            Happening::Reorder => Settings { reorder: 0.05, reorder_s: 0.01, ..there },
+            Happening::Duplicates => Settings { duplicate: 0.2, ..there },
+            _ => there,
+        };
+        let back_ms = if self.happening == Happening::Asymmetric { LONG_WAY_MS } else { self.delay_ms };
+        [both, Settings { delay_s: back_ms * 1e-3, ..both }]
+    }
+
+    /// The follower's clock minus the console's at this time of the run, s.
+    pub(super) fn ahead_s(&self, t_s: f64) -> f64 {
+        let is_set = t_s >= CLOCK_SET_AT_S;
+        AHEAD_S
+            + match self.happening {
+                Happening::ClockForward if is_set => CLOCK_STEP_S,
+                Happening::ClockBack if is_set => -CLOCK_STEP_S,
+                Happening::ClockDrift => CLOCK_DRIFT * t_s,
+                _ => 0.0,
+            }
+    }
+}

@@ -1,0 +1,150 @@
+//! Which cells are run.
+
+use nima_core::impedance::Mode;
+use serde::Serialize;
+
+use super::{BURSTS_MS, Condition, DELAYS_MS, Happening, JITTERS, Jitter, LOSSES_PERCENT, cell::Lengths};
+
+/// Delay of the point around which each factor is varied alone, ms.
+pub const BASE_MS: f64 = 36.0;
+/// The line that may cost 10 % of error at most.
+pub(super) const JUDGED_JITTER: Jitter = Jitter::Normal(20.0);
+pub(super) const JUDGED_LOSS_PERCENT: f64 = 30.0;
+/// Jitter at which the clock is judged.
+pub(super) const CLOCK_JITTER: Jitter = Jitter::Normal(1.0);
+/// Loss in bursts, %.
+const BURST_LOSSES_PERCENT: [f64; 2] = [5.0, 20.0];
+
+/// How much is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Extent {
+    /// A few cells, each short.
+    Quick,
+    /// Every mode over every delay; every other factor alone and loss with jitter at [`BASE_MS`], in three modes.
+    Usual,
+    /// Every combination.
+    Full,
+}
+
+/// What to run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// How much.
+    pub extent: Extent,
+    /// In these modes, the first of which is judged; if none is given, in all, and the default one is judged. Delayed reflection is
+    /// always among them: the others are compared with it.
+    pub modes: Vec<Mode>,
+}
+
+impl Options {
+    /// The mode that is judged.
+    pub fn judged(&self) -> Mode {
+        self.modes.first().copied().unwrap_or(Mode::Best)
+    }
+
+    fn modes_or(&self, all: impl IntoIterator<Item = Mode>) -> Vec<Mode> {
+        let mut modes: Vec<Mode> = Vec::new();
+        let asked = if self.modes.is_empty() { all.into_iter().collect() } else { self.modes.clone() };
+        for mode in asked.into_iter().chain([Mode::Dfr]) {
+            if !modes.contains(&mode) {
+                modes.push(mode);
+            }
+        }
+        modes
+    }
+}
+
+pub(super) const fn lengths(extent: Extent) -> Lengths {
+    match extent {
+        Extent::Quick => Lengths { known_s: [20.0, 5.0], settle_s: 1.0, learn_s: 4.0, task_s: 10.0 },
+        _ => Lengths { known_s: [60.0, 5.0], settle_s: 5.0, learn_s: 5.0, task_s: 20.0 },
+    }
+}
+
+/// The cells, in the order in which they are run.
+pub(super) fn plan(options: &Options) -> Vec<(Condition, Mode)> {
+    let all = || Mode::ALL.into_iter().chain(Mode::BASELINES);
+    let cells = |conditions: Vec<Condition>, modes: Vec<Mode>| {
+        modes.into_iter().flat_map(move |mode| conditions.clone().into_iter().map(move |condition| (condition, mode)))
+    };
+    match options.extent {
+        Extent::Quick => cells(quick(), options.modes_or([Mode::Best])).collect(),
+        Extent::Full => cells(full(), options.modes_or(all())).collect(),
+        Extent::Usual => {
+            let delays = DELAYS_MS.map(Condition::clean).to_vec();
+            let over_delays = cells(delays.clone(), options.modes_or(all()));
+            let others = around().into_iter().filter(|condition| !delays.contains(condition)).collect();
+            over_delays.chain(cells(others, options.modes_or([Mode::Best, Mode::Matched]))).collect()
+        }
+    }
+}
+
+/// The line that is judged, at this delay, ms.
+pub(super) const fn judged_line(delay_ms: f64) -> Condition {
+    Condition { jitter: JUDGED_JITTER, loss_percent: JUDGED_LOSS_PERCENT, ..Condition::clean(delay_ms) }
+}
+
+fn quick() -> Vec<Condition> {
+    let base = Condition::clean(BASE_MS);
+    vec![base, judged_line(BASE_MS), Condition { happening: Happening::Outages, ..base }]
+}
+
+/// Loss with jitter, and every other factor alone.
+fn around() -> Vec<Condition> {
+    let base = Condition::clean(BASE_MS);
+    let crossed = JITTERS
+        .into_iter()
+        .flat_map(|jitter| LOSSES_PERCENT.map(|loss_percent| Condition { jitter, loss_percent, ..base }));
+    let bursts = BURST_LOSSES_PERCENT.into_iter().flat_map(|loss_percent| {
+        BURSTS_MS.map(|burst_ms| Condition { loss_percent, burst_ms: Some(burst_ms), ..base })
+    });
+    let happenings = Happening::ALL.into_iter().skip(1).map(|happening| Condition { happening, ..base });
+    crossed.chain([Condition { jitter: CLOCK_JITTER, ..base }]).chain(bursts).chain(happenings).collect()
+}
+
+fn full() -> Vec<Condition> {
+    let mut all = Vec::new();
+    for delay_ms in DELAYS_MS {
+        for jitter in JITTERS {
+            for loss_percent in LOSSES_PERCENT {
+                let bursts = if loss_percent > 0.0 { &BURSTS_MS[..] } else { &[] };
+                for burst_ms in [None].into_iter().chain(bursts.iter().copied().map(Some)) {
+                    for happening in Happening::ALL {
+                        all.push(Condition { delay_ms, jitter, loss_percent, burst_ms, happening });
+                    }
+                }
+            }
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn planned(extent: Extent, modes: &[Mode]) -> Vec<(Condition, Mode)> {
+        plan(&Options { extent, modes: modes.to_vec() })
+    }
+
+    #[test]
+    fn no_cell_is_run_twice_and_each_has_what_it_is_compared_with() {
+        for extent in [Extent::Quick, Extent::Usual] {
+            for modes in [&[][..], &[Mode::Matched, Mode::Dfr, Mode::Matched]] {
+                let cells = planned(extent, modes);
+                for (at, (condition, mode)) in cells.iter().enumerate() {
+                    assert!(!cells[..at].contains(&(*condition, *mode)), "{condition:?} {mode}");
+                    assert!(cells.contains(&(Condition::clean(condition.delay_ms), *mode)), "{condition:?} {mode}");
+                    assert!(cells.contains(&(*condition, Mode::Dfr)), "{condition:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_whole_is_every_combination() {
+        let (delays, jitters, losses) = (DELAYS_MS.len(), JITTERS.len(), 1 + 5 * (1 + BURSTS_MS.len()));
+        assert_eq!(planned(Extent::Full, &[]).len(), delays * jitters * losses * Happening::ALL.len() * 12);
+    }
+}

@@ -1,0 +1,208 @@
+//! What the hand felt in a run, against what it should have felt.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+
+use super::bench::RATE_HZ;
+
+/// In contact: the tissue's force is above this, N; and the hand feels nothing: its force is below that, N.
+const CONTACT_N: f64 = 0.5;
+const NOTHING_N: f64 = 0.05;
+/// A command that takes so much longer than the one before it was lost, ticks: the follower does what came before.
+const LOST_TICKS: usize = 20;
+/// Band of oscillations, Hz.
+const BAND_HZ: [f64; 2] = [2.0, 50.0];
+
+/// One tick of both machines.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample {
+    /// True position of the hand at the beginning of the tick, m.
+    pub(super) hand_m: Vector3<f64>,
+    /// True force of the tissue, N.
+    pub(super) tip_n: Vector3<f64>,
+    /// Force in the hand, which is held until the next tick, and what the mode asked for, N.
+    pub(super) rendered_n: Vector3<f64>,
+    pub(super) asked_n: Vector3<f64>,
+    pub(super) is_engaged: bool,
+    /// Tick in which the newest command that the follower has was given.
+    pub(super) newest: Option<u32>,
+}
+
+/// All ticks of a run.
+#[derive(Debug)]
+pub(super) struct Trace {
+    samples: Vec<Sample>,
+    judged_from: usize,
+}
+
+/// What the hand felt.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Felt {
+    /// Mean error of the force, and of what the mode asked for before the gates, N; NaN if the hand was never engaged.
+    pub(super) error_n: f64,
+    pub(super) asked_error_n: f64,
+    /// Mean of the tissue's force, N.
+    pub(super) tissue_n: f64,
+    /// Most net energy that the hand was given since an engagement, and that the tissue's force would have given it on the same way, J.
+    pub(super) injected_j: f64,
+    pub(super) tissue_injected_j: f64,
+    /// Effective value between 2 and 50 Hz of the force in the hand and of the tissue's, N.
+    pub(super) oscillation_n: f64,
+    pub(super) tissue_oscillation_n: f64,
+    /// Longest time in contact without force, ms.
+    pub(super) without_force_ms: f64,
+    /// Share of the judged time.
+    pub(super) engaged: f64,
+}
+
+impl Trace {
+    /// Judged from this tick on.
+    pub(super) const fn new(judged_from: usize) -> Self {
+        Self { samples: Vec::new(), judged_from }
+    }
+
+    pub(super) fn push(&mut self, sample: Sample) {
+        self.samples.push(sample);
+    }
+
+    /// For each tick the force of the tissue when the follower had the command of that tick, N. A command that was lost counts as one
+    /// that took as long as the last one that arrived. Ends where the run does.
+    fn due_n(&self) -> Vec<Vector3<f64>> {
+        let mut due_n = Vec::with_capacity(self.samples.len());
+        let mut lag = None;
+        for (tick, sample) in self.samples.iter().enumerate() {
+            let Some(newest) = sample.newest.map(|newest| newest as usize) else { continue };
+            while due_n.len() <= newest {
+                let took = tick - due_n.len();
+                let lag = lag.get_or_insert(took);
+                if took <= *lag + LOST_TICKS {
+                    *lag = took;
+                }
+                due_n.push(self.samples.get(due_n.len() + *lag).unwrap_or(sample).tip_n);
+            }
+        }
+        // What was commanded last and never arrived.
+        let lag = lag.unwrap_or(0);
+        while let Some(sample) = self.samples.get(due_n.len() + lag) {
+            due_n.push(sample.tip_n);
+        }
+        due_n
+    }
+
+    /// What the hand felt.
+    pub(super) fn felt(&self) -> Felt {
+        let due_n = self.due_n();
+        let mut felt = Felt::default();
+        let (mut band, mut tissue_band) = (Band::default(), Band::default());
+        let (mut energy_j, mut tissue_j) = (0.0, 0.0);
+        let (mut judged, mut engaged, mut without, mut was_engaged) = (0.0, 0.0_f64, 0_u32, false);
+        for (tick, (pair, due_n)) in self.samples.windows(2).zip(&due_n).enumerate() {
+            let [sample, next] = [pair[0], pair[1]];
+            let (swings_n, tissue_swings_n) = (band.step(&sample.rendered_n), tissue_band.step(due_n));
+            was_engaged |= sample.is_engaged;
+            without = if was_engaged && due_n.norm() > CONTACT_N && sample.rendered_n.norm() < NOTHING_N {
+                without + 1
+            } else {
+                0
+            };
+            felt.without_force_ms = felt.without_force_ms.max(f64::from(without) * 1e3 / RATE_HZ);
+            let way_m = next.hand_m - sample.hand_m;
+            energy_j += sample.rendered_n.dot(&way_m);
+            tissue_j += due_n.dot(&way_m);
+            if !sample.is_engaged {
+                (energy_j, tissue_j) = (0.0, 0.0);
+            }
+            felt.injected_j = felt.injected_j.max(energy_j);
+            felt.tissue_injected_j = felt.tissue_injected_j.max(tissue_j);
+            if tick < self.judged_from {
+                continue;
+            }
+            judged += 1.0;
+            if sample.is_engaged {
+                engaged += 1.0;
+                felt.error_n += (sample.rendered_n - due_n).norm();
+                felt.asked_error_n += (sample.asked_n - due_n).norm();
+                felt.tissue_n += due_n.norm();
+                felt.oscillation_n += swings_n.norm_squared();
+                felt.tissue_oscillation_n += tissue_swings_n.norm_squared();
+            }
+        }
+        // Without a tick that counts there is no mean: 0 / 0 is not a number.
+        for sum in [&mut felt.error_n, &mut felt.asked_error_n, &mut felt.tissue_n] {
+            *sum /= engaged;
+        }
+        for sum in [&mut felt.oscillation_n, &mut felt.tissue_oscillation_n] {
+            *sum = (*sum / engaged).sqrt();
+        }
+        felt.engaged = engaged / judged;
+        felt
+    }
+}
+
+/// A band of two low-passes of first order.
+#[derive(Clone, Copy, Debug, Default)]
+struct Band {
+    slow_n: Vector3<f64>,
+    fast_n: Vector3<f64>,
+}
+
+impl Band {
+    fn step(&mut self, force_n: &Vector3<f64>) -> Vector3<f64> {
+        let [slow, fast] = BAND_HZ.map(|hz| 1.0 - (-TAU * hz / RATE_HZ).exp());
+        self.slow_n += (force_n - self.slow_n) * slow;
+        self.fast_n += (force_n - self.fast_n) * fast;
+        self.fast_n - self.slow_n
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A hand on a sine of 1 cm at this frequency over a spring of 300 N/m that is felt so many ticks late.
+    fn pressed(hz: f64, late: usize, travel: usize) -> Felt {
+        let at_m = |tick: usize| Vector3::z() * 0.01 * (TAU * hz * tick as f64 / RATE_HZ).sin();
+        let mut trace = Trace::new(1000);
+        for tick in 0..20_000_usize {
+            let rendered_n = at_m(tick.saturating_sub(late)) * -300.0;
+            trace.push(Sample {
+                hand_m: at_m(tick),
+                // The follower is where the hand was when the newest command was given.
+                tip_n: at_m(tick.saturating_sub(travel)) * -300.0,
+                rendered_n,
+                asked_n: rendered_n,
+                is_engaged: tick >= 500,
+                newest: tick.checked_sub(travel).map(|tick| tick as u32),
+            });
+        }
+        trace.felt()
+    }
+
+    #[test]
+    fn a_force_that_is_right_for_the_hand_now_has_no_error_however_long_the_way() {
+        for travel in [0, 40, 300] {
+            let felt = pressed(1.0, 0, travel);
+            assert!(felt.error_n < 1e-9 && (felt.injected_j - felt.tissue_injected_j).abs() < 1e-9, "{felt:?}");
+            assert!((felt.engaged - 1.0).abs() < 1e-9 && felt.tissue_n > 1.8, "{felt:?}");
+        }
+    }
+
+    #[test]
+    fn a_late_force_has_an_error_and_gives_energy() {
+        let felt = pressed(1.0, 100, 40);
+        // Mean of 3 N times twice the sine of half the phase, and half of k a^2 times the sine of the phase in every period.
+        let phase = TAU * 0.1;
+        let error_n = 3.0 * 2.0 * (phase / 2.0).sin() * 2.0 / std::f64::consts::PI;
+        assert!((felt.error_n - error_n).abs() < 0.01, "{felt:?}, {error_n}");
+        let per_period_j = std::f64::consts::PI * 300.0 * 1e-4 * phase.sin();
+        assert!((felt.injected_j / (19.5 * per_period_j) - 1.0).abs() < 0.05, "{felt:?}, {per_period_j}");
+    }
+
+    #[test]
+    fn the_band_passes_what_oscillates() {
+        let [slow, middle, fast] = [0.2, 10.0, 300.0].map(|hz| pressed(hz, 0, 0).oscillation_n);
+        let whole_n = 3.0 / 2.0_f64.sqrt();
+        assert!(slow < 0.12 * whole_n && middle > 0.9 * whole_n && fast < 0.2 * whole_n, "{slow} {middle} {fast}");
+    }
+}

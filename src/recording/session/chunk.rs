@@ -104,9 +104,10 @@ impl Chunk {
 
 impl Closed {
     /// Its entry in the summary, where it stands at `at`.
-    pub(super) fn put_index(&self, out: &mut Vec<u8>, at: u64) {
+    pub(super) fn index(&self, at: u64) -> Vec<u8> {
         let (first, last) = self.times_ns.unwrap_or_default();
-        record(out, kind::CHUNK_INDEX, |out| {
+        let mut index = Vec::new();
+        record(&mut index, kind::CHUNK_INDEX, |out| {
             out.u64(first);
             out.u64(last);
             out.u64(at);
@@ -121,5 +122,6 @@ impl Closed {
             out.u64(self.compressed);
             out.u64(self.uncompressed);
         });
+        index
     }
 }

@@ -23,6 +23,7 @@ use std::{
 use super::{
     at,
     format::{self, DATA_END, END, HEAD, Put as _, head, kind, record},
+    reader::{Source, Walk},
     summary::Summary,
 };
 
@@ -42,8 +43,7 @@ pub(super) struct Layout {
     data_end: u64,
     /// Where the free room ends: the record that ends the data.
     room_end: u64,
-    /// Where the statistics stand, the last record of the summary.
-    statistics_at: u64,
+    tail: Tail,
     /// Where the footer stands; the file ends behind it.
     footer_at: u64,
     /// Everything written so far.
@@ -53,6 +53,18 @@ pub(super) struct Layout {
     #[cfg(test)]
     pub(super) log: Vec<(u64, Vec<u8>)>,
 }
+
+/// Where parts of a summary stand.
+#[derive(Clone, Copy, Default)]
+struct Tail {
+    /// The indexes of chunks, with free room between some of them. They are kept nowhere else.
+    indexes_at: u64,
+    /// Behind them the statistics, the last record.
+    statistics_at: u64,
+}
+
+/// So many bytes of the indexes are copied at once.
+const COPIED: usize = 64 << 10;
 
 impl Layout {
     /// Lays out a new, empty file that nobody else sees yet.
@@ -66,7 +78,7 @@ impl Layout {
             growth,
             data_end,
             room_end: 0,
-            statistics_at: 0,
+            tail: Tail::default(),
             footer_at,
             written: 0,
             failed: false,
@@ -74,13 +86,13 @@ impl Layout {
             log: Vec::new(),
         };
         let at = footer_at - SPARE - summary.room();
-        let statistics_at = layout.write_tail(summary, at, footer_at)?;
+        let tail = layout.write_tail(summary, at, footer_at)?;
         begin.extend_from_slice(&head(kind::ROOM, at - data_end - HEAD as u64));
         layout.write(&begin, 0)?;
         let mut end = Vec::new();
         format::end(&mut end, at + DATA_END as u64, 0, 0);
         layout.write(&end, footer_at)?;
-        (layout.room_end, layout.statistics_at) = (at, statistics_at);
+        (layout.room_end, layout.tail) = (at, tail);
         Ok(layout)
     }
 
@@ -94,7 +106,7 @@ impl Layout {
     }
 
     /// Makes room for so many bytes of data and of summary, and tells where the data will stand.
-    pub(super) fn reserve(&mut self, data: u64, in_summary: u64, summary: &Summary) -> io::Result<u64> {
+    pub(super) fn reserve(&mut self, data: u64, in_summary: u64, summary: &mut Summary) -> io::Result<u64> {
         // Twice the summary: one that is written anew needs room while it leaves as much for the next.
         let needed = data + 4 * HEAD as u64 + 2 * (summary.room() + in_summary) + SPARE;
         if self.failed {
@@ -119,14 +131,14 @@ impl Layout {
         Ok(())
     }
 
-    /// Appends a chunk index, with the statistics behind it; `summary` holds both already.
-    pub(super) fn append_index(&mut self, index: &[u8], summary: &Summary) -> io::Result<()> {
-        let begin = self.statistics_at;
+    /// Appends the new chunk indexes, with the statistics behind them.
+    pub(super) fn append_indexes(&mut self, summary: &mut Summary) -> io::Result<()> {
+        let begin = self.tail.statistics_at;
+        let mut bytes = summary.new_indexes().to_vec();
         let statistics = summary.statistics_record();
-        let fits = |at: u64| at % PAGE + (index.len() + statistics.len() + 3 * HEAD) as u64 <= PAGE;
+        let fits = |at: u64| at % PAGE + (bytes.len() + statistics.len() + 3 * HEAD) as u64 <= PAGE;
         // Where it does not fit into this page, it is written into the next one before this one leads there.
         let at = if fits(begin) { begin } else { pages(begin + HEAD as u64) };
-        let mut bytes = index.to_vec();
         let statistics_at = keep_whole(&mut bytes, at);
         bytes.extend_from_slice(&statistics);
         let end = at + (bytes.len() + HEAD) as u64;
@@ -140,44 +152,74 @@ impl Layout {
             self.write(&bytes, at)?;
             self.switch(&head(kind::ROOM, at - begin - HEAD as u64), begin)?;
         }
-        self.statistics_at = statistics_at;
+        self.tail.statistics_at = statistics_at;
+        summary.is_in_file();
         Ok(())
     }
 
     /// Writes a summary that has changed otherwise; there is room for it (see [`Layout::reserve`]).
-    pub(super) fn renew(&mut self, summary: &Summary) -> io::Result<()> {
+    pub(super) fn renew(&mut self, summary: &mut Summary) -> io::Result<()> {
         self.reserve(0, 0, summary)?;
         let at = self.before_room_end(summary.room())?;
-        let statistics_at = self.write_tail(summary, at, self.footer_at)?;
-        self.lead_to(at, statistics_at)
+        let tail = self.write_tail(summary, at, self.footer_at)?;
+        self.lead_to(at, tail, summary)
     }
 
-    /// Appends the end of a finished file and cuts the rest off.
-    pub(super) fn finish(mut self, summary: &Summary) -> io::Result<()> {
+    /// Appends the end of a finished file, with the places of all groups and a checksum, and cuts the rest off.
+    pub(super) fn finish(mut self, summary: &mut Summary) -> io::Result<()> {
         self.reserve(0, 0, summary)?;
-        let tail = summary.finished(self.data_end);
-        self.write(&tail[HEAD..], self.data_end + HEAD as u64)?;
-        self.switch(&tail[..HEAD], self.data_end)?;
-        self.file.set_len(self.data_end + tail.len() as u64)?;
+        let begin = self.data_end + DATA_END as u64;
+        let (mut at, mut crc, mut offsets) = (begin, crc32fast::Hasher::new(), Vec::new());
+        let mut group = |kind, from: u64, to: u64| {
+            if to > from {
+                record(&mut offsets, kind::SUMMARY_OFFSET, |out| {
+                    out.push(kind);
+                    out.u64(from);
+                    out.u64(to - from);
+                });
+            }
+        };
+        for (kind, records) in summary.groups() {
+            self.write(records, at)?;
+            crc.update(records);
+            group(kind, at, at + records.len() as u64);
+            at += records.len() as u64;
+        }
+        let statistics_at = self.write_indexes(summary, at, |copied| crc.update(copied))?;
+        group(kind::CHUNK_INDEX, at, statistics_at);
+        let mut end = summary.statistics_record();
+        let offsets_at = statistics_at + end.len() as u64;
+        group(kind::STATISTICS, statistics_at, offsets_at);
+        end.append(&mut offsets);
+        format::end(&mut end, begin, offsets_at, 0);
+        let checked = end.len() - (END - HEAD - 16);
+        crc.update(&end[..checked]);
+        end[checked..checked + 4].copy_from_slice(&crc.finalize().to_le_bytes());
+        self.write(&end, statistics_at)?;
+        let mut data_end = Vec::new();
+        record(&mut data_end, kind::DATA_END, |out| out.u32(0));
+        self.write(&data_end[HEAD..], self.data_end + HEAD as u64)?;
+        self.switch(&data_end[..HEAD], self.data_end)?;
+        self.file.set_len(statistics_at + end.len() as u64)?;
         self.file.sync_data()
     }
 
-    fn grow(&mut self, needed: u64, summary: &Summary) -> io::Result<()> {
+    fn grow(&mut self, needed: u64, summary: &mut Summary) -> io::Result<()> {
         let room = summary.room();
         let more = (needed + 2 * room + 2 * SPARE).max(self.growth).max(GROWTH_IN_SUMMARIES * room);
         let footer_at = pages(self.footer_at + more) - END as u64;
         // The same summary in the room that is left, with room behind it up to the new footer.
         let at = self.before_room_end(room)?;
-        let statistics_at = self.write_tail(summary, at, footer_at)?;
+        let tail = self.write_tail(summary, at, footer_at)?;
         let mut end = Vec::new();
         format::end(&mut end, at + DATA_END as u64, 0, 0);
         self.write(&end, footer_at)?;
         self.footer_at = footer_at;
-        self.leave_room_up_to(at, statistics_at)?;
+        self.leave_room_up_to(at, tail, summary)?;
         // Now there is room before the footer: there it belongs.
         let at = footer_at - SPARE - room - room / 2;
-        let statistics_at = self.write_tail(summary, at, footer_at)?;
-        self.lead_to(at, statistics_at)
+        let tail = self.write_tail(summary, at, footer_at)?;
+        self.lead_to(at, tail, summary)
     }
 
     /// Where something of this length stands at the end of the free room.
@@ -187,31 +229,61 @@ impl Layout {
     }
 
     /// Footer and free room lead to another summary.
-    fn lead_to(&mut self, at: u64, statistics_at: u64) -> io::Result<()> {
+    fn lead_to(&mut self, at: u64, tail: Tail, summary: &mut Summary) -> io::Result<()> {
         let start = (at + DATA_END as u64).to_le_bytes();
         self.switch(&start, self.footer_at + HEAD as u64)?;
-        self.leave_room_up_to(at, statistics_at)
+        self.leave_room_up_to(at, tail, summary)
     }
 
-    fn leave_room_up_to(&mut self, at: u64, statistics_at: u64) -> io::Result<()> {
+    fn leave_room_up_to(&mut self, at: u64, tail: Tail, summary: &mut Summary) -> io::Result<()> {
         self.switch(&head(kind::ROOM, at - self.data_end - HEAD as u64), self.data_end)?;
-        (self.room_end, self.statistics_at) = (at, statistics_at);
+        (self.room_end, self.tail) = (at, tail);
+        summary.is_in_file();
         Ok(())
     }
 
-    /// The end of the data, the summary and the head of the free room up to the footer, in free room. Gives the place of the
-    /// statistics.
-    fn write_tail(&mut self, summary: &Summary, at: u64, footer_at: u64) -> io::Result<u64> {
-        let mut bytes = Vec::with_capacity(summary.room() as usize);
+    /// The end of the data, the summary and the head of the free room up to the footer, in free room.
+    fn write_tail(&mut self, summary: &Summary, at: u64, footer_at: u64) -> io::Result<Tail> {
+        let mut bytes = Vec::new();
         record(&mut bytes, kind::DATA_END, |out| out.u32(0));
-        summary.put_groups(&mut bytes);
+        summary.groups().iter().for_each(|(_, records)| bytes.extend_from_slice(records));
+        self.write(&bytes, at)?;
+        let indexes_at = at + bytes.len() as u64;
+        let at = self.write_indexes(summary, indexes_at, |_| ())?;
+        bytes.clear();
         let statistics_at = keep_whole(&mut bytes, at);
         bytes.extend_from_slice(&summary.statistics_record());
         let end = at + (bytes.len() + HEAD) as u64;
         let left = footer_at.checked_sub(end).ok_or(ErrorKind::FileTooLarge)?;
         bytes.extend_from_slice(&head(kind::ROOM, left));
         self.write(&bytes, at)?;
-        Ok(statistics_at)
+        Ok(Tail { indexes_at, statistics_at })
+    }
+
+    /// The indexes of chunks once more: those in the summary of the file without the room between them, and the new ones. Gives the
+    /// place behind them.
+    fn write_indexes(&mut self, summary: &Summary, at: u64, mut copied: impl FnMut(&[u8])) -> io::Result<u64> {
+        let Tail { indexes_at, statistics_at } = self.tail;
+        let source = Source::File(self.file.try_clone()?, statistics_at);
+        let mut walk = Walk::new(&source, indexes_at, statistics_at);
+        let (end, mut at, mut bytes) = (at + summary.indexes(), at, Vec::new());
+        while let Some(place) = walk.step()? {
+            if place.kind == kind::CHUNK_INDEX {
+                bytes.extend_from_slice(&head(place.kind, place.length - HEAD as u64));
+                bytes.extend_from_slice(walk.content(place, u64::MAX)?);
+            }
+            if bytes.len() >= COPIED {
+                self.write(&bytes, at)?;
+                copied(&bytes);
+                at += bytes.len() as u64;
+                bytes.clear();
+            }
+        }
+        bytes.extend_from_slice(summary.new_indexes());
+        self.write(&bytes, at)?;
+        copied(&bytes);
+        at += bytes.len() as u64;
+        if at == end { Ok(at) } else { Err(io::Error::other("another program has changed the end of the file")) }
     }
 
     /// Within one page: what readers see changes here, at once.

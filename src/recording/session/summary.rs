@@ -1,7 +1,7 @@
-//! The summary: what a reader needs to know before it reads a chunk. Kept as encoded records, one buffer for each kind.
+//! The summary at the end of a session: what a reader needs to know before it reads a chunk. Kept as encoded records, one buffer for each kind;
+//! the indexes of chunks, which are as many as the session is long, stay in the file.
 
-use super::format::Put as _;
-use super::format::{self, END, Statistics, kind, record};
+use super::format::{self, Statistics, kind};
 
 #[derive(Default)]
 pub(super) struct Summary {
@@ -9,26 +9,42 @@ pub(super) struct Summary {
     pub(super) channels: Vec<u8>,
     pub(super) attachments: Vec<u8>,
     pub(super) metadata: Vec<u8>,
-    pub(super) chunks: Vec<u8>,
+    /// Indexes of chunks that are not in the summary of the file yet.
+    new_indexes: Vec<u8>,
+    /// Bytes of those that are.
+    indexed: u64,
     pub(super) statistics: Statistics,
 }
 
 impl Summary {
-    fn groups(&self) -> [(u8, &[u8]); 5] {
+    /// The kinds that are kept here, in their order in the file; the indexes of chunks come behind them.
+    pub(super) fn groups(&self) -> [(u8, &[u8]); 4] {
         [
             (kind::SCHEMA, &self.schemas),
             (kind::CHANNEL, &self.channels),
             (kind::ATTACHMENT_INDEX, &self.attachments),
             (kind::METADATA_INDEX, &self.metadata),
-            (kind::CHUNK_INDEX, &self.chunks),
         ]
     }
 
-    /// Bytes without the statistics.
-    pub(super) fn put_groups(&self, out: &mut Vec<u8>) {
-        for (_, group) in self.groups() {
-            out.extend_from_slice(group);
-        }
+    /// Takes the index of a chunk.
+    pub(super) fn index(&mut self, record: &[u8]) {
+        self.new_indexes.extend_from_slice(record);
+    }
+
+    pub(super) fn new_indexes(&self) -> &[u8] {
+        &self.new_indexes
+    }
+
+    /// Bytes of all indexes of chunks.
+    pub(super) fn indexes(&self) -> u64 {
+        self.indexed + self.new_indexes.len() as u64
+    }
+
+    /// The file has them now.
+    pub(super) fn is_in_file(&mut self) {
+        self.indexed += self.new_indexes.len() as u64;
+        self.new_indexes.clear();
     }
 
     pub(super) fn statistics_record(&self) -> Vec<u8> {
@@ -40,32 +56,6 @@ impl Summary {
     /// Most bytes of everything, the record before it and what fills gaps included.
     pub(super) fn room(&self) -> u64 {
         let groups: usize = self.groups().iter().map(|(_, group)| group.len()).sum();
-        (groups + self.statistics_record().len() + 64) as u64
-    }
-
-    /// The end of a finished file, to stand at `at`: with the places of all groups and a checksum.
-    pub(super) fn finished(&self, at: u64) -> Vec<u8> {
-        let mut out = Vec::new();
-        record(&mut out, kind::DATA_END, |out| out.u32(0));
-        let begin = out.len();
-        let statistics = self.statistics_record();
-        let mut offsets = Vec::new();
-        for (kind, group) in self.groups().into_iter().chain([(kind::STATISTICS, statistics.as_slice())]) {
-            if !group.is_empty() {
-                record(&mut offsets, kind::SUMMARY_OFFSET, |offsets| {
-                    offsets.push(kind);
-                    offsets.u64(at + out.len() as u64);
-                    offsets.u64(group.len() as u64);
-                });
-                out.extend_from_slice(group);
-            }
-        }
-        let offsets_start = at + out.len() as u64;
-        out.extend_from_slice(&offsets);
-        format::end(&mut out, at + begin as u64, offsets_start, 0);
-        let checked = out.len() - (END - format::HEAD - 16);
-        let crc = crc32fast::hash(&out[begin..checked]);
-        out[checked..checked + 4].copy_from_slice(&crc.to_le_bytes());
-        out
+        (groups + self.statistics_record().len() + 64) as u64 + self.indexes()
     }
 }

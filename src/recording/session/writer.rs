@@ -233,22 +233,21 @@ impl Writer {
             None if self.summary_changed => return self.renew_summary(),
             None => return Ok(()),
         };
-        let mut index = Vec::new();
-        match self.place(&chunk) {
-            Ok(at) => chunk.put_index(&mut index, at),
+        let at = match self.place(&chunk) {
+            Ok(at) => at,
             Err(error) => {
                 self.waiting = Some(chunk);
                 return Err(error);
             }
-        }
+        };
         self.count(&chunk);
-        self.summary.chunks.extend_from_slice(&index);
+        self.summary.index(&chunk.index(at));
         if self.summary_changed {
             return self.renew_summary();
         }
         // Until it is in the file.
         self.summary_changed = true;
-        self.layout.append_index(&index, &self.summary).map_err(|error| WriteError::write(&self.path, &error))?;
+        self.layout.append_indexes(&mut self.summary).map_err(|error| WriteError::write(&self.path, &error))?;
         self.summary_changed = false;
         Ok(())
     }
@@ -277,13 +276,19 @@ impl Writer {
     /// What the system says; the file is as readable as before.
     pub fn finish(mut self) -> Result<Statistics, WriteError> {
         self.flush()?;
-        self.layout.finish(&self.summary).map_err(|error| WriteError::write(&self.path, &error))?;
+        self.layout.finish(&mut self.summary).map_err(|error| WriteError::write(&self.path, &error))?;
         Ok(self.summary.statistics)
     }
 
     #[cfg(test)]
     pub(super) fn layout(&self) -> &Layout {
         &self.layout
+    }
+
+    /// Bytes of chunk indexes in memory.
+    #[cfg(test)]
+    pub(super) fn held(&self) -> usize {
+        self.summary.new_indexes().len()
     }
 
     /// Writes the chunk into the data.
@@ -298,12 +303,12 @@ impl Writer {
         if at::is_deleted(self.layout.file()).map_err(|error| WriteError::write(&self.path, &error))? {
             return Err(WriteError::Deleted { path: self.path.clone() });
         }
-        self.layout.reserve(data, in_summary, &self.summary).map_err(|error| WriteError::write(&self.path, &error))
+        self.layout.reserve(data, in_summary, &mut self.summary).map_err(|error| WriteError::write(&self.path, &error))
     }
 
     fn renew_summary(&mut self) -> Result<(), WriteError> {
         self.summary_changed = true;
-        self.layout.renew(&self.summary).map_err(|error| WriteError::write(&self.path, &error))?;
+        self.layout.renew(&mut self.summary).map_err(|error| WriteError::write(&self.path, &error))?;
         self.summary_changed = false;
         Ok(())
     }

@@ -14,7 +14,7 @@ use std::{
 };
 
 use contents::Contents;
-use source::Source;
+pub(super) use source::{Source, Walk};
 
 pub use messages::{Message, Messages};
 pub use parse::Attachment;
@@ -99,7 +99,7 @@ impl Reader {
         let magic = source.read(0, source.size().min(MAGIC.len() as u64)).map_err(failed)?;
         check_magic(path, &magic)?;
         let damaged = |what: &str| ReadError::damaged(path, MAGIC.len() as u64, what);
-        let mut walk = source::Walk::new(&source, MAGIC.len() as u64, source.size());
+        let mut walk = Walk::new(&source, MAGIC.len() as u64, source.size());
         let header = walk.step().map_err(failed)?.filter(|place| place.kind == kind::HEADER);
         let header = header.ok_or_else(|| damaged("there is no header"))?;
         let library = {

@@ -8,13 +8,13 @@ use std::{
 use super::parse;
 use crate::session::{at, format::HEAD};
 
-pub(super) enum Source {
+pub(in crate::session) enum Source {
     File(File, u64),
     Bytes(Vec<u8>),
 }
 
 impl Source {
-    pub(super) fn size(&self) -> u64 {
+    pub(in crate::session) fn size(&self) -> u64 {
         match self {
             Self::File(_, size) => *size,
             Self::Bytes(bytes) => bytes.len() as u64,
@@ -22,7 +22,7 @@ impl Source {
     }
 
     /// These bytes; never more memory than the file is long.
-    pub(super) fn read(&self, from: u64, length: u64) -> io::Result<Vec<u8>> {
+    pub(in crate::session) fn read(&self, from: u64, length: u64) -> io::Result<Vec<u8>> {
         let end = from.checked_add(length).filter(|&end| end <= self.size()).ok_or(ErrorKind::UnexpectedEof)?;
         match self {
             Self::File(file, _) => {
@@ -36,10 +36,10 @@ impl Source {
 }
 
 /// Walks over records and reads only what is asked for, in windows.
-pub(super) struct Walk<'a> {
+pub(in crate::session) struct Walk<'a> {
     source: &'a Source,
     /// Where the next record stands.
-    pub(super) at: u64,
+    pub(in crate::session) at: u64,
     end: u64,
     window: Vec<u8>,
     window_at: u64,
@@ -47,22 +47,22 @@ pub(super) struct Walk<'a> {
 
 /// One record in its place.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
-    pub(super) kind: u8,
-    pub(super) at: u64,
+pub(in crate::session) struct Place {
+    pub(in crate::session) kind: u8,
+    pub(in crate::session) at: u64,
     /// With its head.
-    pub(super) length: u64,
+    pub(in crate::session) length: u64,
 }
 
 const WINDOW: u64 = 64 << 10;
 
 impl<'a> Walk<'a> {
-    pub(super) fn new(source: &'a Source, at: u64, end: u64) -> Self {
+    pub(in crate::session) fn new(source: &'a Source, at: u64, end: u64) -> Self {
         Self { source, at, end: end.min(source.size()), window: Vec::new(), window_at: 0 }
     }
 
     /// The next record, whole or not; `None` at the end, and where the rest is no whole record.
-    pub(super) fn step(&mut self) -> io::Result<Option<Place>> {
+    pub(in crate::session) fn step(&mut self) -> io::Result<Option<Place>> {
         if self.end.saturating_sub(self.at) < HEAD as u64 {
             return Ok(None);
         }
@@ -76,7 +76,7 @@ impl<'a> Walk<'a> {
     }
 
     /// The content of a record, or the first `most` bytes of it.
-    pub(super) fn content(&mut self, place: Place, most: u64) -> io::Result<&[u8]> {
+    pub(in crate::session) fn content(&mut self, place: Place, most: u64) -> io::Result<&[u8]> {
         self.bytes(place.at + HEAD as u64, (place.length - HEAD as u64).min(most))
     }
 

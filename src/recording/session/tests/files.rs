@@ -89,6 +89,7 @@ fn a_long_session_with_many_growths_keeps_what_makes_it_valid_small() {
             writer.message(channel, chunk * 500_000_000, part).unwrap();
         }
     }
+    assert_eq!(writer.held(), 0, "the memory does not grow with the session");
     let (written, data) = writer.bytes();
     println!("{written} bytes written for {data} bytes of data");
     assert!(data > 150 << 20 && (written as f64) < 1.08 * data as f64, "{written} of {data}");
@@ -98,6 +99,33 @@ fn a_long_session_with_many_growths_keeps_what_makes_it_valid_small() {
     assert_eq!(reader.messages(&["topic 7"], last..u64::MAX).count(), 1);
     assert_eq!(writer.finish().unwrap().chunks, 2_400);
     assert_eq!(Reader::open(&path).unwrap().notes(), [""; 0]);
+}
+
+#[test]
+fn an_index_that_another_program_has_changed_is_not_lost_in_silence() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    let mut writer = Writer::create(&path, "nima test").unwrap();
+    let channel = writer.channel("a", plain_text()).unwrap();
+    for chunk in 0..5 {
+        writer.message(channel, chunk * 500_000_000, b"a").unwrap();
+    }
+    // All of the summary, to which the footer leads.
+    let bytes = fs::read(&path).unwrap();
+    let footer = bytes.len() - 28;
+    let begin = u64::from_le_bytes(bytes[footer..footer + 8].try_into().unwrap()) as usize;
+    let mut changed = bytes.clone();
+    changed[begin..footer - 9].fill(0);
+    let write = |bytes: &[u8]| {
+        use std::io::Write as _;
+        fs::OpenOptions::new().write(true).open(&path).unwrap().write_all(bytes).unwrap();
+    };
+    write(&changed);
+    let error = writer.metadata("session", &values()).unwrap_err().to_string();
+    assert!(error.contains("another program has changed"), "{error}");
+    write(&bytes);
+    writer.metadata("session", &values()).unwrap();
+    assert_eq!(writer.finish().unwrap().chunks, 5);
 }
 
 #[test]

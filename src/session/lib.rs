@@ -14,6 +14,7 @@
 //! | `cut` | a stretch of a session as a session file of its own |
 //! | `anonymous` | a session without what tells who recorded it, where and when |
 //! | `shelf` | the folder of a user's sessions: which are kept, and room for the next |
+//! | `outlook` | how long the disk has room for a session |
 //! | `report` | the figures of a session, from what is plotted of it |
 //! | `replay` | the same loop, fed from them; and with one thing changed |
 #![warn(missing_docs)]
@@ -27,6 +28,7 @@ pub mod journal;
 mod kept;
 pub mod layouts;
 pub mod outlet;
+pub mod outlook;
 pub mod plotted;
 pub mod recorder;
 pub mod replay;

@@ -172,7 +172,7 @@ pub(super) fn run_with(
         second: arguments.second_place.as_deref(),
         audience: live.as_ref().map(Server::audience),
     };
-    let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock)?;
+    let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock, arguments.seconds)?;
     let mut summary = if arguments.virtual_clock {
         runtime::run_virtual(Assembly { tap, ..plan.simulated()? }, arguments.seconds.unwrap_or(60.0), |tick| {
             let command = start.watch(tick);

@@ -14,8 +14,9 @@ use nima_machine::{messages::Scheduling, runtime::Tap};
 use nima_recording::store::utc_now;
 use nima_session::{
     outlet::Destination,
+    outlook::{Outlook, WARN_BEFORE},
     recorder::{Note, NoteKind, Recorder},
-    shelf::{MOST_BYTES, Shelf, free_bytes, keep},
+    shelf::{MOST_BYTES, Shelf, keep},
 };
 use nima_world::Plan;
 
@@ -23,16 +24,12 @@ use super::{
     alarms::{Alarm, Kind, Priority, Signs, judge, log::AlarmLog},
     chain, text,
 };
-use crate::{live::Server, recording};
+use crate::{live::Server, recording, words};
 
 /// A loop that ran for fewer ticks than this was no session: a window that could not be opened, a rig that was changed at once.
 const LEAST_TICKS: u64 = 1000;
 /// How often room is made while a session grows.
 const ROOM_EVERY: Duration = Duration::from_secs(30);
-/// A disk on which there is room for less than a working day is told.
-const WARN_BEFORE: Duration = Duration::from_hours(8);
-/// A session must have run for this long before its growth says anything of a day.
-const GROWN: Duration = Duration::from_mins(1);
 /// A disk that does not answer for this long is told: a second later entries are lost.
 const SLOW: Duration = Duration::from_secs(1);
 
@@ -59,6 +56,7 @@ struct Now {
     recorder: Recorder,
     path: PathBuf,
     began: Instant,
+    outlook: Outlook,
     kept: bool,
     told: Told,
 }
@@ -111,7 +109,9 @@ impl Sessions {
             let audience = self.live.as_ref().map(Server::audience);
             let to = Destination { file: Some(&path), second: second.as_deref(), audience };
             let (tap, recorder) = recording::begin(to, plan, "real").map_err(|error| chain(&error))?;
-            Ok((tap, Now { recorder, path, began: Instant::now(), kept: false, told: Told::default() }))
+            let began = Instant::now();
+            let outlook = Outlook::new(&path, recorder.progress().bytes, began);
+            Ok((tap, Now { recorder, path, began, outlook, kept: false, told: Told::default() }))
         };
         let second = self.second.as_ref().and_then(|shelf| place(shelf).ok());
         let begun = place(shelf).and_then(|path| begin(path, second.clone()));
@@ -189,7 +189,7 @@ impl Sessions {
         }
     }
 
-    /// Why nothing is recorded although it should be, or what will be in the way within a working day.
+    /// Why nothing is recorded although it should be, or what will be in the way within a day.
     pub(crate) fn trouble(&self) -> Option<String> {
         let recorder = self.now.as_ref().map(|now| &now.recorder);
         let ended = recorder.and_then(Recorder::trouble).map(|error| chain(error));
@@ -197,7 +197,7 @@ impl Sessions {
         let progress = recorder.map(Recorder::progress).unwrap_or_default();
         let slow = || (progress.waits > SLOW).then(|| text::sessions::slow(progress.waits));
         let lost = || (progress.lost > 0).then(|| text::sessions::lost(progress.lost));
-        let full = || self.full_in.filter(|time| *time < WARN_BEFORE).map(text::sessions::full_in);
+        let full = || self.full_in.filter(|time| *time < WARN_BEFORE).map(words::disk_full_in);
         ended.or_else(slow).or_else(lost).or_else(moved).or_else(|| self.trouble.clone()).or_else(full)
     }
 
@@ -218,22 +218,21 @@ impl Sessions {
 
     /// Makes room while a session grows; to be called now and then.
     pub(crate) fn look_after(&mut self) {
-        let (Some(shelf), Some(now)) = (&self.shelf, &self.now) else { return };
+        let (Some(shelf), Some(now)) = (&self.shelf, &mut self.now) else { return };
         if self.looked.is_some_and(|at| at.elapsed() < ROOM_EVERY) {
             return;
         }
         self.looked = Some(Instant::now());
-        let others = match shelf.make_room(Some(&now.path)) {
+        let path = now.recorder.moved().map_or(&now.path, |moved| &moved.to);
+        let shelf = self.second.as_ref().filter(|second| path.starts_with(second.folder())).unwrap_or(shelf);
+        let others = match shelf.make_room(Some(path)) {
             Ok(others) => others,
             Err(error) => {
                 self.trouble = Some(text::sessions::no_folder(shelf.folder(), &error));
                 0
             }
         };
-        let grown = now.began.elapsed();
-        let per_s = now.recorder.progress().bytes as f64 / grown.as_secs_f64().max(1.0);
-        let free = free_bytes(shelf.folder()).filter(|_| grown >= GROWN);
-        self.full_in = free.map(|free| Duration::from_secs_f64((free + others) as f64 / per_s.max(1.0)));
+        self.full_in = now.outlook.full_in(path, now.recorder.progress().bytes, others, Instant::now());
     }
 }
 

@@ -7,6 +7,7 @@
 mod calibration;
 mod channels;
 mod commands;
+mod disk;
 mod events;
 mod faults;
 mod findings;
@@ -24,6 +25,7 @@ mod sides;
 pub(crate) use calibration::{drift, refusal};
 pub(crate) use channels::{channel_group, channel_name, marker};
 pub(crate) use commands::operation;
+pub(crate) use disk::disk_full_in;
 pub(crate) use events::event;
 pub(crate) use findings::finding_words;
 pub(crate) use frames::{axes_words, cause, phase};

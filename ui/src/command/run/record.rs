@@ -1,25 +1,37 @@
 //! `nima run --record`: the session file of a run; `--live`: who watches it.
 
-use std::{path::PathBuf, time::Duration};
+use std::{
+    ops::Range,
+    path::PathBuf,
+    time::{Duration, Instant},
+};
 
 use anyhow::Context as _;
 use nima_machine::runtime::Tap;
 use nima_session::{
     outlet::Destination,
+    outlook::{Outlook, WARN_BEFORE},
     recorder::{Moved, Progress, Recorder},
 };
 use nima_world::Plan;
 use serde::Serialize;
 
-use crate::recording::begin;
+use crate::{recording::begin, words::disk_full_in};
 
 /// A recording, if one was asked for. Without a file there are only those who watch.
 #[derive(Default)]
 pub(super) struct Recording {
     recorder: Option<(Recorder, Option<PathBuf>)>,
-    /// What was told already: that it is over, goes on elsewhere, waits for the disk, has lost entries.
-    told: [bool; 4],
+    outlook: Option<Outlook>,
+    /// When the run ends, if that is known.
+    ends: Option<Instant>,
+    /// What was told already: that it is over, goes on elsewhere, waits for the disk, has lost entries, and that the disk will be full
+    /// within a day and within an hour.
+    told: [bool; 6],
 }
+
+/// A second warning of a full disk.
+const WARN_AGAIN: Duration = Duration::from_hours(1);
 
 /// A disk that does not answer for this long is told: a second later entries are lost.
 const SLOW: Duration = Duration::from_secs(1);
@@ -36,14 +48,22 @@ pub(super) struct Recorded {
 }
 
 impl Recording {
-    /// Begins it; the tap is for the loop.
-    pub(super) fn begin(to: Destination<'_>, plan: &Plan, is_virtual: bool) -> anyhow::Result<(Option<Tap>, Self)> {
+    /// Begins it; the tap is for the loop. A run on the real clock ends after `seconds`.
+    pub(super) fn begin(
+        to: Destination<'_>,
+        plan: &Plan,
+        is_virtual: bool,
+        seconds: Option<f64>,
+    ) -> anyhow::Result<(Option<Tap>, Self)> {
         if to.file.is_none() && to.audience.is_none() {
             return Ok((None, Self::default()));
         }
         let file = to.file.map(ToOwned::to_owned);
         let (tap, recorder) = begin(to, plan, if is_virtual { "virtual" } else { "real" })?;
-        Ok((Some(tap), Self { recorder: Some((recorder, file)), told: [false; 4] }))
+        let now = Instant::now();
+        let outlook = file.as_deref().map(|file| Outlook::new(file, recorder.progress().bytes, now));
+        let ends = seconds.and_then(|seconds| now.checked_add(Duration::from_secs_f64(seconds)));
+        Ok((Some(tap), Self { recorder: Some((recorder, file)), outlook, ends, told: [false; 6] }))
     }
 
     /// Whether it has ended by itself.
@@ -53,14 +73,30 @@ impl Recording {
 
     /// What has gone wrong, each of it once. The run goes on.
     pub(super) fn news(&mut self) -> Vec<String> {
-        let Some((recorder, _)) = &self.recorder else { return Vec::new() };
+        let Some((recorder, file)) = &self.recorder else { return Vec::new() };
         let progress = recorder.progress();
         let over = recorder.trouble().map(|why| format!("the recording has ended, the run goes on: {why}"));
         let moved = |Moved { why, to }: &Moved| format!("the recording goes on in {}: {why}", to.display());
         let slow = || format!("the disk has not answered for {:.1} s: the run goes on", progress.waits.as_secs_f64());
         let lost = || "the disk is slower than the loop: parts of the recording are lost, the run goes on".to_owned();
-        let news =
-            [over, recorder.moved().map(moved), (progress.waits > SLOW).then(slow), (progress.lost > 0).then(lost)];
+        let now = Instant::now();
+        let place = recorder.moved().map(|moved| &moved.to).or(file.as_ref()).filter(|_| over.is_none());
+        let full_in = place.zip(self.outlook.as_mut());
+        let full_in = full_in.and_then(|(place, outlook)| outlook.full_in(place, progress.bytes, 0, now));
+        // A run that ends before needs no more room.
+        let full_in = full_in.filter(|full_in| self.ends.is_none_or(|ends| now + *full_in < ends));
+        let full = |within: Range<Duration>| {
+            let words = full_in.filter(|full_in| within.contains(full_in)).map(disk_full_in)?;
+            Some(format!("{words}: free space, or name a --second-place on another disk next time"))
+        };
+        let news = [
+            over,
+            recorder.moved().map(moved),
+            (progress.waits > SLOW).then(slow),
+            (progress.lost > 0).then(lost),
+            full(WARN_AGAIN..WARN_BEFORE),
+            full(Duration::ZERO..WARN_AGAIN),
+        ];
         let is_new = |(words, told): (Option<String>, &mut bool)| {
             let words = words.filter(|_| !*told)?;
             *told = true;

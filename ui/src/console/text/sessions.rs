@@ -6,7 +6,8 @@ use crate::console::sessions::Shown;
 
 pub(in crate::console) const NAME_KEEP: &str = "Keep this session";
 pub(in crate::console) const NAME_KEPT: &str = "This session is kept";
-pub(in crate::console) const CURE: &str = "Free space or change the folder, then start the rig again";
+pub(in crate::console) const CURE: &str =
+    "Free space or change the folder; if the recording has ended, start the rig again";
 
 /// On the button that keeps a session: how long it has been recorded, and whether it is kept.
 pub(in crate::console) fn recorded_for(seconds: u64, kept: bool) -> String {
@@ -58,11 +59,6 @@ pub(in crate::console) fn slow(waits: Duration) -> String {
 /// Entries are missing.
 pub(in crate::console) fn lost(entries: u64) -> String {
     format!("the disk is too slow: {entries} entries of this session are lost, a replay ends at the first of them")
-}
-
-/// The disk will be full.
-pub(in crate::console) fn full_in(time: Duration) -> String {
-    format!("the disk will be full in {:.0} h at this rate", time.as_secs_f64() / 3600.0)
 }
 
 /// Cause of an alarm.

@@ -61,18 +61,15 @@ impl Check {
         outputs: &[Outputs; SIDES],
         ticks: &[Option<Tick>; SIDES],
     ) -> Self {
+        Self::of_sides(events, Side::ALL.map(|side| of_side(&outputs[side.index()], ticks[side.index()].as_ref())))
+    }
+
+    /// The same from the digests of both sides.
+    pub(crate) fn of_sides<'a>(events: impl Iterator<Item = &'a Event>, sides: [[u64; STAGES]; SIDES]) -> Self {
         let mut all = Digest::default();
         events.for_each(|event| event.put(&mut all));
-        let mut stages = [[0; STAGES]; SIDES];
-        for side in Side::ALL {
-            let i = side.index();
-            let digests = of_side(&outputs[i], ticks[i].as_ref());
-            for digest in digests {
-                all.word(digest);
-            }
-            stages[i] = digests.map(|digest| digest as u16);
-        }
-        Self { all: all.end(), stages }
+        sides.iter().flatten().for_each(|digest| all.word(*digest));
+        Self { all: all.end(), stages: sides.map(|side| side.map(|digest| digest as u16)) }
     }
 
     /// The first stage, in the order of the loop, whose digest differs, and its side. Where only the sum of all differs, it is
@@ -90,7 +87,8 @@ macro_rules! put_all {
     ($to:ident: $($value:ident),*) => { $($value.put($to);)* };
 }
 
-fn of_side(outputs: &Outputs, tick: Option<&Tick>) -> [u64; STAGES] {
+/// The digest of each stage of one side.
+pub(crate) fn of_side(outputs: &Outputs, tick: Option<&Tick>) -> [u64; STAGES] {
     let mut digests: [Digest; STAGES] = Default::default();
     let [force_path, identifies, renders, gated, stated] = &mut digests;
     outputs.put(stated);

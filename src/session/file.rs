@@ -20,8 +20,10 @@ use crate::{
 /// A session file.
 pub struct Recorded(Arc<Reader>);
 
-/// Messages of the journal that are read before the loop needs them: a second of the session.
+/// Messages of the journal that are read before the loop needs them: a second of the session from a keyframe, ...
 const AHEAD: usize = 5;
+/// ... and as many as are stepped at once from the beginning.
+const FAR_AHEAD: usize = 80;
 
 /// The chunk of a keyframe's last block is found by its time; rounding must not miss it.
 const MARGIN_NS: u64 = 1_000_000;
@@ -156,7 +158,7 @@ impl Recorded {
     /// As [`Recorded::journal`].
     pub fn journal_with(&self, others: &[Self]) -> Result<Journal<Messages>, ReplayError> {
         let files = iter::once(self).chain(others).map(|file| Arc::clone(&file.0));
-        Journal::open(ahead(files.collect(), 0, 0)).map_err(|error| match (error, self.goes_on_from()) {
+        Journal::open(ahead(files.collect(), 0, 0, FAR_AHEAD)).map_err(|error| match (error, self.goes_on_from()) {
             (ReplayError::Missing { .. } | ReplayError::NoStart, Some(first)) => ReplayError::GoesOn { first },
             (error, _) => error,
         })
@@ -172,15 +174,15 @@ impl Recorded {
     /// A loop at this keyframe of its journal, which begins like this. `begin_ns` is when the session began.
     pub fn cursor(&self, start: &Start, keyframe: Keyframe, begin_ns: u64) -> Cursor<Messages> {
         let from_ns = (begin_ns + (keyframe.t_s() * 1e9) as u64).saturating_sub(MARGIN_NS);
-        let messages = ahead(vec![Arc::clone(&self.0)], from_ns, keyframe.read());
+        let messages = ahead(vec![Arc::clone(&self.0)], from_ns, keyframe.read(), AHEAD);
         keyframe.cursor(start.clone(), messages)
     }
 }
 
 /// The messages of a journal in these files from this time on, behind the first `read`. A thread of its own reads and decodes them, while
 /// the loop is fed from those before. It ends when nobody takes any more.
-fn ahead(files: Vec<Arc<Reader>>, from_ns: u64, read: u64) -> Messages {
-    let (send, receive) = bounded(AHEAD);
+fn ahead(files: Vec<Arc<Reader>>, from_ns: u64, read: u64, most: usize) -> Messages {
+    let (send, receive) = bounded(most);
     let go_ahead = move || {
         let messages = files.iter().flat_map(|file| file.messages(&[JOURNAL_TOPIC], from_ns..u64::MAX));
         let mut messages = decoded(messages.map(|message| Ok(message?.data().to_vec())), read);

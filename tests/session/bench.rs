@@ -8,7 +8,7 @@ use nima_machine::{
 };
 use nima_session::{
     journal::Start,
-    replay::{Journal, Outcome, ReplayError, decoded, replay},
+    replay::{Journal, Outcome, ReplayError, decoded, replay, verify},
     scribe::{Scribe, Written},
 };
 use nima_world::Plan;
@@ -35,8 +35,11 @@ impl Kept {
 
     /// Replays it; every tick is told.
     pub(crate) fn replayed(&self, mut each: impl FnMut(&Tick)) -> Result<Outcome, ReplayError> {
-        let journal = Journal::open(decoded(self.0.iter().map(|bytes| Ok(bytes.clone())), 0))?;
-        replay(journal, |replayed| replayed.ticks.iter().flatten().for_each(&mut each))
+        let journal = || Journal::open(decoded(self.0.iter().map(|bytes| Ok(bytes.clone())), 0));
+        let one_by_one = replay(journal()?, |replayed| replayed.ticks.iter().flatten().for_each(&mut each));
+        let side_by_side = verify(journal()?, &(0.0..f64::INFINITY), |_| ());
+        assert_eq!(format!("{one_by_one:?}"), format!("{side_by_side:?}"), "both ways of replaying");
+        one_by_one
     }
 }
 

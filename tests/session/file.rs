@@ -2,6 +2,7 @@
 
 use std::{
     collections::BTreeMap,
+    ops::Range,
     path::Path,
     time::{Duration, Instant},
 };
@@ -17,7 +18,7 @@ use nima_session::{
     file::Recorded,
     outlet::Destination,
     recorder::{About, Attached, JOURNAL_TOPIC, Progress, RecordError, Recorder},
-    replay::{Change, Outcome, ReplayError, compare, replay},
+    replay::{Change, Outcome, ReplayError, compare, replay, verify},
 };
 use nima_tests::plan;
 use nima_world::Plan;
@@ -48,6 +49,8 @@ pub(crate) fn replayed(path: &Path) -> Result<Outcome, ReplayError> {
     let file = Recorded::open(path)?;
     replay(file.journal()?, |_| {})
 }
+
+const WHOLE: Range<f64> = 0.0..f64::INFINITY;
 
 #[test]
 fn a_session_file_replays_and_can_be_plotted() {
@@ -81,7 +84,7 @@ fn a_change_differs_where_it_was_made_and_nothing_changed_differs_nowhere() {
     let path = folder.path().join("session.mcap");
     recorded(&path, &plan("peg_transfer"), 10.0, |tick| (tick.index == 4000).then_some(Command::SetGain(0.8)));
     let file = Recorded::open(&path).unwrap();
-    let with = |change: Change| compare(&mut file.journal().unwrap(), &change, |_, _| {}).unwrap();
+    let with = |change: Change| compare(&mut file.journal().unwrap(), &change, &WHOLE, |_, _| {}).unwrap();
     let ([right, left], ticks, hole) = with(Change::default());
     let same = right.unwrap();
     assert!(left.is_none() && ticks == 10_000 && hole.is_none());
@@ -92,6 +95,36 @@ fn a_change_differs_where_it_was_made_and_nothing_changed_differs_nowhere() {
     assert!(late.changed_error.mean_n > 1.5 * late.recorded_error.mean_n, "{late:?}");
     let reflected = with(Change { mode: Some(Mode::Dfr), ..Change::default() }).0[0].unwrap();
     assert!(reflected.rendered.mean_n > 0.01, "{reflected:?}");
+}
+
+#[test]
+fn a_stretch_is_compared_alone_after_all_before_it_was_replayed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    recorded(&path, &plan("bimanual"), 5.0, |tick| (tick.index == 2100).then_some(Command::SetGain(0.8)));
+    let file = Recorded::open(&path).unwrap();
+    let stretch = |stretch_s: Range<f64>| {
+        let Outcome { before, ticks, differs, closed, .. } =
+            verify(file.journal().unwrap(), &stretch_s, |_| ()).unwrap();
+        assert_eq!(differs, None);
+        (before, ticks, closed)
+    };
+    assert_eq!(stretch(WHOLE), (0, 5000, true));
+    assert_eq!(stretch(2.05..3.217), (2050, 1167, false));
+    assert_eq!(stretch(3.217..f64::INFINITY), (3217, 1783, true));
+    assert_eq!(stretch(0.0..0.05), (0, 50, false));
+    // The same difference, tick by tick, as in the whole session.
+    let change = Change { mode: Some(Mode::Dfr), ..Change::default() };
+    let forces_n = |stretch_s: &Range<f64>| {
+        let mut forces_n = Vec::new();
+        let told = compare(&mut file.journal().unwrap(), &change, stretch_s, |was, would| {
+            forces_n.push((was.rendered_n, would.rendered_n));
+        });
+        (told.unwrap().1, forces_n)
+    };
+    let ((_, whole), (ticks, part)) = (forces_n(&WHOLE), forces_n(&(2.05..3.217)));
+    assert_eq!(ticks, 1167);
+    assert_eq!(part, whole[2 * 2050..2 * 3217]);
 }
 
 /// Mean of the rendered force while engaged, N.

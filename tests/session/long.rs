@@ -5,12 +5,14 @@ use std::{fs, time::Instant};
 use nima_machine::runtime::{self, Assembly, tap};
 use nima_recording::session::{Reader, Writer};
 use nima_session::{
+    file::Recorded,
     outlet::Destination,
     recorder::{JOURNAL_TOPIC, Recorder},
+    replay::{Journal, Messages, Outcome, replay, verify},
 };
 use nima_tests::plan;
 
-use crate::file::about;
+use crate::file::{about, recorded};
 
 /// Memory of this process, MB; `None` where the system does not say.
 fn memory_mb() -> Option<f64> {
@@ -65,4 +67,36 @@ fn figures_of_a_long_session() {
         assert!(minutes < 5 || per_hour_mb < 20.0, "{per_hour_mb} MB an hour");
     }
     assert!(all_mb <= 75.0 && journal_mb <= 25.0);
+}
+
+/// Two arms and one, replayed tick by tick in one thread and as `nima replay` does it, in turn.
+#[test]
+#[ignore = "a minute: figures for docs/replay.md"]
+fn figures_of_replay() {
+    const SECONDS: f64 = 120.0;
+    let folder = tempfile::tempdir().unwrap();
+    for scene in ["bimanual", "peg_transfer"] {
+        let path = folder.path().join(scene);
+        recorded(&path, &plan(scene), SECONDS, |_| None);
+        let file = Recorded::open(&path).unwrap();
+        let timed = |way: &dyn Fn(Journal<Messages>) -> Outcome| {
+            let begin = Instant::now();
+            let outcome = way(file.journal().unwrap());
+            assert!(outcome.differs.is_none() && outcome.closed, "{outcome:?}");
+            SECONDS / begin.elapsed().as_secs_f64()
+        };
+        let mut speeds = [(); 5].map(|()| {
+            [
+                timed(&|journal| replay(journal, |_| ()).unwrap()),
+                timed(&|journal| verify(journal, &(0.0..f64::INFINITY), |_| ()).unwrap()),
+            ]
+        });
+        let ratios = speeds.map(|[one, side_by_side]| side_by_side / one);
+        println!("{scene}: times real time in one thread and side by side: {speeds:.0?}; ratios {ratios:.2?}");
+        let mut median = |way: usize| {
+            speeds.sort_by(|a, b| a[way].total_cmp(&b[way]));
+            speeds[2][way]
+        };
+        println!("{scene}: median of 5: {:.0} and {:.0} times real time", median(0), median(1));
+    }
 }

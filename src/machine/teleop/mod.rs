@@ -88,9 +88,19 @@ impl<L: Link> Loop<L> {
         self.pairs.each_ref().map(|pair| pair.as_ref().map(|pair| pair.bulletin()))
     }
 
+    /// The pairs of the rig, to be stepped on threads of their own by [`Pair::step`].
+    pub fn pairs_mut(&mut self) -> [Option<&mut Box<Pair<L>>>; SIDES] {
+        self.pairs.each_mut().map(Option::as_mut)
+    }
+
     /// Events since [`Loop::clear_events`], oldest first for each pair.
     pub fn events(&self) -> impl Iterator<Item = &Event> {
-        self.refused.iter().flatten().chain(self.pairs().flat_map(Pair::events))
+        self.refusals().chain(self.pairs().flat_map(Pair::events))
+    }
+
+    /// Those of them that no pair tells: commands that were refused.
+    pub fn refusals(&self) -> impl Iterator<Item = &Event> {
+        self.refused.iter().flatten()
     }
 
     /// Removes all events; call before the commands of the next tick are handled.
@@ -192,24 +202,13 @@ impl<L: Link> Loop<L> {
         inputs: [Option<Inputs>; SIDES],
         timing: &Timing,
     ) -> ([Outputs; SIDES], [Option<Tick>; SIDES]) {
-        self.share_faults(timing.now_s);
+        let have_failed = self.pairs.each_ref().map(|pair| pair.as_ref().is_some_and(|pair| pair.has_failed()));
         let (mut outputs, mut ticks) = ([Outputs::SAFE; SIDES], [None; SIDES]);
         for (i, pair) in self.pairs.iter_mut().enumerate() {
             let Some(pair) = pair else { continue };
-            let (output, tick) = pair.step(inputs[i], timing);
+            let (output, tick) = pair.step(have_failed[pair.side().other().index()], inputs[i], timing);
             (outputs[i], ticks[i]) = (output, Some(tick));
         }
         (outputs, ticks)
-    }
-
-    fn share_faults(&mut self, t_s: f64) {
-        let faulted = self.pairs.each_ref().map(|pair| {
-            matches!(pair.as_ref().map(|pair| pair.state()), Some(LoopState::Faulted(fault)) if fault != Fault::OtherArm)
-        });
-        for side in Side::ALL {
-            if let (true, Some(pair)) = (faulted[side.other().index()], &mut self.pairs[side.index()]) {
-                pair.fail_if_driven(Fault::OtherArm, t_s);
-            }
-        }
     }
 }

@@ -266,9 +266,18 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// Executes one tick: measurements in, commands out, and everything to display or record in the [`Tick`].
-    pub fn step(&mut self, inputs: Option<Inputs>, timing: &Timing) -> (Outputs, Tick) {
+    /// Whether it has a fault of its own, which takes the other pair out of engagement in the next tick.
+    pub fn has_failed(&self) -> bool {
+        matches!(self.state(), LoopState::Faulted(fault) if fault != Fault::OtherArm)
+    }
+
+    /// Executes one tick: measurements in, commands out, and everything to display or record in the [`Tick`]. That the other pair had
+    /// failed after the tick before is all that a pair gets from it.
+    pub fn step(&mut self, other_has_failed: bool, inputs: Option<Inputs>, timing: &Timing) -> (Outputs, Tick) {
         let now_s = timing.now_s;
+        if other_has_failed {
+            self.fail_if_driven(Fault::OtherArm, now_s);
+        }
         self.missed += timing.missed_now;
         self.check_clock(timing);
         self.end_late_test(now_s);

@@ -10,7 +10,7 @@ use nima_machine::{
     teleop::{Calibrations, ForcePath, Loop, Origin},
 };
 
-use super::ReplayError;
+use super::{ReplayError, side_by_side::Ran};
 use crate::journal::Row;
 
 /// A loop that is fed from a journal.
@@ -58,6 +58,11 @@ impl Machine {
     /// One tick.
     pub fn step(&mut self, row: &Row) -> ([Outputs; SIDES], [Option<Tick>; SIDES]) {
         self.control.step(row.inputs, &row.timing)
+    }
+
+    /// These ticks, between which nothing is done to the loop; those before `from_s` (s) are not compared.
+    pub(super) fn run(&mut self, rows: &[Vec<Row>], from_s: f64) -> Result<Ran, ReplayError> {
+        Ran::of(&mut self.control, rows, from_s)
     }
 
     /// The events of this tick; to be called after every tick.

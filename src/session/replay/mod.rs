@@ -2,7 +2,9 @@
 
 mod cursor;
 mod machine;
+mod side_by_side;
 mod steps;
+mod verify;
 mod what_if;
 
 use std::io;
@@ -12,7 +14,8 @@ use nima_machine::rig::Side;
 
 pub use cursor::{Cursor, Keyframe, Moment, Passed};
 pub use machine::Machine;
-pub use steps::{Journal, Messages, Numbered, Step, decoded};
+pub use steps::{Journal, Messages, Numbered, Part, Step, decoded};
+pub use verify::verify;
 pub use what_if::{Change, Compared, Difference, compare};
 
 use nima_recording::session::ReadError;
@@ -77,6 +80,8 @@ pub struct Hole {
 pub struct Outcome {
     /// Ticks that were replayed and compared.
     pub ticks: u64,
+    /// Ticks before them that were replayed only.
+    pub before: u64,
     /// Loop time of the last one, s.
     pub seconds: f64,
     /// The first tick that differs; the replay ends there.
@@ -87,7 +92,13 @@ pub struct Outcome {
     pub closed: bool,
 }
 
-/// Replays a journal to its end, to its first hole or to the first tick that differs. `each` is called with every tick.
+/// Whether a tick at this loop time (s) is not before a moment: times in the file are whole nanoseconds.
+fn is_from(now_s: f64, moment_s: f64) -> bool {
+    (now_s * 1e9).round() >= (moment_s * 1e9).round()
+}
+
+/// Replays a journal to its end, to its first hole or to the first tick that differs. `each` is called with every tick; where only the
+/// outcome matters, [`verify`] is faster.
 ///
 /// # Errors
 /// [`ReplayError`] if the journal cannot be read.

@@ -1,6 +1,6 @@
 //! The journal of a session, step by step.
 
-use std::{iter::Peekable, vec};
+use std::{iter::Peekable, mem::take, vec};
 
 use nima_machine::{runtime::Operation, teleop::Calibrations};
 
@@ -28,6 +28,15 @@ pub enum Step {
     },
     /// The recording was closed.
     End(End),
+}
+
+/// A part of a journal.
+#[derive(Debug)]
+pub enum Part {
+    /// Ticks between which nothing happens.
+    Ticks(Vec<Row>),
+    /// What happens between them.
+    Between(Step),
 }
 
 /// A journal whose beginning has been read: its steps.
@@ -66,6 +75,14 @@ impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Journal<I> {
             Some(_) => Err(ReplayError::NoStart),
             None => Err(ReplayError::NoJournal),
         }
+    }
+
+    /// The next step, or all ticks up to it at once.
+    pub fn next_part(&mut self) -> Option<Result<Part, ReplayError>> {
+        Some(match self.next()? {
+            Ok(Step::Tick) => Ok(Part::Ticks(self.open.as_mut().map(Open::run).unwrap_or_default())),
+            step => step.map(Part::Between),
+        })
     }
 
     /// What the loop was made of.
@@ -157,6 +174,18 @@ impl Open {
         }
         self.passed += 1;
         Some(Step::Tick)
+    }
+
+    /// The tick that [`Open::next`] came to and those up to the next thing that happens.
+    fn run(&mut self) -> Vec<Row> {
+        let (first, last) = (self.passed.saturating_sub(1), self.rows.len());
+        let end = self.noted.peek().map_or(last, |(before, _)| (*before).clamp(self.passed, last));
+        if (first, end) == (0, last) {
+            self.passed = 0;
+            return take(&mut self.rows);
+        }
+        self.passed = end;
+        self.rows[first..end].to_vec()
     }
 }
 

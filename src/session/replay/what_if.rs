@@ -4,6 +4,8 @@
 //! otherwise, and so would the tissue's force. What is compared is what the hand would have felt at each moment, had it moved
 //! as it did.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 use nima_core::impedance::Mode;
 use nima_machine::{
@@ -13,7 +15,7 @@ use nima_machine::{
     teleop::Origin,
 };
 
-use super::{Hole, Journal, Machine, Numbered, ReplayError, Step};
+use super::{Hole, Journal, Machine, Numbered, ReplayError, Step, is_from};
 
 /// What is changed; `None` leaves it as it was. A setting that is changed stays so: commands that would set it are left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -95,8 +97,9 @@ pub struct Compared {
     pub changed_error: Difference,
 }
 
-/// Feeds a journal to the loop that recorded it and to a changed one. `each` is called with both loops' ticks of each side.
-/// Returns the comparison of each side that the rig has, the number of ticks, and the hole at which it ended, if there is one.
+/// Feeds a journal to the loop that recorded it and to a changed one, both from its beginning, and compares them within a stretch (loop
+/// time, s). `each` is called with both loops' ticks of each side. Returns the comparison of each side that the rig has, the number of
+/// ticks in the stretch, and the hole at which it ended, if there is one.
 ///
 /// # Errors
 /// [`ReplayError`] if the journal cannot be read or the changed settings are not usable.
@@ -104,17 +107,18 @@ pub struct Compared {
 pub fn compare<I: Iterator<Item = Result<Numbered, ReplayError>>>(
     journal: &mut Journal<I>,
     change: &Change,
+    stretch_s: &Range<f64>,
     mut each: impl FnMut(&Tick, &Tick),
 ) -> Result<([Option<Compared>; SIDES], u64, Option<Hole>), ReplayError> {
     let origin = &journal.start().origin;
     let (mut recorded, mut changed) = (Machine::new(origin)?, Machine::new(&change.origin(origin))?);
-    let (mut sides, mut ticks, mut hole, mut events) = ([None; SIDES], 0, None, Vec::new());
+    let (mut sides, mut ticks, mut before, mut hole, mut events) = ([None; SIDES], 0, 0, None, Vec::new());
     while let Some(step) = journal.next() {
         match step? {
             Step::Operation(operation) => {
-                recorded.apply(operation, ticks)?;
+                recorded.apply(operation, before + ticks)?;
                 if !matches!(operation, Operation::Command { command, .. } if !change.lets(command)) {
-                    changed.apply(operation, ticks)?;
+                    changed.apply(operation, before + ticks)?;
                 }
             }
             Step::Calibrations { number, calibrations } => {
@@ -122,15 +126,23 @@ pub fn compare<I: Iterator<Item = Result<Numbered, ReplayError>>>(
                 changed.know(number, *calibrations);
             }
             Step::Hole { lost } => {
-                hole = Some(Hole { tick: ticks, lost });
+                hole = Some(Hole { tick: before + ticks, lost });
                 break;
             }
             Step::End(_) => {}
             Step::Tick => {
                 let Some(row) = journal.row() else { continue };
+                let now_s = row.timing.now_s;
+                if is_from(now_s, stretch_s.end) {
+                    break;
+                }
                 let ((_, as_was), (_, as_if)) = (recorded.step(row), changed.step(row));
                 recorded.take_events(&mut events);
                 changed.take_events(&mut events);
+                if !is_from(now_s, stretch_s.start) {
+                    before += 1;
+                    continue;
+                }
                 ticks += 1;
                 for side in Side::ALL {
                     if let (Some(was), Some(would)) = (&as_was[side.index()], &as_if[side.index()]) {

@@ -21,7 +21,7 @@ use nima_session::{
 };
 use nima_world::scene::Scene;
 
-use super::{motion, output};
+use super::{motion, output, stretch::Stretch};
 use crate::{
     console::sessions,
     leaving::Leave,
@@ -44,26 +44,14 @@ pub(super) struct Arguments {
     /// or `PlotJuggler` (.xml)
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Where to begin, in seconds since the session began
-    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
-    from: Option<f64>,
-    /// Where to end; what happens at this time is left out
-    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
-    to: Option<f64>,
+    #[command(flatten)]
+    stretch: Stretch,
     /// Which arm comes into the table, right or left (needed if the session has both)
     #[arg(long, value_name = "ARM", value_parser = motion::side)]
     arm: Option<Side>,
     /// Leave out what tells who recorded it, where and when (.mcap only)
     #[arg(long)]
     anonymous: bool,
-}
-
-/// A time in a session.
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(seconds) if (0.0..=1e9).contains(&seconds) => Ok(seconds),
-        _ => Err("give a number of seconds from 0".to_owned()),
-    }
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -73,7 +61,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if !is("csv") && !is("mcap") && layout.is_none() {
         bail!("--out {}: give a name that ends in .csv, .mcap, .json or .xml", out.display());
     }
-    if layout.is_some() && (arm.is_some() || *anonymous || arguments.from.is_some() || arguments.to.is_some()) {
+    if layout.is_some() && (arm.is_some() || *anonymous || arguments.stretch.is_asked()) {
         bail!("a layout is the same for the whole session: leave out --arm, --anonymous, --from and --to");
     }
     if is("mcap") && arm.is_some() {
@@ -93,7 +81,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(name) = layout {
         return laid_out(&reader, session, name, out);
     }
-    let times_ns = stretch(&reader, arguments)?;
+    let times_ns = times_ns(&reader, arguments)?;
     // Whatever is half-written goes away before the end.
     let leave = Leave::on_signals()?;
     if is("csv") {
@@ -122,25 +110,12 @@ fn laid_out(reader: &Reader, session: &Path, name: &str, out: &Path) -> anyhow::
 }
 
 /// The times that were asked for, ns.
-fn stretch(reader: &Reader, arguments: &Arguments) -> anyhow::Result<Range<u64>> {
-    let Arguments { session, from, to, .. } = arguments;
+fn times_ns(reader: &Reader, Arguments { session, stretch, .. }: &Arguments) -> anyhow::Result<Range<u64>> {
+    let Range { start, end } = stretch.of(session, reader, reader)?;
     let begin_ns = plotted::beginning_ns(reader)?;
-    let (first_ns, last_ns) = reader.statistics().times_ns;
-    let [first_s, last_s] = [first_ns, last_ns].map(|time_ns| time_ns.saturating_sub(begin_ns) as f64 / 1e9);
-    if let (Some(from), Some(to)) = (from, to)
-        && from >= to
-    {
-        bail!("--from {from} is not before --to {to}");
-    }
-    let reaches = format!("session {} goes from {first_s:.3} s to {last_s:.3} s", session.display());
-    if let Some(from) = from.filter(|from| *from > last_s) {
-        bail!("--from {from} is beyond the end: {reaches}");
-    }
-    if let Some(to) = to.filter(|to| *to <= first_s) {
-        bail!("--to {to} is before the beginning: {reaches}");
-    }
-    let time_ns = |seconds: f64| begin_ns + (seconds * 1e9).round() as u64;
-    Ok(from.map_or(0, time_ns)..to.map_or(u64::MAX, time_ns))
+    let time_ns = |seconds: f64| begin_ns.saturating_add((seconds * 1e9).round() as u64);
+    // What was written before the first tick belongs to it.
+    Ok(if start > 0.0 { time_ns(start) } else { 0 }..time_ns(end))
 }
 
 /// Why a table was not finished.

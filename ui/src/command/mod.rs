@@ -19,6 +19,7 @@ mod report;
 mod run;
 mod sessions;
 mod setup;
+mod stretch;
 mod study;
 mod train;
 pub(crate) mod truth;

@@ -4,6 +4,7 @@ mod what_if;
 
 use std::{
     iter,
+    ops::Range,
     path::{Path, PathBuf},
     time::Instant,
 };
@@ -13,11 +14,11 @@ use clap::Args;
 use nima_core::impedance::{MAX_DELAY_S, Mode};
 use nima_session::{
     file::Recorded,
-    replay::{Change, Differs, Hole, Journal, Messages, Outcome, ReplayError, replay},
+    replay::{Change, Differs, Hole, Journal, Messages, Outcome, ReplayError, verify},
 };
 use serde::Serialize;
 
-use super::output;
+use super::{output, stretch::Stretch};
 use crate::{recording::PROGRAM, telling::tell};
 
 #[derive(Debug, Args)]
@@ -27,6 +28,8 @@ pub(super) struct Arguments {
     /// The file in the second place in which its recording went on
     #[arg(value_name = "SECOND")]
     more: Vec<PathBuf>,
+    #[command(flatten)]
+    stretch: Stretch,
     /// What if: render with this mode
     #[arg(long)]
     mode: Option<Mode>,
@@ -60,7 +63,7 @@ fn gain(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { session, more, mode, delay_ms, gain, out, json } = arguments;
+    let Arguments { session, more, stretch, mode, delay_ms, gain, out, json } = arguments;
     let change = Change { mode: *mode, delay_s: delay_ms.map(|delay_ms| delay_ms * 1e-3), gain: *gain };
     if !change.is_any() && out.is_some() {
         bail!("--out needs a change: give --mode, --delay-ms or --gain too");
@@ -69,11 +72,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     for note in files.iter().flat_map(|file| file.reader().notes()) {
         tell(format_args!("nima: {note}"));
     }
-    let journal = || files.split_first().map_or(Err(ReplayError::NoJournal), |(first, more)| first.journal_with(more));
+    let Some((first, others)) = files.split_first() else { bail!("name a session") };
+    let stretch_s = stretch.of(session, first.reader(), others.last().unwrap_or(first).reader())?;
+    let journal = || first.journal_with(others);
     if change.is_any() {
-        return what_if::run(&journal, session, &change, out.as_deref(), *json);
+        return what_if::run(&journal, session, &change, &stretch_s, out.as_deref(), *json);
     }
-    once_more(journal(), session, *json)
+    once_more(journal(), session, &stretch_s, *json)
 }
 
 /// The journal from its beginning, or why there is none.
@@ -86,6 +91,8 @@ struct Told<'a> {
     recorded_by: &'a str,
     rig: &'a str,
     ticks: u64,
+    /// Replayed, and not compared.
+    ticks_before: u64,
     seconds: f64,
     times_real_time: f64,
     identical: bool,
@@ -110,14 +117,14 @@ struct Missing {
     lost: u64,
 }
 
-fn once_more(journal: Opened, session: &Path, json: bool) -> anyhow::Result<()> {
+fn once_more(journal: Opened, session: &Path, stretch_s: &Range<f64>, json: bool) -> anyhow::Result<()> {
     let journal = journal.with_context(|| session.display().to_string())?;
     let start = journal.start().clone();
     let (begin, mut read) = (Instant::now(), 0);
-    let outcome = replay(journal, |_| read += 1);
+    let outcome = verify(journal, stretch_s, |ticks| read = ticks);
     let outcome = outcome.with_context(|| format!("{} ({read} ticks before were replayed)", session.display()))?;
     let took_s = begin.elapsed().as_secs_f64();
-    let Outcome { ticks, seconds, differs, hole, closed } = outcome;
+    let Outcome { ticks, before, seconds, differs, hole, closed } = outcome;
     let different = differs.map(|Differs { tick, t_s, place }| Different {
         tick,
         t_s,
@@ -129,6 +136,7 @@ fn once_more(journal: Opened, session: &Path, json: bool) -> anyhow::Result<()> 
         recorded_by: &start.program,
         rig: &start.origin.rig.name,
         ticks,
+        ticks_before: before,
         seconds,
         times_real_time: seconds / took_s.max(1e-9),
         identical: different.is_none(),
@@ -139,7 +147,7 @@ fn once_more(journal: Opened, session: &Path, json: bool) -> anyhow::Result<()> 
     if json {
         output::json(&told)?;
     } else {
-        output::line(&in_words(&told))?;
+        output::line(&in_words(&told, stretch_s))?;
     }
     match &told.differs {
         None => Ok(()),
@@ -147,13 +155,21 @@ fn once_more(journal: Opened, session: &Path, json: bool) -> anyhow::Result<()> 
     }
 }
 
-fn in_words(told: &Told<'_>) -> String {
-    let Told { session, recorded_by, rig, ticks, seconds, times_real_time, hole, closed, differs, .. } = told;
+fn in_words(told: &Told<'_>, stretch_s: &Range<f64>) -> String {
+    let Told {
+        session, recorded_by, rig, ticks, ticks_before, seconds, times_real_time, hole, closed, differs, ..
+    } = told;
     let mut text = format!(
-        "{}: rig \"{rig}\", recorded by {recorded_by}\n{ticks} ticks, {seconds:.1} s, {times_real_time:.0} times real time",
+        "{}: rig \"{rig}\", recorded by {recorded_by}\n{ticks} ticks, up to {seconds:.1} s, {times_real_time:.0} times real time",
         session.display(),
     );
-    if differs.is_none() {
+    if *ticks_before > 0 {
+        let words = format!(
+            "\nthe {ticks_before} ticks before were replayed too, because each depends on all before it, and not compared"
+        );
+        text.push_str(&words);
+    }
+    if differs.is_none() && *ticks > 0 {
         text.push_str("\nevery one is as it was recorded, to the last bit");
     }
     if let Some(Missing { after_tick, lost }) = hole {
@@ -161,7 +177,7 @@ fn in_words(told: &Told<'_>) -> String {
             "\nafter tick {after_tick} the recording lost {lost} entries: from there on nothing can be replayed, and nothing was compared"
         );
         text.push_str(&words);
-    } else if !closed && differs.is_none() {
+    } else if !closed && differs.is_none() && stretch_s.end.is_infinite() {
         text.push_str("\nthe recording was not closed: it ends where the program was killed or the file was cut");
     }
     text

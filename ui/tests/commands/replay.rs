@@ -43,6 +43,18 @@ fn a_recorded_run_replays_and_can_be_asked_what_if() {
     let words = nima(&["replay", &session]);
     let words = String::from_utf8(words.stdout).unwrap();
     assert!(words.contains("8000 ticks") && words.contains("to the last bit"), "{words}");
+    let part = json(&["replay", &session, "--from", "2.5", "--to", "4", "--json"]);
+    assert_eq!(
+        (&part["ticks_before"], &part["ticks"], &part["identical"]),
+        (&Value::from(2500), &Value::from(1500), &Value::from(true)),
+        "{part}"
+    );
+    let words = String::from_utf8(nima(&["replay", &session, "--from", "2.5", "--to", "4"]).stdout).unwrap();
+    assert!(words.contains("the 2500 ticks before were replayed") && words.contains("not compared"), "{words}");
+    assert!(!words.contains("not closed"), "{words}");
+    for (given, words) in [(["3", "2"], "is not before"), (["9", "10"], "beyond the end"), (["0", "x"], "seconds")] {
+        assert!(refused(&["replay", &session, "--from", given[0], "--to", given[1]]).contains(words));
+    }
     let asked = json(&["replay", &session, "--mode", "dfr", "--delay-ms", "200", "--out", &out, "--json"]);
     assert_eq!(asked["arms"].as_array().unwrap().len(), 2, "{asked}");
     assert!(asked["arms"][0]["difference"]["mean_n"].as_f64().unwrap() > 0.01, "{asked}");

@@ -3,6 +3,7 @@
 use std::{
     fmt::Write as _,
     io,
+    ops::Range,
     path::{Path, PathBuf},
 };
 
@@ -68,13 +69,14 @@ pub(super) fn run(
     journal: &dyn Fn() -> Opened,
     session: &Path,
     change: &Change,
+    stretch_s: &Range<f64>,
     out: Option<&Path>,
     json: bool,
 ) -> anyhow::Result<()> {
     let (compared, ticks, hole) = match out {
-        None => compare(&mut journal().with_context(|| session.display().to_string())?, change, |_, _| {})
+        None => compare(&mut journal().with_context(|| session.display().to_string())?, change, stretch_s, |_, _| {})
             .with_context(|| session.display().to_string())?,
-        Some(out) => with_forces(journal, session, change, out)?,
+        Some(out) => with_forces(journal, session, change, stretch_s, out)?,
     };
     let arm = |side: Side| {
         let Compared { engaged, apart, rendered, recorded_error, changed_error } = compared[side.index()]?;
@@ -98,7 +100,13 @@ pub(super) fn run(
 type Answer = ([Option<Compared>; nima_machine::rig::SIDES], u64, Option<Hole>);
 
 /// Compares, and writes the forces of both.
-fn with_forces(journal: &dyn Fn() -> Opened, session: &Path, change: &Change, out: &Path) -> anyhow::Result<Answer> {
+fn with_forces(
+    journal: &dyn Fn() -> Opened,
+    session: &Path,
+    change: &Change,
+    stretch_s: &Range<f64>,
+    out: &Path,
+) -> anyhow::Result<Answer> {
     output::folder(out, &[FORCES], &[session])?;
     let path = out.join(FORCES);
     let mut answer = None;
@@ -106,7 +114,7 @@ fn with_forces(journal: &dyn Fn() -> Opened, session: &Path, change: &Change, ou
         writeln!(to, "{HEADER}")?;
         let mut written = Ok(());
         let compared = journal().and_then(|mut journal| {
-            compare(&mut journal, change, |was, would| {
+            compare(&mut journal, change, stretch_s, |was, would| {
                 if written.is_ok() {
                     written = to.write_all(row(was, would).as_bytes());
                 }

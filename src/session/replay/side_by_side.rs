@@ -1,0 +1,155 @@
+//! A run of ticks with both arms side by side, each on a thread of its own.
+//!
+//! Between two operations a pair gets one thing from the other one: whether that had failed after the tick before. Nearly always nothing
+//! changes there: so each is stepped as if it did not, and if it did after all, both begin anew from copies that were made before, one
+//! after the other. What comes out is to the bit what [`Loop::step`] makes. To wait for each other at every tick would be faster on a
+//! computer that does nothing else, and slower than one thread on a busy one.
+
+use std::{
+    io,
+    thread::{self, Builder},
+};
+
+use nima_machine::{
+    messages::Event,
+    rig::{Outputs, SIDES, Side},
+    teleop::{Loop, Pair},
+};
+
+use super::{ReplayError, is_from};
+use crate::{
+    digest::{Check, STAGES, of_side},
+    journal::Row,
+};
+
+/// Fewer ticks are not worth the copies, each of 13 MB.
+const LEAST_TICKS: usize = 2000;
+
+/// What comes out of a run of ticks.
+#[derive(Debug)]
+pub(super) struct Ran {
+    /// Commands that were refused before its first tick.
+    refused: Vec<Event>,
+    sides: [Lane; SIDES],
+}
+
+/// What comes out on one side.
+#[derive(Debug, Default)]
+struct Lane {
+    /// Of each tick that is compared.
+    digests: Vec<[u64; STAGES]>,
+    /// With the number of their tick in the run.
+    events: Vec<(usize, Event)>,
+}
+
+impl Ran {
+    /// Steps the loop with these rows; those before `from_s` (loop time, s) are not compared, so no digest is made of them.
+    pub(super) fn of(control: &mut Loop, rows: &[Vec<Row>], from_s: f64) -> Result<Self, ReplayError> {
+        let refused = control.refusals().copied().collect();
+        let sides = match control.pairs_mut() {
+            [Some(right), Some(left)] => both([right, left], rows, from_s)?,
+            pairs => pairs.map(|pair| match pair {
+                Some(pair) => of_one(pair, rows, from_s),
+                None => absent(rows, from_s),
+            }),
+        };
+        control.clear_events();
+        Ok(Self { refused, sides })
+    }
+
+    /// What is to be compared with each of the rows that are compared: the number of the row, itself, and its check now.
+    pub(super) fn checks<'a>(
+        &'a self,
+        rows: &'a [Vec<Row>],
+        from_s: f64,
+    ) -> impl Iterator<Item = (usize, &'a Row, Check)> {
+        let Self { refused, sides: [right, left] } = self;
+        let rows = rows.iter().flatten().enumerate().filter(move |(_, row)| is_compared(row, from_s));
+        rows.zip(right.digests.iter().zip(&left.digests)).map(move |((number, row), (right_now, left_now))| {
+            let refused = refused.iter().filter(move |_| number == 0);
+            let events = refused.chain(right.events_of(number)).chain(left.events_of(number));
+            (number, row, Check::of_sides(events, [*right_now, *left_now]))
+        })
+    }
+}
+
+impl Lane {
+    fn step(&mut self, pair: &mut Pair, other_has_failed: bool, number: usize, row: &Row, from_s: f64) {
+        let (outputs, tick) = pair.step(other_has_failed, row.inputs[pair.side().index()], &row.timing);
+        self.events.extend(pair.events().map(|event| (number, *event)));
+        pair.clear_events();
+        if is_compared(row, from_s) {
+            self.digests.push(of_side(&outputs, Some(&tick)));
+        }
+    }
+
+    fn events_of(&self, tick: usize) -> impl Iterator<Item = &Event> {
+        let first = self.events.partition_point(|(of, _)| *of < tick);
+        self.events[first..].iter().take_while(move |(of, _)| *of == tick).map(|(_, event)| event)
+    }
+}
+
+pub(super) fn is_compared(row: &Row, from_s: f64) -> bool {
+    is_from(row.timing.now_s, from_s)
+}
+
+/// A side without a pair.
+fn absent(rows: &[Vec<Row>], from_s: f64) -> Lane {
+    let compared = rows.iter().flatten().filter(|row| is_compared(row, from_s)).count();
+    Lane { digests: vec![of_side(&Outputs::SAFE, None); compared], events: Vec::new() }
+}
+
+/// The only pair.
+fn of_one(pair: &mut Pair, rows: &[Vec<Row>], from_s: f64) -> Lane {
+    let mut lane = Lane::default();
+    rows.iter().flatten().enumerate().for_each(|(number, row)| lane.step(pair, false, number, row, from_s));
+    lane
+}
+
+/// Each on a thread of its own, if that is worth it and right; else one after the other.
+fn both(pairs: [&mut Box<Pair>; SIDES], rows: &[Vec<Row>], from_s: f64) -> Result<[Lane; SIDES], ReplayError> {
+    let [right, left] = pairs;
+    if rows.iter().map(Vec::len).sum::<usize>() >= LEAST_TICKS {
+        let had_failed = [right.has_failed(), left.has_failed()];
+        let [of_right, of_left] = thread::scope(|scope| {
+            let there = || alone(left, rows, from_s, had_failed[0]);
+            let name = format!("{} arm", Side::Left.word());
+            let there = Builder::new().name(name).spawn_scoped(scope, there)?;
+            let here = alone(right, rows, from_s, had_failed[1]);
+            Ok::<_, io::Error>([here, there.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))])
+        })
+        .map_err(ReplayError::Thread)?;
+        match (of_right, of_left) {
+            (Alone { lane: here, changes: false, .. }, Alone { lane: there, changes: false, .. }) => {
+                return Ok([here, there]);
+            }
+            (here, there) => (*right, *left) = (here.before, there.before),
+        }
+    }
+    let mut lanes: [Lane; SIDES] = Default::default();
+    for (number, row) in rows.iter().flatten().enumerate() {
+        let have_failed = [right.has_failed(), left.has_failed()];
+        lanes[0].step(right, have_failed[1], number, row, from_s);
+        lanes[1].step(left, have_failed[0], number, row, from_s);
+    }
+    Ok(lanes)
+}
+
+/// A pair that was stepped without the other one.
+struct Alone {
+    lane: Lane,
+    /// As it was before.
+    before: Box<Pair>,
+    /// It failed or recovered before the last tick: the other one has to know.
+    changes: bool,
+}
+
+fn alone(pair: &mut Box<Pair>, rows: &[Vec<Row>], from_s: f64, other_has_failed: bool) -> Alone {
+    let (before, had_failed) = (pair.clone(), pair.has_failed());
+    let (mut lane, mut changes) = (Lane::default(), false);
+    for (number, row) in rows.iter().flatten().enumerate() {
+        changes |= pair.has_failed() != had_failed;
+        lane.step(pair, other_has_failed, number, row, from_s);
+    }
+    Alone { lane, before, changes }
+}

@@ -1,0 +1,101 @@
+//! Compares a session with its replay, as fast as this computer can.
+
+use std::{mem::take, ops::Range};
+
+use super::{
+    Differs, Hole, Journal, Machine, Numbered, Outcome, Part, ReplayError, Step, is_from, side_by_side::is_compared,
+};
+use crate::journal::Row;
+
+/// Ticks that are stepped at once, some 25 MB of measurements: enough that copies of the loop do not count.
+const RUN_TICKS: usize = 16_000;
+
+/// Replays a journal and compares the ticks of a stretch (loop time, s) with those that were recorded, up to its first hole or the first
+/// tick that differs. What is before the stretch is replayed without comparing, because each tick depends on all before it; what is
+/// behind is not read. `passed` is called with the number of ticks so far.
+///
+/// # Errors
+/// [`ReplayError`] if the journal cannot be read.
+pub fn verify<I: Iterator<Item = Result<Numbered, ReplayError>>>(
+    mut journal: Journal<I>,
+    stretch_s: &Range<f64>,
+    passed: impl FnMut(u64),
+) -> Result<Outcome, ReplayError> {
+    let machine = Machine::new(&journal.start().origin)?;
+    let (rows, outcome) = (Vec::new(), Outcome::default());
+    let mut verifier = Verifier { machine, stretch_s, passed, rows, outcome, is_over: false };
+    while let Some(part) = journal.next_part() {
+        match part {
+            Ok(Part::Ticks(rows)) => verifier.add(rows)?,
+            other => {
+                // In their order: a difference before a message that cannot be read comes first.
+                verifier.run()?;
+                if !verifier.is_over {
+                    verifier.step(other?)?;
+                }
+            }
+        }
+        if verifier.is_over {
+            break;
+        }
+    }
+    verifier.run()?;
+    Ok(verifier.outcome)
+}
+
+struct Verifier<'a, F> {
+    machine: Machine,
+    stretch_s: &'a Range<f64>,
+    passed: F,
+    /// Ticks between which nothing is done to the loop.
+    rows: Vec<Vec<Row>>,
+    outcome: Outcome,
+    is_over: bool,
+}
+
+impl<F: FnMut(u64)> Verifier<'_, F> {
+    fn add(&mut self, mut rows: Vec<Row>) -> Result<(), ReplayError> {
+        if let Some(end) = rows.iter().position(|row| is_from(row.timing.now_s, self.stretch_s.end)) {
+            rows.truncate(end);
+            self.is_over = true;
+        }
+        self.rows.push(rows);
+        if self.rows.iter().map(Vec::len).sum::<usize>() >= RUN_TICKS { self.run() } else { Ok(()) }
+    }
+
+    fn run(&mut self) -> Result<(), ReplayError> {
+        let (rows, from_s) = (take(&mut self.rows), self.stretch_s.start);
+        let Some(last) = rows.iter().flatten().last() else { return Ok(()) };
+        let ran = self.machine.run(&rows, from_s)?;
+        let Outcome { ticks, before, seconds, differs, .. } = &mut self.outcome;
+        let begin = *before + *ticks;
+        *before += rows.iter().flatten().filter(|row| !is_compared(row, from_s)).count() as u64;
+        *seconds = last.timing.now_s;
+        for (number, row, check) in ran.checks(&rows, from_s) {
+            if check != row.check {
+                let (tick, t_s) = (begin + number as u64, row.timing.now_s);
+                (*differs, *seconds) = (Some(Differs { tick, t_s, place: check.differs(&row.check) }), t_s);
+                self.is_over = true;
+                return Ok(());
+            }
+            *ticks += 1;
+        }
+        (self.passed)(*before + *ticks);
+        Ok(())
+    }
+
+    fn step(&mut self, part: Part) -> Result<(), ReplayError> {
+        let tick = self.outcome.before + self.outcome.ticks;
+        match part {
+            Part::Ticks(_) | Part::Between(Step::Tick) => {}
+            Part::Between(Step::Operation(operation)) => self.machine.apply(operation, tick)?,
+            Part::Between(Step::Calibrations { number, calibrations }) => self.machine.know(number, *calibrations),
+            Part::Between(Step::End(_)) => self.outcome.closed = true,
+            Part::Between(Step::Hole { lost }) => {
+                self.outcome.hole = Some(Hole { tick, lost });
+                self.is_over = true;
+            }
+        }
+        Ok(())
+    }
+}

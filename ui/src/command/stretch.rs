@@ -1,0 +1,54 @@
+//! `--from` and `--to`: a stretch of a session.
+
+use std::{ops::Range, path::Path};
+
+use anyhow::bail;
+use clap::Args;
+use nima_recording::session::Reader;
+use nima_session::plotted;
+
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub(super) struct Stretch {
+    /// Where to begin, in seconds since the session began
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    from: Option<f64>,
+    /// Where to end; what happens at this time is left out
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    to: Option<f64>,
+}
+
+/// A time in a session.
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (0.0..=1e9).contains(&seconds) => Ok(seconds),
+        _ => Err("give a number of seconds from 0".to_owned()),
+    }
+}
+
+impl Stretch {
+    /// Whether less than the whole session was asked for.
+    pub(super) const fn is_asked(&self) -> bool {
+        self.from.is_some() || self.to.is_some()
+    }
+
+    /// Its times, s since the session began, after a look whether this session, whose end may be in `last`, has them.
+    pub(super) fn of(&self, session: &Path, reader: &Reader, last: &Reader) -> anyhow::Result<Range<f64>> {
+        let Self { from, to } = self;
+        let begin_ns = plotted::beginning_ns(reader)?;
+        let (first_ns, last_ns) = (reader.statistics().times_ns.0, last.statistics().times_ns.1);
+        let [first_s, last_s] = [first_ns, last_ns].map(|time_ns| time_ns.saturating_sub(begin_ns) as f64 / 1e9);
+        if let (Some(from), Some(to)) = (from, to)
+            && from >= to
+        {
+            bail!("--from {from} is not before --to {to}");
+        }
+        let reaches = format!("session {} goes from {first_s:.3} s to {last_s:.3} s", session.display());
+        if let Some(from) = from.filter(|from| *from > last_s) {
+            bail!("--from {from} is beyond the end: {reaches}");
+        }
+        if let Some(to) = to.filter(|to| *to <= first_s) {
+            bail!("--to {to} is before the beginning: {reaches}");
+        }
+        Ok(from.unwrap_or(0.0)..to.unwrap_or(f64::INFINITY))
+    }
+}

@@ -30,6 +30,14 @@ const PUSH_MISSES_RAD: f64 = 0.08;
 const CARRY_M: [f64; 2] = [0.004, 0.025];
 /// Range of the duration of one movement while working, s: slow enough that inertia can be neglected.
 const REACH_S: [f64; 2] = [0.5, 1.6];
+/// Share of the movements that are strokes in and out, as fast as a task is done; the range of their largest speed, m/s, and of the
+/// height from which they come down, m; the shortest duration of one, s.
+const STROKES: f64 = 0.35;
+const STROKE_M_S: [f64; 2] = [0.08, 0.16];
+const STROKE_FROM_M: [f64; 2] = [0.020, 0.040];
+const STROKE_MIN_S: f64 = 0.25;
+/// Largest speed of a minimum-jerk movement over its mean speed.
+const PEAK: f64 = 1.875;
 /// Time in which the tip is lifted off the tissue when work ends, s.
 const LIFT_S: f64 = 0.8;
 
@@ -260,25 +268,45 @@ impl Person {
     fn work(&mut self, contact: bool, dt_s: f64) {
         self.in_reach_s += dt_s;
         if self.in_reach_s >= self.reach.seconds {
-            let z_m = if contact && self.noise.uniform() < 0.6 {
-                -self.between(self.workspace.press_m)
-            } else {
-                self.between(CARRY_M)
-            };
             if self.flaw == Some(Flaw::LeansOnTheStand) {
                 self.lean();
             }
-            // Sometimes pauses, so that static friction of the seal is recorded too.
-            let stay = self.noise.uniform() < 0.2;
-            let reach = if self.flaw == Some(Flaw::WorksInOnePlace) { 0.1 } else { 1.0 };
-            let [x_m, y_m] = self.workspace.across_m.map(|[low_m, high_m]| {
-                f64::midpoint(low_m, high_m) + reach * (high_m - low_m) * (self.noise.uniform() - 0.5)
-            });
-            let to_m = if stay { self.tip_m } else { Vector3::new(x_m, y_m, self.surface_z_m + z_m) };
-            self.reach = Move { from_m: self.tip_m, to_m, seconds: self.between(REACH_S) };
+            let stroke = self.flaw != Some(Flaw::WorksInOnePlace) && self.noise.uniform() < STROKES;
+            self.reach = if stroke { self.stroke(contact) } else { self.reach(contact) };
             self.in_reach_s = 0.0;
         }
         self.reach_on(0.0);
+    }
+
+    /// To another place, slowly.
+    fn reach(&mut self, contact: bool) -> Move {
+        let z_m = if contact && self.noise.uniform() < 0.6 { self.pressed_m() } else { self.between(CARRY_M) };
+        // Sometimes pauses, so that static friction of the seal is recorded too.
+        let stay = self.noise.uniform() < 0.2;
+        let reach = if self.flaw == Some(Flaw::WorksInOnePlace) { 0.1 } else { 1.0 };
+        let [x_m, y_m] = self.workspace.across_m.map(|[low_m, high_m]| {
+            f64::midpoint(low_m, high_m) + reach * (high_m - low_m) * (self.noise.uniform() - 0.5)
+        });
+        let to_m = if stay { self.tip_m } else { Vector3::new(x_m, y_m, self.surface_z_m + z_m) };
+        Move { from_m: self.tip_m, to_m, seconds: self.between(REACH_S) }
+    }
+
+    /// In or out at this place, briskly: down from a height and up from below.
+    fn stroke(&mut self, contact: bool) -> Move {
+        let is_up = self.tip_m.z - self.surface_z_m > 0.5 * (CARRY_M[0] + CARRY_M[1]);
+        let z_m = match (is_up, contact) {
+            (false, _) => self.between(STROKE_FROM_M),
+            (true, true) => self.pressed_m(),
+            (true, false) => CARRY_M[0],
+        };
+        let to_m = Vector3::new(self.tip_m.x, self.tip_m.y, self.surface_z_m + z_m);
+        let seconds = (PEAK * (to_m - self.tip_m).norm() / self.between(STROKE_M_S)).max(STROKE_MIN_S);
+        Move { from_m: self.tip_m, to_m, seconds }
+    }
+
+    /// Height of a press into the tissue, m.
+    fn pressed_m(&mut self) -> f64 {
+        -self.between(self.workspace.press_m)
     }
 
     /// Continues the present movement; the shaft always points through the trocar.

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use nima_core::tip_force::{Fallback, FeatureSettings, Model, TipForce, TrainingSettings, Unsure};
 use nima_machine::{
     messages::{ForceReport, ForceSource},
-    rig::{Outputs, Prompt},
+    rig::{Outputs, Prompt, Side},
     teleop::{Calibrations, ForcePath},
 };
 use nima_study::validation::{
@@ -145,5 +145,49 @@ fn a_handover_causes_no_force_step() {
         }
         assert!(handovers >= 8, "{handovers}");
         assert!(largest_n < 0.5, "{fallback:?}: a step of {largest_n:.2} N in a millisecond");
+    }
+}
+
+/// This side of the scene `bimanual`, with the wrist, trocar and technician of the paper's rig.
+fn at_the_task(side: Side) -> Scene {
+    let paper = Scene::load("isolation").unwrap();
+    let scene = Scene::load("bimanual").unwrap().of_side(side).unwrap();
+    let Scene { wrist, trocar, tissue_sensor, person, .. } = paper;
+    Scene { wrist, trocar, tissue_sensor, person, ..scene }
+}
+
+/// Standard deviation per axis of the force told without contact while the hand does its task, N (`world`).
+fn free_sd_n(mut path: ForcePath, scene: &Scene, seconds: f64) -> Vector3<f64> {
+    let mut world = World::new(&Scene { person: None, ..scene.clone() }, 1000.0);
+    let mut outputs = Outputs::SAFE;
+    let (mut count, mut sum, mut squares) = (0.0, Vector3::zeros(), Vector3::zeros());
+    for tick in 1..=(seconds * 1e3) as u32 {
+        let inputs = world.advance_to(f64::from(tick) * 1e-3, &outputs);
+        outputs.tip_command_m = Some(inputs.hand.position_m);
+        let tip_n = path.step(f64::from(tick) * 1e-3, &inputs.sensed).tip_n;
+        if world.true_tip_n().norm() < f64::EPSILON {
+            count += 1.0;
+            sum += tip_n;
+            squares += tip_n.component_mul(&tip_n);
+        }
+    }
+    let mean = sum / count;
+    (squares / count - mean.component_mul(&mean)).map(f64::sqrt)
+}
+
+/// The hand's strokes reach 0.11 m/s, and the friction along the shaft grows with the speed.
+#[test]
+fn a_technician_s_recording_covers_the_speeds_of_the_task() {
+    let (known, _) = trained();
+    for side in Side::ALL {
+        let scene = at_the_task(side);
+        let data = record(&scene, known, FeatureSettings::default(), 12_000, 7.0).unwrap().data(None).unwrap();
+        let none = AtomicBool::new(false);
+        let model = train_model(&data, &TrainingSettings::default(), [None, None], &none, &|_| {}).unwrap();
+        let tip_force = Some(TipForce::new(model, Fallback::WristForce).unwrap());
+        let calibrations = Calibrations { gravity: Some(known.gravity), tip_force, ..Calibrations::default() };
+        let sd_n = free_sd_n(ForcePath::new(&calibrations, 1e-3), &scene, 20.0);
+        println!("{side:?}: standard deviation without contact {sd_n:.3?} N");
+        assert!(sd_n.max() < 0.035, "{side:?}: {sd_n} N");
     }
 }

@@ -142,8 +142,9 @@ pub(in crate::console) const PHASE_FULL: &str = "the recording is full; go on to
 pub(in crate::console) const PHASE_WRIST_SILENT: &str = "not recording: the wrist sensor sends no data; connect it";
 pub(in crate::console) const PHASE_NOT_MOVED: &str = "waiting; move the instrument in or out by 2 mm";
 pub(in crate::console) const TASK_WORK: &str =
-    "Work where the task will be done: in and out, sideways, with and without contact";
-pub(in crate::console) const TASK_WORK_FREE: &str = "Move in and out and sideways without touching the tissue";
+    "Work where the task will be done: in and out, sideways, slowly and quickly, with and without contact";
+pub(in crate::console) const TASK_WORK_FREE: &str =
+    "Move in and out and sideways, slowly and quickly, without touching the tissue";
 pub(in crate::console) const TASK_REST: &str = "Lift the tip off the tissue and hold it still";
 pub(in crate::console) const DOUBT: &str = "In doubt";
 pub(in crate::console) const TRAIN_STOPPING: &str = "stopping";

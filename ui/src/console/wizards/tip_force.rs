@@ -49,8 +49,8 @@ const SPELL: usize = 900;
 const CHECK_WORK: usize = 8000;
 const CHECK_ROWS: usize = CHECK_WORK + 3000;
 
-/// Rows that a technician without a screen records: a minute.
-const ENOUGH_ROWS: usize = 12_000;
+/// Rows that a technician without a screen records: 80 s.
+const ENOUGH_ROWS: usize = 16_000;
 
 /// What a recording was made with: rows of different rigs must not be mixed.
 #[derive(Clone, Debug)]

@@ -110,11 +110,12 @@ impl TipForceWizard {
 fn goals_ui(ui: &mut Ui, coverage: &Coverage) {
     card(ui, text::tip_force::GOALS_TITLE, text::tip_force::GOALS_HOVER, |ui| {
         ui.columns(2, |columns| {
-            for (i, goal) in coverage.goals().iter().enumerate() {
+            let goals = coverage.goals();
+            for (i, goal) in goals.iter().enumerate() {
                 // Rounded down, so that 100 is shown only when the requirement is met.
                 let percent = format!("{:.0} %", (100.0 * goal.share).floor());
                 progress(
-                    &mut columns[i / 3],
+                    &mut columns[i / goals.len().div_ceil(2)],
                     goal.name,
                     goal.share,
                     if goal.share < 1.0 { &percent } else { text::wizards::MET },
@@ -129,7 +130,7 @@ fn maps_ui(ui: &mut Ui, coverage: &Coverage) {
     let force: [AxisWords; 2] =
         [["0 N", text::tip_force::FORCE_ACROSS, "5 N"], ["-5", text::tip_force::FORCE_ALONG, "5"]];
     let travel: [AxisWords; 2] =
-        [["0 mm", text::tip_force::TRAVEL_DEPTH, "300 mm"], ["-80", text::tip_force::TRAVEL_SPEED, "80"]];
+        [["0 mm", text::tip_force::TRAVEL_DEPTH, "300 mm"], ["-160", text::tip_force::TRAVEL_SPEED, "160"]];
     let meaning = text::tip_force::COVERAGE_HOVER;
     card(ui, text::tip_force::COVERAGE_TITLE, meaning, |ui| {
         let width = ((ui.available_width() - 2.0 * 10.0) / 3.0).min(238.0);
@@ -149,7 +150,7 @@ mod tests {
     #[test]
     fn the_maps_say_what_the_library_draws() {
         assert_eq!(TILT.asin().to_degrees().round() as i32, 53);
-        assert_eq!([FORCE_N, SPEED_M_S * 1e3].map(|x| x.round() as i32), [5, 80]);
+        assert_eq!([FORCE_N, SPEED_M_S * 1e3].map(|x| x.round() as i32), [5, 160]);
         assert_eq!(DEPTH_M.map(|x| (x * 1e3).round() as i32), [0, 300]);
     }
 }

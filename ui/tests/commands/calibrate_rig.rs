@@ -20,8 +20,7 @@ use super::installed::rig;
 /// deviation without contact.
 const MAE_N: f64 = 0.08;
 const FREE_MEAN_N: f64 = 0.03;
-/// The aim is 0.04 N, which the axis along the shaft misses: docs/calibration.md says why.
-const FREE_SD_N: f64 = 0.08;
+const FREE_SD_N: f64 = 0.04;
 
 /// A user's own folders, with this rig file.
 struct Home(tempfile::TempDir);

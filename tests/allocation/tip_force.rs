@@ -72,7 +72,7 @@ fn the_loop_with_a_network_in_it_allocates_nothing() {
         }
         // Missing samples at intervals, which reset the features' state.
         let inputs = world.exchange(now_s, &outputs).filter(|_| k % 3000 > 15);
-        let (next, tick) = control.step(inputs, &Timing { now_s, ..Timing::default() });
+        let (next, tick) = control.step(false, inputs, &Timing { now_s, ..Timing::default() });
         outputs = next;
         sure += u32::from(tick.force.source == ForceSource::Network);
         doubtful += u32::from(tick.force.source.doubt().is_some());

@@ -14,7 +14,7 @@ fn pair(ready_check: ReadyCheck) -> Pair {
     for k in 0..50 {
         let now_s = f64::from(k) * 1e-3;
         let inputs = worlds.read(now_s);
-        pair.step(inputs[0], &Timing { now_s, ..Timing::default() });
+        pair.step(false, inputs[0], &Timing { now_s, ..Timing::default() });
         worlds.write(now_s, &[Outputs::SAFE; 2]);
     }
     pair

@@ -179,7 +179,7 @@ impl Bench {
     fn step(&mut self, edit: impl Fn(Inputs) -> Option<Inputs>) -> Tick {
         let now_s = self.tick as f64 * 1e-3;
         let inputs = self.world.exchange(now_s, &self.outputs).and_then(edit);
-        let (outputs, tick) = self.control.step(inputs, &Timing { now_s, ..Timing::default() });
+        let (outputs, tick) = self.control.step(false, inputs, &Timing { now_s, ..Timing::default() });
         self.outputs = outputs;
         self.tick += 1;
         tick
@@ -229,7 +229,7 @@ fn a_stall_is_a_fault_with_zero_force() {
     let mut bench = Bench::until_contact(Mode::Dfr);
     let inputs = bench.world.exchange(bench.tick as f64 * 1e-3, &bench.outputs);
     let timing = Timing { now_s: bench.tick as f64 * 1e-3 + 0.1, missed_now: 100, ..Timing::default() };
-    let (outputs, tick) = bench.control.step(inputs, &timing);
+    let (outputs, tick) = bench.control.step(false, inputs, &timing);
     assert_eq!(tick.state, LoopState::Faulted(Fault::LoopStalled { periods: 100 }));
     assert_eq!(outputs, Outputs::SAFE);
 }
@@ -239,7 +239,7 @@ fn a_stall_while_no_drives_are_on_harms_nobody_and_is_no_fault() {
     let Plan { rig, scene, .. } = plan("peg_transfer");
     let mut control = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();
     let inputs = World::new(&scene, rig.rate_hz).exchange(0.1, &Outputs::SAFE);
-    let (outputs, tick) = control.step(inputs, &Timing { now_s: 0.1, missed_now: 100, ..Timing::default() });
+    let (outputs, tick) = control.step(false, inputs, &Timing { now_s: 0.1, missed_now: 100, ..Timing::default() });
     assert_eq!((tick.state, outputs), (LoopState::Idle, Outputs::SAFE));
     assert_eq!(tick.missed, 100, "it is counted");
 }

@@ -241,9 +241,9 @@ fn narrow(width: f32, height: f32, traces: f32) -> Node {
     let [left, _] = short_sides(height);
     let above = row(vec![
         (width - KNOBS - FIGURES, tabs(&[Panel::Field, Panel::Devices])),
-        (FIGURES, tabs(&[Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Link, Panel::Tradeoff])),
+        (FIGURES, tabs(&[Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Tradeoff])),
     ]);
-    let under = tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace]);
+    let under = tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace, Panel::Link]);
     row(vec![(KNOBS, left), (width - KNOBS, column(vec![(height - traces, above), (traces, under)]))])
 }
 

@@ -7,7 +7,8 @@ use nima_machine::{
     messages::{Command, LoopState},
     remote::{FarFollower, FarLeader, MESSAGE_MAX, Wire, at_follower},
     rig::Rig,
-    teleop::{Calibrations, Loop, Timing},
+    runtime::tick,
+    teleop::{Calibrations, Loop},
 };
 use nima_testing::real_time::alone;
 use nima_world::{Worlds, scene::Scene};
@@ -45,15 +46,7 @@ impl Wire for InPlace {
 }
 
 fn step(control: &mut Loop, rig: &mut impl Rig, now_s: f64, command: Option<Command>) -> LoopState {
-    let inputs = rig.read(now_s);
-    control.clear_events();
-    for command in command.into_iter().chain(std::iter::from_fn(|| rig.command())) {
-        control.obey(command, now_s);
-    }
-    let (outputs, ticks) = control.step(inputs, &Timing { now_s, ..Timing::default() });
-    rig.write(now_s, &outputs);
-    rig.hear(now_s, &control.bulletins());
-    ticks[0].unwrap().state
+    tick(control, rig, now_s, command)[0].unwrap().state
 }
 
 #[test]

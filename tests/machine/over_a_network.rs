@@ -12,7 +12,8 @@ use nima_machine::{
     messages::{Command, Event, FarStop, Fault, LoopState, Refusal, Tick},
     remote::{FarFollower, FarLeader, Wire, at_follower},
     rig::Rig,
-    teleop::{Calibrations, Loop, Timing},
+    runtime::tick,
+    teleop::{Calibrations, Loop},
 };
 use nima_tests::plan;
 use nima_world::{Worlds, run_virtual, scene::Scene};
@@ -57,15 +58,7 @@ struct Machine<R> {
 impl<R: Rig> Machine<R> {
     fn step(&mut self, command: Option<Command>, at_s: f64) {
         let now_s = at_s + self.ahead_s;
-        let inputs = self.rig.read(now_s);
-        self.control.clear_events();
-        for command in command.into_iter().chain(std::iter::from_fn(|| self.rig.command())) {
-            self.control.obey(command, now_s);
-        }
-        let (outputs, ticks) = self.control.step(inputs, &Timing { now_s, ..Timing::default() });
-        self.rig.write(now_s, &outputs);
-        self.rig.hear(now_s, &self.control.bulletins());
-        self.tick = ticks[0];
+        [self.tick, _] = tick(&mut self.control, &mut self.rig, now_s, command);
         self.events.extend(self.control.events().copied());
     }
 

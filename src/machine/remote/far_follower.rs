@@ -82,11 +82,6 @@ impl<R: Rig, W: Wire> FarFollower<R, W> {
         &self.local
     }
 
-    /// The rig that is at this machine.
-    pub const fn local_mut(&mut self) -> &mut R {
-        &mut self.local
-    }
-
     /// What carries the messages.
     pub const fn wire(&self) -> &W {
         &self.wire

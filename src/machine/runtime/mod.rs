@@ -18,7 +18,7 @@ pub use summary::{ArmEnd, CauseAndCure, CpuShare, DeviceFigures, Histograms, Mod
 pub use supervisor::STALL_MAX_S;
 pub use tap::{Entry, Next, Operation, Passed, Stepped, TICKS_TAPPED_MAX, Tap, TapEnd, tap};
 pub use thread::{Ender, Handle, StartError, TICKS_WAITING_MAX, start};
-pub use virtual_clock::run_virtual;
+pub use virtual_clock::{run_virtual, tick};
 pub use wrists::WristChange;
 
 use crate::{

@@ -8,8 +8,11 @@ use super::{
     tap::{Operation, Tap},
     thread::tell,
 };
-use crate::messages::{Command, Scheduling, Tick};
-use crate::teleop::Timing;
+use crate::{
+    messages::{Command, Scheduling, Tick},
+    rig::{Rig, SIDES},
+    teleop::{Loop, Timing},
+};
 
 /// Runs the loop for `seconds` of loop time. `each` is called with every tick of every side; it may return a command
 /// for the next tick, and ends the run by returning [`Command::Shutdown`].
@@ -58,4 +61,17 @@ fn run(assembly: Assembly, seconds: f64, each: &mut dyn FnMut(&Tick) -> Option<C
     }
     let loop_s = meters.ticks as f64 * period_s;
     meters.summary("virtual", &control, loop_s, start.elapsed().as_secs_f64(), Scheduling::default())
+}
+
+/// One tick of a loop with its rig at `now_s`, for several loops on one clock. Its events stay in the loop until the next one.
+pub fn tick(control: &mut Loop, rig: &mut impl Rig, now_s: f64, command: Option<Command>) -> [Option<Tick>; SIDES] {
+    let inputs = rig.read(now_s);
+    control.clear_events();
+    for command in command.into_iter().chain(std::iter::from_fn(|| rig.command())) {
+        control.obey(command, now_s);
+    }
+    let (outputs, ticks) = control.step(inputs, &Timing { now_s, ..Timing::default() });
+    rig.write(now_s, &outputs);
+    rig.hear(now_s, &control.bulletins());
+    ticks
 }

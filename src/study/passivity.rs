@@ -302,16 +302,20 @@ mod tests {
 
     const DELAYS_MS: [f64; 4] = [10.0, 50.0, 100.0, 300.0];
 
-    fn never_much_worse(delays_ms: &[f64]) {
+    /// That of the scene, softer, stiffer, and without friction.
+    fn tissues() -> [Tissue; 4] {
         let plain = tissue();
-        let tissues = [
+        [
             plain,
             Tissue { stiffness: plain.stiffness / 3.0, ..plain },
             Tissue { stiffness: plain.stiffness * 3.0, ..plain },
             Tissue { friction: 0.0, shear_stiffness_n_m: 0.0, ..plain },
-        ];
+        ]
+    }
+
+    fn never_much_worse(delays_ms: &[f64]) {
         let mut worst = (0.0, String::new());
-        for tissue in tissues {
+        for tissue in tissues() {
             for task in Task::ALL {
                 for &delay_ms in delays_ms {
                     let error_n = |mode| tasked((mode, OwnMotion::Follower), task, delay_ms, tissue).unwrap().error_n;
@@ -350,35 +354,40 @@ mod tests {
     /// Before errors that last counted at once, it was up to 19 % worse here, and more than 2 % in a fifth of all cases.
     #[test]
     fn over_tissue_that_changes_at_every_touch_the_best_of_two_is_hardly_worse_than_anchored() {
-        hardly_worse(&[0.55]);
+        hardly_worse(&[tissue()], &[0.55]);
     }
 
     #[test]
     #[ignore = "half a minute: `./dev figures` runs it"]
     fn over_tissue_that_changes_the_best_of_two_is_hardly_worse_than_anchored_in_the_whole_grid() {
-        hardly_worse(&[0.3, 0.55, 0.82]);
+        hardly_worse(&tissues(), &[0.3, 0.55, 0.82]);
     }
 
-    fn hardly_worse(begins: &[f64]) {
-        let (mut cases, mut worse) = (0, Vec::new());
-        for &begin in begins {
-            let other = changing(tissue(), begin);
-            for task in Task::ALL {
-                for delay_ms in DELAYS_MS {
+    /// What is above 1.02 is lost at the first change of a run, before it is known that the tissue changes.
+    fn hardly_worse(tissues: &[Tissue], begins: &[f64]) {
+        let mut worse = Vec::new();
+        for delay_ms in DELAYS_MS {
+            let (mut logs, mut cases) = (0.0, 0.0);
+            for &begin in begins {
+                for (plain, task) in tissues.iter().flat_map(|plain| Task::ALL.map(|task| (plain, task))) {
+                    let other = changing(*plain, begin);
                     let error_n =
                         |mode| tasked_over((mode, OwnMotion::Follower), task, delay_ms, &other).unwrap().error_n;
                     let ratio = error_n(Mode::Best) / error_n(Mode::Anchored);
-                    let limit = if delay_ms > 200.0 { 1.13 } else { 1.06 };
+                    let limit = if delay_ms > 200.0 { 1.11 } else { 1.04 };
                     assert!(ratio <= limit, "{ratio} times anchored: {task:?} at {delay_ms} ms, sequence {begin}");
-                    cases += 1;
+                    (logs, cases) = (logs + ratio.ln(), cases + 1.0);
                     if ratio > 1.02 {
-                        worse.push((ratio, task, delay_ms));
+                        worse.push((ratio, task, delay_ms, begin));
                     }
                 }
             }
+            println!("{delay_ms} ms: geometric mean {:.3}", (logs / cases).exp());
+            assert!(logs <= 0.002 * cases, "worse on the whole at {delay_ms} ms");
         }
         println!("{worse:?}");
-        assert!(worse.len() * 8 <= cases, "{} of {cases}: {worse:?}", worse.len());
+        let cases = begins.len() * tissues.len() * Task::ALL.len() * DELAYS_MS.len();
+        assert!(worse.len() * 30 <= cases, "{} of {cases}: {worse:?}", worse.len());
     }
 
     #[test]

@@ -3,21 +3,21 @@
 use super::{
     Mode,
     messages::Parcel,
-    pace::share,
+    pace::{newest_share, share},
     settings::{MAX_DELAY_S, Settings},
 };
 use crate::signal::{DelayLine, Lanes};
 
-/// Memory of the errors (s by the clock). Until it is full, the newest error has twice the share of a plain mean: what was
-/// learnt first says little.
+/// Memory of the errors (s by the clock).
 const MEMORY_S: f64 = 1.0;
-const NEWEST: f64 = 2.0;
 /// Matched rendering learns longer than anchored, so its past errors say too much: they count for this share less at first, and
 /// for what they are once the memory is full.
 const LEARNING: f64 = 0.2;
 /// What matched rendering has erred by all the time, for half of this to all of it (s), counts at least for this share.
 const LASTING_S: f64 = 0.06;
 const LASTING: f64 = 0.7;
+/// Memory in which the mixture itself is judged against anchored rendering (s by the clock): some touches. 1 to 8 s are as good.
+const TRIAL_S: f64 = 4.0;
 /// Errors below this are equal (N).
 const EQUAL_N: f64 = 1e-12;
 
@@ -29,6 +29,9 @@ const EQUAL_N: f64 = 1e-12;
 /// On another tissue both err at first. Anchored rendering does so for one delay, matched until it has learnt the tissue; but the
 /// errors of both are known one delay late, so that both look bad for as long again. An error of matched that does not go
 /// away tells it sooner: it is compared at once with what anchored usually errs by.
+///
+/// Where the tissue changes again and again, each change costs something before it is known. So the mixture is judged itself,
+/// over some touches: the more it errs beyond anchored rendering, the less of matched is in it.
 #[derive(Clone, Debug)]
 pub(super) struct Best {
     rate_hz: f64,
@@ -37,14 +40,36 @@ pub(super) struct Best {
     anchored_n: Lanes,
     matched_n: Lanes,
     lasting: Lasting,
+    trial: Trial,
     anchored: Lanes,
 }
 
-/// What both modes would have rendered at one tick (N), and how fast time ran then.
+/// What anchored, matched and their mixture would have rendered at one tick (N), and how fast time ran then.
 #[derive(Clone, Copy, Debug, Default)]
 struct Said {
-    forces_n: Option<[Lanes; 2]>,
+    forces_n: Option<[Lanes; 3]>,
     pace: f64,
+}
+
+/// The mixture against anchored rendering: mean errors (N).
+#[derive(Clone, Copy, Debug, Default)]
+struct Trial {
+    judged: f64,
+    anchored_n: Lanes,
+    mixed_n: Lanes,
+}
+
+impl Trial {
+    /// How far the mixture is to be given up, 0 to 1.
+    fn step(&mut self, [anchored_n, mixed_n]: [Lanes; 2], pace: f64, rate_hz: f64) -> Lanes {
+        self.judged += pace;
+        let share = share(pace, self.judged, TRIAL_S * rate_hz);
+        follow(&mut self.anchored_n, anchored_n, share);
+        follow(&mut self.mixed_n, mixed_n, share);
+        let odds = odds(self.mixed_n, self.anchored_n);
+        // Twice the exponent: the mixture is seldom worse by more than a few per cent.
+        (odds * odds).map(|odds| 1.0 / (1.0 + odds.recip()))
+    }
 }
 
 /// The least error (N) of this block of ticks and the one before.
@@ -78,6 +103,7 @@ impl Best {
             anchored_n: none,
             matched_n: none,
             lasting: Lasting::default(),
+            trial: Trial::default(),
             anchored: none,
         }
     }
@@ -90,7 +116,8 @@ impl Best {
     /// Keeps what was rendered in this tick by each mode ([`Mode::index`]).
     pub(super) fn say(&mut self, forces_n: &[Option<Lanes>], pace: f64) {
         let of = |mode: Mode| forces_n[mode.index()];
-        self.said.push(Said { forces_n: of(Mode::Anchored).zip(of(Mode::Matched)).map(<[_; 2]>::from), pace });
+        let both = of(Mode::Anchored).zip(of(Mode::Matched)).zip(of(Mode::Best));
+        self.said.push(Said { forces_n: both.map(|((anchored, matched), mixed)| [anchored, matched, mixed]), pace });
     }
 
     /// Judges what was rendered `age` ticks ago by the force of that time, which has just come.
@@ -106,31 +133,45 @@ impl Best {
         let force_n = Lanes::from(parcel.force_n);
         self.judged += pace;
         let memory = MEMORY_S * self.rate_hz;
-        let share = share(NEWEST * pace, self.judged, NEWEST * memory);
-        let [anchored_n, matched_n] = said_n.map(|said_n| (force_n - said_n).map(f64::abs));
-        for (mean_n, error_n) in [(&mut self.anchored_n, anchored_n), (&mut self.matched_n, matched_n)] {
-            *mean_n = (*mean_n + (error_n - *mean_n) * share).settled();
-        }
+        let share = newest_share(pace, self.judged, memory);
+        let [anchored_n, matched_n, mixed_n] = said_n.map(|said_n| (force_n - said_n).map(f64::abs));
+        follow(&mut self.anchored_n, anchored_n, share);
+        follow(&mut self.matched_n, matched_n, share);
         let block = ((0.5 * LASTING_S * self.rate_hz).round() as usize).max(1);
         let lasting_n = self.lasting.step(block, matched_n) * LASTING;
-        let learning = 1.0 - LEARNING * (1.0 - self.judged / memory).max(0.0);
-        let floor_n = Lanes::splat(EQUAL_N);
-        let matched_n = self.matched_n.zip(lasting_n, f64::max) * learning;
-        let odds = eighth_power((matched_n + floor_n) / (self.anchored_n + floor_n));
+        let full = (self.judged / memory).min(1.0);
+        let learning = 1.0 - LEARNING * (1.0 - full);
+        let odds = odds(self.matched_n.zip(lasting_n, f64::max) * learning, self.anchored_n);
         self.anchored = odds.map(|odds| 1.0 / (1.0 + odds.recip()));
+        // In the first half of the memory both still learn what they will go on with.
+        if full > 0.5 {
+            let given_up = self.trial.step([anchored_n, mixed_n], pace, self.rate_hz) * (2.0 * full - 1.0);
+            self.anchored += (Lanes::splat(1.0) - self.anchored) * given_up;
+        }
     }
 
     /// Forgets what was judged.
     fn forget(&mut self) {
         let none = Lanes::ZERO;
         (self.judged, self.anchored_n, self.matched_n, self.anchored) = (0.0, none, none, none);
-        self.lasting = Lasting::default();
+        (self.lasting, self.trial) = (Lasting::default(), Trial::default());
     }
 
     pub(super) fn reset(&mut self) {
         self.said.clear();
         self.forget();
     }
+}
+
+/// Moves a mean error (N) towards the newest.
+fn follow(mean_n: &mut Lanes, error_n: Lanes, share: f64) {
+    *mean_n = (*mean_n + (error_n - *mean_n) * share).settled();
+}
+
+/// The odds against what erred by `error_n`, beside what erred by `other_n`.
+fn odds(error_n: Lanes, other_n: Lanes) -> Lanes {
+    let floor_n = Lanes::splat(EQUAL_N);
+    eighth_power((error_n + floor_n) / (other_n + floor_n))
 }
 
 /// The softmin's exponent.
@@ -160,7 +201,11 @@ mod tests {
             let parcel = Parcel { fresh: true, modes: ModeSet::only(Mode::Best), ..Parcel::BLANK };
             for _ in 0..ticks {
                 let mut forces_n = [None; SLOTS];
-                for (mode, error_n) in [Mode::Anchored, Mode::Matched].into_iter().zip(errors_n) {
+                let weight = self.0.anchored()[0];
+                let [anchored_n, matched_n] = errors_n;
+                let mixed_n = matched_n + (anchored_n - matched_n) * weight;
+                for (mode, error_n) in [(Mode::Anchored, anchored_n), (Mode::Matched, matched_n), (Mode::Best, mixed_n)]
+                {
                     forces_n[mode.index()] = Some(Lanes::splat(error_n));
                 }
                 self.0.say(&forces_n, 1.0);
@@ -195,7 +240,25 @@ mod tests {
         let mut bench = Bench::new();
         assert!(bench.run(DELAY, [0.1, 0.5]) <= 0.0, "nothing was judged: matched has all the weight");
         assert!(bench.run(300, [0.1, 0.5]) > 0.9);
-        assert!(bench.run(3000, [0.1, 0.05]) < 0.01);
+        assert!(bench.run(5000, [0.1, 0.05]) < 0.01);
         assert!(bench.run(5000, [0.1, 0.11]) > 0.6);
+    }
+
+    #[test]
+    fn where_the_tissue_changes_at_every_touch_matched_is_given_up_although_it_is_better_in_between() {
+        let mut bench = Bench::new();
+        let mut touches = |count: usize, changed_n: f64| {
+            let touch = |_| {
+                bench.run(300, [0.1, changed_n]);
+                bench.run(1700, [0.1, 0.06])
+            };
+            (0..count).map(touch).last().unwrap()
+        };
+        let known = touches(5, 0.1);
+        let changing = touches(5, 0.6);
+        assert!(known < 0.1, "{known}");
+        assert!(changing > 0.6, "{changing} before the next change");
+        let known = touches(5, 0.1);
+        assert!(known < 0.1, "{known} when it no longer changes");
     }
 }

@@ -61,3 +61,9 @@ impl Clock {
 pub(super) fn share(pace: f64, passed: f64, memory: f64) -> f64 {
     (pace / passed.max(1.0).min(memory)).min(1.0)
 }
+
+/// The same, but until the memory is full the newest value has twice the share of a plain mean: for errors of what still learns,
+/// the first of which say little.
+pub(super) fn newest_share(pace: f64, passed: f64, memory: f64) -> f64 {
+    share(2.0 * pace, passed, 2.0 * memory)
+}

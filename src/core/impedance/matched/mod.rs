@@ -33,7 +33,7 @@ use super::{
     best::eighth_power,
     envelope::Envelope,
     messages::Posture,
-    pace::share,
+    pace::newest_share,
     settings::{MAX_DELAY_S, Settings},
 };
 use crate::signal::{DelayLine, Lanes};
@@ -272,7 +272,7 @@ impl Matched {
     fn judge(&mut self, posture: &Posture, force_n: Lanes, sent: &MatchedModel, (row, said_n): &(Row, Lanes)) {
         let pace = posture.stance.pace;
         self.judged += pace;
-        let share = share(pace, self.judged, ERROR_S * self.rate_hz);
+        let share = newest_share(pace, self.judged, ERROR_S * self.rate_hz);
         let mut least_n = Lanes::splat(f64::INFINITY);
         let horizon = self.horizon();
         let mut ages = [0; RIDGES.len()];

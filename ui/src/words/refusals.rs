@@ -1,7 +1,7 @@
 //! Texts: why a command was refused, and what the operator can do.
 
 use nima_machine::{
-    messages::{LoopState, Refusal},
+    messages::{Fault, LoopState, Refusal},
     rig::Obstacle,
 };
 
@@ -38,6 +38,9 @@ pub(crate) const fn cure_of_refusal(why: Refusal) -> &'static str {
         Refusal::State(LoopState::Faulted(_)) => "remove its cause, then release the stop",
         Refusal::State(LoopState::Disconnected) => "see the devices for what is missing and why",
         Refusal::State(_) => "see the state of the loop",
+        Refusal::StillPresent(Fault::FarEnd { .. }) => {
+            "remove its cause there, then press Stop and Release stop here: that releases both machines"
+        }
         Refusal::StillPresent(_) => "remove the cause first",
         Refusal::ForceUnknown => "calibrate gravity for this sensor and tool",
         Refusal::Implausible(_) => "see the sensor and its cable",
@@ -93,7 +96,7 @@ pub(super) const REFUSALS: [Refusal; 11] = [
 
 #[cfg(test)]
 mod tests {
-    use nima_machine::{messages::Fault, rig::Exchange};
+    use nima_machine::rig::Exchange;
 
     use super::*;
 

@@ -20,7 +20,7 @@ pub(in crate::console) const WITHDRAW_HOVER: &str = "The other console is not as
 pub(in crate::console) const GIVE: &str = "Give control";
 pub(in crate::console) const GIVE_HOVER: &str =
     "The other console commands the follower from now on; this one can ask for it again";
-pub(in crate::console) const GIVE_AT_REST: &str = "Stop first: an arm that is engaged does not change hands";
+pub(in crate::console) const GIVE_AT_REST: &str = "Stop and release first: an engaged arm stays here";
 pub(in crate::console) const KEEP: &str = "Keep control";
 pub(in crate::console) const KEEP_HOVER: &str = "The other console is told that you keep the follower";
 pub(in crate::console) const CONTROL_ASKED_CAUSE: &str = "Another console asks for control of the follower";

@@ -177,13 +177,17 @@ fn all_bytes(path: &Path) -> Vec<u8> {
     bytes
 }
 
+fn contains(bytes: &[u8], sought: &[u8]) -> bool {
+    memchr::memmem::find(bytes, sought).is_some()
+}
+
 /// Which of the names are in these bytes, in either way of writing letters.
 fn found(bytes: &[u8]) -> Vec<&'static str> {
     let mut sought = PLANTED.to_vec();
     sought.extend(["Jane", "PLANTED", "jane"]);
     let is_in = |name: &&str| {
         let wide: Vec<u8> = name.encode_utf16().flat_map(u16::to_le_bytes).collect();
-        [name.as_bytes(), &wide].iter().any(|sought| bytes.windows(sought.len()).any(|window| window == *sought))
+        [name.as_bytes(), &wide].iter().any(|sought| contains(bytes, sought))
     };
     sought.into_iter().filter(is_in).collect()
 }
@@ -208,10 +212,10 @@ fn no_name_and_no_date_is_left_and_every_force_is() {
         let begin_ns = Reader::open(&full).unwrap().statistics().times_ns.0;
         let tables = Reader::open(Path::new(&session)).unwrap().metadata().unwrap();
         let day = tables.iter().find_map(|(_, table)| Some(table.get("started")?[..10].to_owned())).unwrap();
-        assert!(!bytes.windows(10).any(|window| window == day.as_bytes()), "{day}");
+        assert!(!contains(&bytes, day.as_bytes()), "{day}");
         // The same as a time in a message: seconds in 32 bit.
         let second = i32::try_from(begin_ns / 1_000_000_000).unwrap().to_le_bytes();
-        assert!(!bytes.windows(4).any(|window| window == second), "{}", path.display());
+        assert!(!contains(&bytes, &second), "{}", path.display());
         assert_eq!(path.metadata().unwrap().modified().unwrap(), UNIX_EPOCH);
     }
     let [whole, anonymous, stretch] = [&full, &out, &part].map(|path| Reader::open(path).unwrap());

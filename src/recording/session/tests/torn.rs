@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use super::*;
 
 const PAGE: usize = 4096;
+const CHUNKS: u64 = 80;
 
 /// What a stopped process leaves behind, made of its writes.
 struct Disk(Vec<u8>);
@@ -34,7 +35,7 @@ fn script() -> Vec<(u64, Vec<u8>)> {
     let mut writer = Writer::create_growing_by(&path, "nima test", 256 << 10).unwrap();
     let mut random = fastrand::Rng::with_seed(6);
     let channel = writer.channel("a", json("Any")).unwrap();
-    for chunk in 0..120_u64 {
+    for chunk in 0..CHUNKS {
         match chunk {
             5 => writer.metadata("session", &values()).unwrap(),
             10 => writer.attachment("large", "text/plain", 0, &vec![b'x'; 100 << 10]).unwrap(),
@@ -96,7 +97,7 @@ fn a_file_is_valid_at_every_moment() {
             read = check(&disk, read, &moments);
         }
     }
-    assert_eq!(read, 120);
+    assert_eq!(read, CHUNKS as usize);
     let Moments { all, early_end } = moments.into_inner();
     println!("{all} moments of {} writes; early end for who does not use the index: {early_end}", log.len());
     // Between the new footer of a growth and the head of the room that leads to it.

@@ -214,7 +214,14 @@ impl Driver {
             answer = ForceAnswer::Clamped;
         }
         let command = ForceCommand { force_n: bounded_n.into(), gripper_n: bounded_gripper_n, given: Instant::now() };
-        if self.commands.try_send(command).is_err() { ForceAnswer::Full } else { answer }
+        if self.commands.try_send(command).is_err() {
+            return ForceAnswer::Full;
+        }
+        // Without a lock, which a channel that is waited for would take.
+        if let Some(thread) = &self.thread {
+            thread.thread().unpark();
+        }
+        answer
     }
 
     /// The next event, oldest first.

@@ -1,6 +1,6 @@
 //! The thread that owns a device. Every call of the SDK waits for USB, which the real-time loop must not do.
 //!
-//! In each cycle it reads, applies the newest force command and reports. A command is valid for [`COMMAND_AGE_MAX`];
+//! In each cycle it applies the newest force command, reads and reports; a cycle begins with the loop's next command. A command is valid for [`COMMAND_AGE_MAX`];
 //! after that the force is zero until the next one, so a loop that hangs cannot leave a force applied. If this thread
 //! hangs, the device's watchdog switches the force off. Force is switched on only by command. However the thread ends
 //! (stopped, device lost, panic, end of the program), the device is left with its brakes on.
@@ -10,6 +10,7 @@ use std::{
         Arc,
         atomic::{AtomicBool, Ordering},
     },
+    thread::park_timeout,
     time::{Duration, Instant},
 };
 
@@ -93,6 +94,8 @@ pub(super) struct Worker {
     left_handed: bool,
     idle: IdleMode,
     period: Duration,
+    /// Whether the loop's force began this cycle.
+    is_led: bool,
     drive: Drive,
     command: Option<ForceCommand>,
     status: Status,
@@ -113,6 +116,7 @@ impl Worker {
             left_handed,
             idle,
             period,
+            is_led: false,
             drive: Drive::Off,
             command: None,
             status: Status::default(),
@@ -129,19 +133,11 @@ impl Worker {
     /// Runs until it is stopped or the device is lost.
     pub(super) fn run(mut self) {
         self.rest();
-        let mut deadline = Instant::now();
-        self.fresh_at = deadline;
+        let mut begin = Instant::now();
+        self.fresh_at = begin;
         while self.loss.is_none() && !self.ends.shared.stop.load(Ordering::Acquire) && !is_ending() {
             self.step();
-            deadline += self.period;
-            let now = Instant::now();
-            if deadline > now {
-                std::thread::sleep(deadline - now);
-            } else {
-                // Missed periods are skipped; the cycles are not made up for.
-                self.counters.late_cycles += 1;
-                deadline = now;
-            }
+            begin = self.wait(begin);
         }
         // A full queue must not hide a loss.
         while self.loss.is_some() && !self.ends.shared.stop.load(Ordering::Acquire) && !is_ending() {
@@ -152,9 +148,34 @@ impl Worker {
         }
     }
 
+    /// Waits for the loop's next force, with which the next cycle begins: the force does not wait for a period of this thread, and the reading
+    /// made after it is there when the loop comes again. Without one a cycle takes a period. Returns when the next one was due.
+    fn wait(&mut self, begin: Instant) -> Instant {
+        // The loop comes once a period, a little sooner or later.
+        let (earliest, mut latest) = (begin + self.period / 2, begin + self.period);
+        if self.is_led {
+            latest += self.period / 2;
+        }
+        let mut now = Instant::now();
+        if now >= latest {
+            // Missed periods are skipped; the cycles are not made up for.
+            self.counters.late_cycles += 1;
+            return now;
+        }
+        loop {
+            self.is_led = !self.ends.commands.is_empty();
+            match (self.is_led, now) {
+                (true, now) if now >= earliest => return now,
+                (false, now) if now >= latest => return latest,
+                // Woken by `Driver::set_force`.
+                (is_led, now) => park_timeout(if is_led { earliest } else { latest } - now),
+            }
+            now = Instant::now();
+        }
+    }
+
     fn step(&mut self) {
         self.cycle += 1;
-        let reading = self.read();
         // After a failed reading the next one is tried at once: other calls would only run into the same failure.
         if self.failure.is_none() {
             if self.cycle % STATUS_EVERY == 1 {
@@ -162,6 +183,7 @@ impl Worker {
             }
             self.drive();
         }
+        let reading = self.read();
         self.judge_silence();
         if self.ends.reports.try_send(self.report(reading)).is_err() {
             // The loop counts missing reports by the cycle numbers.

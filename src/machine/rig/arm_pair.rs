@@ -214,10 +214,11 @@ impl ArmPair {
             self.driven = outputs.drives;
             self.switch_drives(outputs.drives);
         }
-        if outputs.drives
-            && let Some(handle) = self.handle.as_mut().and_then(Slot::device)
-        {
-            handle.set_force(outputs.hand_force_n, outputs.gripper_n);
+        // Also while the drives are off, when it is zero: the handle keeps step with the loop.
+        if let Some(handle) = self.handle.as_mut().and_then(Slot::device) {
+            let (hand_n, gripper_n) =
+                if outputs.drives { (outputs.hand_force_n, outputs.gripper_n) } else { (Vector3::zeros(), 0.0) };
+            handle.set_force(hand_n, gripper_n);
         }
         self.lead(outputs.tip_command_m.filter(|_| outputs.drives));
         self.turn(now_s, outputs.world_from_jaws);

@@ -7,6 +7,7 @@
 //! dropped and counted.
 
 mod os;
+mod phase;
 mod summary;
 mod supervisor;
 mod tap;

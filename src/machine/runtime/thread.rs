@@ -12,6 +12,7 @@ use nima_devices::Identity;
 
 use super::{
     Assembly, Clock, Summary, os,
+    phase::Phase,
     summary::{CpuShare, DeviceFigures, Meters},
     supervisor::{Pulse, Supervisor},
     tap::{Operation, Tap},
@@ -90,6 +91,7 @@ pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
         scheduling,
         names: roster.iter().map(|entry| entry.name.clone()).collect(),
         period_ns: (1e9 / rate_hz).round() as u64,
+        is_late: false,
         clock,
         commands: commands_in,
         ticks: ticks_out,
@@ -220,6 +222,8 @@ struct Realtime {
     /// Engage once, as soon as every device delivers.
     engage: bool,
     period_ns: u64,
+    /// Whether a device had nothing new in the last tick.
+    is_late: bool,
     clock: Clock,
     commands: Receiver<Command>,
     ticks: Sender<Tick>,
@@ -264,9 +268,9 @@ impl Realtime {
     }
 
     fn run_in_real_time(&mut self, start_ns: u64, timing: &mut Timing) {
-        let mut deadline_ns = start_ns;
+        let (mut deadline_ns, mut phase) = (start_ns, Phase::new(self.period_ns));
         while self.obey_commands(timing.now_s) {
-            deadline_ns += self.period_ns;
+            deadline_ns += self.period_ns + phase.step(self.is_late);
             os::sleep_until_ns(deadline_ns);
             let woke_ns = os::monotonic_ns();
             let late_ns = woke_ns.saturating_sub(deadline_ns);
@@ -353,10 +357,10 @@ impl Realtime {
         self.meters.wake.record(timing.wake_s);
         self.meters.rig.record((read_ns - woke_ns + written_ns - worked_ns) as f64 * 1e-9);
         self.meters.work.record(timing.work_s);
-        timing.sample_to_force_s = inputs.iter().any(Option::is_some).then(|| {
-            let age_s = inputs.iter().flatten().map(|inputs| inputs.age_s).fold(0.0, f64::max);
-            age_s + (written_ns - woke_ns) as f64 * 1e-9
-        });
+        let age_s = inputs.iter().flatten().map(|inputs| inputs.age_s).fold(0.0, f64::max);
+        self.is_late = age_s * 2e9 > self.period_ns as f64;
+        timing.sample_to_force_s =
+            inputs.iter().any(Option::is_some).then(|| age_s + (written_ns - woke_ns) as f64 * 1e-9);
         if let Some(seconds) = timing.sample_to_force_s {
             self.meters.sample_to_force.record(seconds);
         }

@@ -119,7 +119,8 @@ fn refusals() -> impl Iterator<Item = Refusal> {
     let exchanged =
         [Exchange::Handles, Exchange::Arms, Exchange::Sensors, Exchange::Servos, Exchange::Markers, Exchange::Trocars];
     let waiting = [Awaited::Servos, Awaited::Markers].map(Obstacle::Waiting);
-    let obstacles = exchanged.map(Obstacle::Exchanged).into_iter().chain(waiting).map(Refusal::Obstacle);
+    let obstacles = exchanged.map(Obstacle::Exchanged).into_iter().chain(waiting).chain([Obstacle::FarEnd]);
+    let obstacles = obstacles.map(Refusal::Obstacle);
     let states = STATES.map(|state: LoopState| Refusal::State(state));
     let present = faults().map(Refusal::StillPresent).chain(implausible().map(Refusal::Implausible));
     REFUSALS.into_iter().chain(states).chain(obstacles).chain(present)

@@ -48,6 +48,7 @@ pub(crate) const fn cure_of_refusal(why: Refusal) -> &'static str {
             "put what is exchanged back, in the room or in the rig file; the ready check tells which it is"
         }
         Refusal::Obstacle(Obstacle::Waiting(_)) => "wait a moment, clear the tracker's view, then engage again",
+        Refusal::Obstacle(Obstacle::FarEnd) => "remove the reason at the follower's machine, then engage again",
         Refusal::Obstacle(_) => "move the arm, then engage again",
         Refusal::EndoscopeUnseen => "clear the tracker's view of the endoscope and of the arm, then engage again",
         Refusal::DrivesOff => "look at the arm's and the handle's own lamps and buttons, then engage again",

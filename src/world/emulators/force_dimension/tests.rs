@@ -143,6 +143,32 @@ fn it_connects_and_reads_what_the_hand_does_without_a_gap() {
     });
 }
 
+/// Readings that come in this many rounds of a loop, one in 1.2 ms, which is a fifth slower than the handle's own cycle.
+fn readings_in(driver: &mut Driver, rounds: u32, mut each: impl FnMut(&mut Driver)) -> u64 {
+    driver.poll(now_s());
+    let (before, begin) = (driver.health().readings, Instant::now());
+    for round in 1..=rounds {
+        std::thread::sleep((begin + Duration::from_micros(1200) * round).saturating_duration_since(Instant::now()));
+        driver.poll(now_s());
+        each(driver);
+    }
+    driver.health().readings - before
+}
+
+#[test]
+fn its_cycle_keeps_step_with_the_loop_and_goes_on_without_one() {
+    judged(|| {
+        let (_serving, _hand, settings) = rig(Emulated::default());
+        let mut driver = open(&settings).unwrap();
+        let led = readings_in(&mut driver, 200, |driver| {
+            assert_eq!(driver.set_force(Vector3::zeros(), 0.0), ForceAnswer::Taken);
+        });
+        assert!((196..=206).contains(&led), "{led} readings in 200 rounds: one for each");
+        let alone = readings_in(&mut driver, 200, |_| ());
+        assert!((230..=244).contains(&alone), "{alone} readings in 240 ms");
+    });
+}
+
 #[test]
 fn velocity_is_that_of_the_hand() {
     judged(|| {

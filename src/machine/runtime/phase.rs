@@ -1,0 +1,109 @@
+//! Keeps the loop from waking just when a sensor sends.
+//!
+//! A sensor sends by its own clock. If it sends at the moment at which the loop reads, some readings come an instant too late, and the force
+//! made of them a whole period later. The loop then comes a quarter of a period later, until no device is in this place. It gets there by
+//! periods that are longer by a thousandth, so that no tick has another length than the filters assume.
+
+/// By how much a period is longer while the loop moves, as a share of it.
+const STRETCH: u64 = 1000;
+/// How far it moves at once: a quarter of a period. Four moves try every place.
+const MOVES: u32 = 4;
+/// Ticks over which the late ones are counted: a second.
+const MEMORY: f64 = 1000.0;
+/// So many late ticks among these move the loop: one in a hundred.
+const LATE_MAX: f64 = 10.0;
+/// Ticks in one place without too many late ones, after which it is a good one: 10 s.
+const GOOD: u64 = 10_000;
+/// A device that sends more seldom than the loop comes is late in every place; then it is tried again after a minute.
+const REST: u64 = 60_000;
+
+/// Where in the period the loop wakes.
+#[derive(Debug)]
+pub(super) struct Phase {
+    period_ns: u64,
+    /// Recent ticks in which a device had nothing new.
+    late: f64,
+    /// Rest of the move under way.
+    ahead_ns: u64,
+    /// Moves since the last good place.
+    moves: u32,
+    /// Ticks since the last move.
+    stood: u64,
+}
+
+impl Phase {
+    pub(super) const fn new(period_ns: u64) -> Self {
+        Self { period_ns, late: 0.0, ahead_ns: 0, moves: 0, stood: 0 }
+    }
+
+    /// By how much the next period is longer, ns. `is_late`: a device had nothing new in this tick.
+    pub(super) fn step(&mut self, is_late: bool) -> u64 {
+        let stretch_ns = self.ahead_ns.min(self.period_ns / STRETCH);
+        if stretch_ns > 0 {
+            self.ahead_ns -= stretch_ns;
+            return stretch_ns;
+        }
+        self.stood += 1;
+        self.late += f64::from(u8::from(is_late)) - self.late / MEMORY;
+        if self.stood > GOOD && self.late < LATE_MAX {
+            self.moves = 0;
+        }
+        if self.late > LATE_MAX && (self.moves < MOVES || self.stood > REST) {
+            self.late = 0.0;
+            self.stood = 0;
+            self.moves += 1;
+            self.ahead_ns = self.period_ns / u64::from(MOVES);
+        }
+        0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PERIOD_NS: u64 = 1_000_000;
+
+    /// Sensors that send once in `every_ns`, each from its own time on, with up to 0.1 ms of delay, and a loop that follows its phase: in
+    /// which ticks a sensor had nothing new, and how far the loop has moved in all, ns.
+    fn late(begins_ns: &[u64], every_ns: u64, ticks: u64) -> (Vec<bool>, u64) {
+        let mut random = fastrand::Rng::with_seed(1);
+        let (mut phase, mut now_ns, mut moved_ns) = (Phase::new(PERIOD_NS), 0, 0);
+        let mut next_ns: Vec<u64> = begins_ns.to_vec();
+        let mut tick = || {
+            now_ns += PERIOD_NS;
+            let mut is_late = false;
+            for next_ns in &mut next_ns {
+                let mut came = 0;
+                while *next_ns + random.u64(0..100_000) <= now_ns {
+                    *next_ns += every_ns;
+                    came += 1;
+                }
+                is_late |= came == 0;
+            }
+            let stretch_ns = phase.step(is_late);
+            assert!(stretch_ns <= PERIOD_NS / 1000);
+            now_ns += stretch_ns;
+            moved_ns += stretch_ns;
+            is_late
+        };
+        ((0..ticks).map(|_| tick()).collect(), moved_ns)
+    }
+
+    #[test]
+    fn wherever_two_sensors_send_none_of_their_readings_is_late_after_some_seconds() {
+        for first in 0..10 {
+            for second in 0..10 {
+                let (late, moved_ns) = late(&[100_000 * first, 100_000 * second], PERIOD_NS, 20_000);
+                let share = late[10_000..].iter().filter(|late| **late).count() as f64 / 10_000.0;
+                assert!(share < 0.01 && moved_ns < PERIOD_NS, "{first}, {second}: {share}, {moved_ns}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_a_place_that_is_better_the_loop_moves_once_a_minute_at_most() {
+        let (_, moved_ns) = late(&[0], 2 * PERIOD_NS, 300_000);
+        assert!((PERIOD_NS..3 * PERIOD_NS).contains(&moved_ns), "{moved_ns}");
+    }
+}

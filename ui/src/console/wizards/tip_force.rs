@@ -45,9 +45,9 @@ const CHECK: usize = 3;
 /// zero there.
 const SPELL_EVERY: usize = 3000;
 const SPELL: usize = 900;
-/// Rows of the check: in contact with the tissue (40 s), then without contact (15 s).
-const CHECK_WORK: usize = 8000;
-const CHECK_ROWS: usize = CHECK_WORK + 3000;
+/// Rows of the check: in contact with the tissue (25 s), then without contact (10 s).
+const CHECK_WORK: usize = 5000;
+const CHECK_ROWS: usize = CHECK_WORK + 2000;
 
 /// Rows that a technician without a screen records: 80 s.
 const ENOUGH_ROWS: usize = 16_000;

@@ -12,6 +12,8 @@ mod flawed;
 #[cfg(test)]
 mod frame_tests;
 mod guiding;
+#[cfg(test)]
+mod network_tests;
 mod places;
 mod scene;
 mod screen;

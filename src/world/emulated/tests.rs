@@ -26,7 +26,7 @@ use crate::{
     scene::{Flaw, Person, Scene},
 };
 
-struct Bench {
+pub(super) struct Bench {
     world: SideWorld,
     arm: Arm,
     set: ArmSet,
@@ -99,7 +99,11 @@ impl Bench {
         (session, seen)
     }
 
-    fn felt(&mut self, gravity: &mut Compensator, task: Task, prompt: Prompt) -> (WristSample, Wrench) {
+    pub(super) const fn now_s(&self) -> f64 {
+        self.t_s
+    }
+
+    pub(super) fn felt(&mut self, gravity: &mut Compensator, task: Task, prompt: Prompt) -> (WristSample, Wrench) {
         let sample = self.sample(task, prompt);
         (sample, gravity.step(&sample).unwrap())
     }
@@ -119,7 +123,7 @@ impl Bench {
     }
 }
 
-fn live(model: GravityModel) -> Compensator {
+pub(super) fn live(model: GravityModel) -> Compensator {
     Compensator::new(model, DEFAULT_TIME_CONSTANT_S, 1e-3)
 }
 
@@ -269,52 +273,86 @@ struct Told {
     off_deg: f64,
 }
 
-fn told(flaws: Flaws) -> Told {
+/// Flaws that the pages tell of.
+pub(super) const FLAWS: [(&str, Flaws); 10] = {
+    let none = Flaws {
+        drift_n_per_min: 0.0,
+        cable_n: 0.0,
+        imu_askew_deg: 0.0,
+        tracker_late_s: 0.0,
+        tracker_missing: 0.0,
+        backlash_deg: 0.0,
+        bend_m_per_n: 0.0,
+    };
+    [
+        ("none", none),
+        ("drift_n_per_min = 0.05", Flaws { drift_n_per_min: 0.05, ..none }),
+        ("drift_n_per_min = 1", Flaws { drift_n_per_min: 1.0, ..none }),
+        ("cable_n = 0.1", Flaws { cable_n: 0.1, ..none }),
+        ("cable_n = 1", Flaws { cable_n: 1.0, ..none }),
+        ("imu_askew_deg = 10", Flaws { imu_askew_deg: 10.0, ..none }),
+        ("tracker_late_s = 0.1", Flaws { tracker_late_s: 0.1, ..none }),
+        ("tracker_missing = 0.3", Flaws { tracker_missing: 0.3, ..none }),
+        ("backlash_deg = 0.5", Flaws { backlash_deg: 0.5, ..none }),
+        ("bend_m_per_n = 0.0005", Flaws { bend_m_per_n: 0.0005, ..none }),
+    ]
+};
+
+/// A rig with flaws after gravity and correspondence.
+pub(super) struct Fitted {
+    pub(super) gravity: GravityModel,
+    /// `None` unless it was accepted.
+    pub(super) correspondence: Option<Correspondence>,
+    told: Told,
+}
+
+/// Calibrates gravity and correspondence; `None` if nothing can be fitted.
+pub(super) fn fitted(flaws: Flaws) -> Option<(Bench, Fitted)> {
     let set = RigConfig::load("emulated").unwrap().devices.unwrap().right.unwrap();
     let mut bench = Bench::with_flaws(Side::Right, &Scene::load("peg_transfer").unwrap(), set, flaws);
     let (session, _) = bench.gravity(120.0);
     let report = session.report().unwrap();
     let (gravity, reason) = (report.verdict, report.reason.clone());
-    let Some(fit) = report.chosen_fit() else {
-        return Told { gravity, reason, left_n: f64::NAN, passes: false, correspondence: None, off_deg: f64::NAN };
-    };
-    let mut pass = CheckPass::new(live(fit.model), 0.25);
+    let model = report.chosen_fit()?.model;
+    let mut pass = CheckPass::new(live(model), 0.25);
     for _ in 0..8000 {
         pass.step(&bench.sample(Task::Gravity, Prompt::Wave));
     }
-    let session = bench.correspondence(&mut live(fit.model), 60.0);
+    let session = bench.correspondence(&mut live(model), 60.0);
     let report = session.report().ok();
     let sensor = Scene::load("isolation").unwrap().tissue_sensor.unwrap();
     let c_from_s2 = from_roll_pitch_yaw_deg(&sensor.world_from_c_deg).inverse()
         * from_roll_pitch_yaw_deg(&sensor.world_from_s2_deg);
     let solution = report.as_ref().and_then(|report| report.solution.as_ref());
     let off_deg = solution.map_or(f64::NAN, |found| found.rotation().angle_to(&c_from_s2).to_degrees());
+    let accepted = solution.filter(|_| report.as_ref().is_some_and(|report| report.verdict == Verdict::Accepted));
+    let correspondence =
+        accepted.map(|found| Correspondence { target: found.target, rotation: found.rotation(), flip_s2: false });
     let (left_n, passes) = (pass.result().p95_n, pass.result().passed);
-    Told { gravity, reason, left_n, passes, correspondence: report.map(|report| report.verdict), off_deg }
+    let told = Told { gravity, reason, left_n, passes, correspondence: report.map(|report| report.verdict), off_deg };
+    Some((bench, Fitted { gravity: model, correspondence, told }))
 }
 
 /// Prints the table of docs/devices.md.
 #[test]
 fn flaws_of_real_devices_break_the_verdicts_that_the_pages_say() {
-    let none = Flaws::default();
     let (good, bad, few) = (Verdict::Accepted, Verdict::PoorData, Verdict::InsufficientMotion);
     // Gravity with its free motion, then the correspondence.
-    let cases = [
-        ("none", none, [good, good]),
-        ("drift_n_per_min = 0.05", Flaws { drift_n_per_min: 0.05, ..none }, [good, good]),
-        ("drift_n_per_min = 1", Flaws { drift_n_per_min: 1.0, ..none }, [bad, few]),
-        ("cable_n = 0.1", Flaws { cable_n: 0.1, ..none }, [good, good]),
-        ("cable_n = 1", Flaws { cable_n: 1.0, ..none }, [bad, few]),
-        ("imu_askew_deg = 10", Flaws { imu_askew_deg: 10.0, ..none }, [good, good]),
-        ("tracker_late_s = 0.1", Flaws { tracker_late_s: 0.1, ..none }, [good, bad]),
-        ("tracker_missing = 0.3", Flaws { tracker_missing: 0.3, ..none }, [good, few]),
-        ("backlash_deg = 0.5", Flaws { backlash_deg: 0.5, ..none }, [good, good]),
-        ("bend_m_per_n = 0.0005", Flaws { bend_m_per_n: 0.0005, ..none }, [good, good]),
+    let wanted: [[Verdict; 2]; 10] = [
+        [good, good],
+        [good, good],
+        [bad, few],
+        [good, good],
+        [bad, few],
+        [good, good],
+        [good, bad],
+        [good, few],
+        [good, good],
+        [good, good],
     ];
     let found: Vec<_> = std::thread::scope(|scope| {
-        let running: Vec<_> =
-            cases.map(|(name, flaws, wanted)| (name, wanted, scope.spawn(move || told(flaws)))).into();
-        running.into_iter().map(|(name, wanted, told)| (name, wanted, told.join().unwrap())).collect()
+        let running = FLAWS.map(|(name, flaws)| (name, scope.spawn(move || fitted(flaws).unwrap().1.told)));
+        running.into_iter().zip(wanted).map(|((name, told), wanted)| (name, wanted, told.join().unwrap())).collect()
     });
     for (name, _, told) in &found {
         println!("{name}: {told:?}");

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use nima_core::{impedance::Mode, statistics::Quantiles};
 use nima_machine::{
-    messages::{Event, LoopState, Tick},
+    messages::{Event, Fault, LoopState, Tick},
     rig::{Gauges, SIDES, Side},
 };
 
@@ -72,7 +72,11 @@ impl Live {
     fn event(&mut self, event: &Event) {
         match *event {
             Event::FaultRaised { t_s, fault, .. } => {
-                self.first_fault.get_or_insert((t_s, fault));
+                // Both arms may tell in the same tick, first the one that only follows the other.
+                match self.first_fault {
+                    Some((_, first)) if first != Fault::OtherArm || fault == Fault::OtherArm => {}
+                    _ => self.first_fault = Some((t_s, fault)),
+                }
             }
             Event::StateChanged { t_s, side, from, to, why } => {
                 self.changes[side.index()] = Some(Change { t_s, from, why });
@@ -197,4 +201,28 @@ impl Live {
 pub(in crate::console) fn forces_of(tick: &Tick) -> [f32; CHANNELS] {
     let (m, r) = (tick.measured_n, tick.rendered_n);
     [m.x, m.y, m.z, r.x, r.y, r.z].map(|x| x as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_devices::Loss;
+    use nima_machine::config::RigConfig;
+    use nima_world::scene::Scene;
+
+    use super::*;
+
+    #[test]
+    fn the_fault_that_is_told_is_the_cause_and_not_what_it_did_to_the_other_arm() {
+        let cause = Fault::DeviceLost { device: 4, loss: Loss::Silent };
+        let raised = |(side, fault)| Event::FaultRaised { t_s: 2.7, side, fault };
+        let (follows, fails) = ((Side::Right, Fault::OtherArm), (Side::Left, cause));
+        for order in [[follows, fails, follows], [fails, follows, follows], [follows, follows, fails]] {
+            let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
+            live.replay(order.map(raised).iter(), &[None; SIDES]);
+            assert_eq!(live.signs(false, None).first_fault, Some((2.7, cause)));
+        }
+        let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
+        live.replay([raised(follows)].iter(), &[None; SIDES]);
+        assert_eq!(live.signs(false, None).first_fault, Some((2.7, Fault::OtherArm)));
+    }
 }

@@ -1,6 +1,7 @@
 //! The thread that owns a device. Every call of the SDK waits for USB, which the real-time loop must not do.
 //!
-//! In each cycle it applies the newest force command, reads and reports; a cycle begins with the loop's next command. A command is valid for [`COMMAND_AGE_MAX`];
+//! In each cycle it applies the newest force command, reads and reports; a cycle begins with the loop's next command.
+//! A command is valid for [`COMMAND_AGE_MAX`];
 //! after that the force is zero until the next one, so a loop that hangs cannot leave a force applied. If this thread
 //! hangs, the device's watchdog switches the force off. Force is switched on only by command. However the thread ends
 //! (stopped, device lost, panic, end of the program), the device is left with its brakes on.

@@ -2,7 +2,7 @@
 //!
 //! A sensor sends by its own clock. If it sends at the moment at which the loop reads, some readings come an instant too late, and the force
 //! made of them a whole period later. The loop then comes a quarter of a period later, until no device is in this place. It gets there by
-//! periods that are longer by a thousandth, so that no tick has another length than the filters assume.
+//! periods that are longer by a thousandth, which the filters do not notice.
 
 /// By how much a period is longer while the loop moves, as a share of it.
 const STRETCH: u64 = 1000;

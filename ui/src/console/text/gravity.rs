@@ -91,6 +91,14 @@ pub(in crate::console) fn touched(by_n: f64) -> String {
     format!("{by_n:.1} N too much: something touches the tool; let go")
 }
 
+/// The tool was touched while poses were recorded.
+pub(in crate::console) fn was_touched(seconds: f64) -> String {
+    format!("Something touched the tool for {seconds:.0} s while it was still")
+}
+
+pub(in crate::console) const WAS_TOUCHED_HOVER: &str =
+    "The force changed although the tool did not turn. If the verdict is bad, let go of the tool and press Start over";
+
 /// Poses left out of the fit.
 pub(in crate::console) fn left_out(numbers: &str) -> String {
     format!("poses {numbers}")

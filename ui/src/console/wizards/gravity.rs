@@ -48,6 +48,8 @@ const CHECK: usize = 0;
 const POSES: usize = 1;
 const RESULT: usize = 2;
 const FREE_MOTION: usize = 3;
+/// A shorter time in which the force changed is a hand that lets go.
+const TOUCHED_S: f64 = 2.0;
 
 /// State of the wizard.
 #[derive(Debug)]
@@ -61,6 +63,9 @@ pub struct GravityWizard {
     report: Report<GravityReport>,
     pass: Option<CheckPass>,
     left_n: Option<f64>,
+    /// For how long the force changed although the tool was still, s: who looked away learns of it later.
+    touched_s: f64,
+    posed_s: Option<f64>,
 }
 
 impl Default for GravityWizard {
@@ -82,11 +87,18 @@ impl GravityWizard {
             report: None,
             pass: None,
             left_n: None,
+            touched_s: 0.0,
+            posed_s: None,
         }
     }
 
     fn pose(&mut self, sample: &WristSample, t_s: f64) {
         let phase = self.session.step(sample, t_s);
+        // Longer steps are times in which no pose was wanted.
+        let step_s = self.posed_s.replace(t_s).map_or(0.0, |before_s| t_s - before_s).clamp(0.0, 0.1);
+        if matches!(phase, Phase::Disturbed | Phase::Touched { .. }) {
+            self.touched_s += step_s;
+        }
         if matches!(phase, Phase::Recorded { .. }) {
             self.fit();
         }
@@ -166,6 +178,7 @@ impl GravityWizard {
             } else {
                 ui.label(small(text::gravity::SO_FAR_EMPTY));
             }
+            self.touched_ui(ui);
             if ui.add_enabled(count > 0, Button::new(text::gravity::REMOVE_LAST)).clicked() {
                 self.session.undo();
                 self.fit();
@@ -173,10 +186,18 @@ impl GravityWizard {
         });
     }
 
+    /// Tells that the tool was touched, once it was for longer than hands take to let go of it.
+    fn touched_ui(&self, ui: &mut Ui) {
+        if self.touched_s >= TOUCHED_S {
+            ui.label(text::gravity::was_touched(self.touched_s)).on_hover_text(text::gravity::WAS_TOUCHED_HOVER);
+        }
+    }
+
     fn result_ui(&self, ui: &mut Ui) {
         let otherwise = [text::gravity::NO_RESULT_HOVER, text::gravity::NO_POSES];
         result_ui(ui, self.report.as_ref(), otherwise, |ui, report| {
             verdict_ui(ui, report);
+            self.touched_ui(ui);
             models_ui(ui, report);
         });
     }

@@ -92,6 +92,11 @@ fn a_hand_on_the_tool_is_told_and_cannot_be_saved_without_a_name() {
     let told = ["something touches it", "something touches the tool", "Something touched the tool"];
     wait(&mut console, "the touch", |c| told.iter().any(|words| shows(c, words)));
     assert_eq!(files(folder.path()), 0);
+    wait(&mut console, "the touch as it stays", |c| shows(c, told[2]));
+    pick(&mut console, "Back");
+    leave_the_checks(&mut console);
+    console.step();
+    assert!(shows(&console, told[2]), "forgotten by a step back");
 }
 
 #[test]

@@ -19,6 +19,8 @@ use crate::frames::WristSample;
 const COMPARE_FROM: usize = 6;
 /// Largest angle between the directions of gravity of a pose and of its target, rad.
 const REACH_RAD: f64 = 25.0 * std::f64::consts::PI / 180.0;
+/// Longest step that counts as time between two samples, s: in longer ones no pose was wanted.
+const STEP_MAX_S: f64 = 0.1;
 
 /// Settings of a session.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +106,8 @@ pub struct GravitySession {
     running: Option<GravityModel>,
     last: Option<WristSample>,
     refused: Option<f64>,
+    stepped_s: Option<f64>,
+    touched_s: f64,
 }
 
 impl GravitySession {
@@ -111,7 +115,17 @@ impl GravitySession {
     pub fn new(settings: SessionSettings) -> Self {
         let still = Still::new(settings.still);
         let (poses, places) = (Vec::with_capacity(64), Vec::with_capacity(64));
-        Self { settings, still, poses, places, running: None, last: None, refused: None }
+        Self {
+            settings,
+            still,
+            poses,
+            places,
+            running: None,
+            last: None,
+            refused: None,
+            stepped_s: None,
+            touched_s: 0.0,
+        }
     }
 
     /// Settings of the session.
@@ -128,6 +142,20 @@ impl GravitySession {
 
     /// Adds one sample at time `t_s` (s, rising); returns the state of the session.
     pub fn step(&mut self, sample: &WristSample, t_s: f64) -> Phase {
+        let phase = self.phase(sample, t_s);
+        let step_s = self.stepped_s.replace(t_s).map_or(0.0, |before_s| t_s - before_s);
+        if matches!(phase, Phase::Disturbed | Phase::Touched { .. }) && step_s > 0.0 {
+            self.touched_s += step_s.min(STEP_MAX_S);
+        }
+        phase
+    }
+
+    /// For how long something touched the tool while it was to be still, s; all poses together.
+    pub const fn touched_s(&self) -> f64 {
+        self.touched_s
+    }
+
+    fn phase(&mut self, sample: &WristSample, t_s: f64) -> Phase {
         let Some(field) = field_of(&self.settings, sample).filter(|_| sample.is_finite() && t_s.is_finite()) else {
             self.still.reset();
             self.last = None;
@@ -313,11 +341,14 @@ mod tests {
         let touched = hold(&mut session, &mut tool, &target, 1.0, &mut t_s);
         assert!(touched.iter().any(|phase| matches!(phase, Phase::Touched { .. })));
         assert_eq!(session.poses().len(), 9);
+        let touched_s = session.touched_s();
+        assert!((0.5..1.6).contains(&touched_s), "{touched_s} s");
         while let Some(target) = session.target() {
             hold(&mut session, &mut tool, &target, 0.0, &mut t_s);
         }
         let report = session.report().unwrap();
         assert_eq!((report.verdict, session.targets_met()), (Verdict::Accepted, 12), "{}", report.reason);
+        assert!(session.touched_s() < touched_s + 0.1, "{} s: nothing touched it again", session.touched_s());
         assert!(session.undo().is_some() && session.remove(99).is_none());
         assert!(session.target().is_some());
 

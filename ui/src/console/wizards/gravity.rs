@@ -48,7 +48,7 @@ const CHECK: usize = 0;
 const POSES: usize = 1;
 const RESULT: usize = 2;
 const FREE_MOTION: usize = 3;
-/// A shorter time in which the force changed is a hand that lets go.
+/// A shorter touch is a hand that lets go, as long as the result is good, s.
 const TOUCHED_S: f64 = 2.0;
 
 /// State of the wizard.
@@ -63,9 +63,6 @@ pub struct GravityWizard {
     report: Report<GravityReport>,
     pass: Option<CheckPass>,
     left_n: Option<f64>,
-    /// For how long the force changed although the tool was still, s: who looked away learns of it later.
-    touched_s: f64,
-    posed_s: Option<f64>,
 }
 
 impl Default for GravityWizard {
@@ -87,18 +84,11 @@ impl GravityWizard {
             report: None,
             pass: None,
             left_n: None,
-            touched_s: 0.0,
-            posed_s: None,
         }
     }
 
     fn pose(&mut self, sample: &WristSample, t_s: f64) {
         let phase = self.session.step(sample, t_s);
-        // Longer steps are times in which no pose was wanted.
-        let step_s = self.posed_s.replace(t_s).map_or(0.0, |before_s| t_s - before_s).clamp(0.0, 0.1);
-        if matches!(phase, Phase::Disturbed | Phase::Touched { .. }) {
-            self.touched_s += step_s;
-        }
         if matches!(phase, Phase::Recorded { .. }) {
             self.fit();
         }
@@ -186,10 +176,12 @@ impl GravityWizard {
         });
     }
 
-    /// Tells that the tool was touched, once it was for longer than hands take to let go of it.
+    /// Tells that the tool was touched: who looked away learns of it later.
     fn touched_ui(&self, ui: &mut Ui) {
-        if self.touched_s >= TOUCHED_S {
-            ui.label(text::gravity::was_touched(self.touched_s)).on_hover_text(text::gravity::WAS_TOUCHED_HOVER);
+        let touched_s = self.session.touched_s();
+        let is_bad = self.good_report().is_some_and(|report| report.verdict != Verdict::Accepted);
+        if touched_s >= TOUCHED_S || is_bad && touched_s > 0.0 {
+            ui.label(text::gravity::was_touched(touched_s)).on_hover_text(text::gravity::WAS_TOUCHED_HOVER);
         }
     }
 

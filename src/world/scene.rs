@@ -1,5 +1,6 @@
 //! Scene files (TOML): the content of a simulation. What a scene does not list is not computed.
 
+mod ground;
 mod mounted;
 mod wrist;
 
@@ -12,6 +13,7 @@ use nima_machine::{
 };
 use serde::{Deserialize, Serialize};
 
+pub use ground::{Layer, Lump, Lumps, Membrane, Relaxation, Tissue, Wall};
 pub use wrist::{Flaw, Imu, Person, TissueSensor, Trocar, Wrist};
 
 /// A simulated world. Parts that are not listed cost nothing.
@@ -37,6 +39,18 @@ pub struct Scene {
     pub cross_talk: bool,
     /// Soft tissue under the pegs.
     pub tissue: Option<Tissue>,
+    /// Layers on the tissue, the uppermost first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub layers: Vec<Layer>,
+    /// Lumps in the tissue.
+    pub lumps: Option<Lumps>,
+    /// The tissue's force fades while it is held.
+    pub relaxation: Option<Relaxation>,
+    /// A membrane over the tissue.
+    pub membrane: Option<Membrane>,
+    /// Walls.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub walls: Vec<Wall>,
     /// The leader device.
     pub leader: Option<Leader>,
     /// Tracking lag of the follower; without it the tip is at its commanded position.
@@ -87,27 +101,6 @@ pub struct Hand {
     pub grip_damping_n_s_m: f64,
 }
 
-/// Soft tissue with a flat surface at rest (Hunt and Crossley 1975: `f = k d^n (1 + c d')`), with Coulomb friction
-/// tangentially.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Tissue {
-    /// Height of the surface at rest, m.
-    pub surface_z_m: f64,
-    /// Extent of the pad in x and y, m, centred on the origin.
-    pub size_m: [f64; 2],
-    /// `k`, N/m^n.
-    pub stiffness: f64,
-    /// `n`, 1 to 3.
-    pub exponent: f64,
-    /// `c`, s/m.
-    pub damping_s_m: f64,
-    /// Coulomb friction coefficient; zero for none.
-    pub friction: f64,
-    /// Tangential stiffness before the tip slides, N/m.
-    pub shear_stiffness_n_m: f64,
-}
-
 /// The leader device's measurable limits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -134,10 +127,11 @@ pub struct Sensor {
     pub noise_n: f64,
 }
 
-const SCENES: [(&str, &str); 8] = [
+const SCENES: [(&str, &str); 9] = [
     ("peg_transfer", include_str!("../../config/scenes/peg_transfer.toml")),
     ("bimanual", include_str!("../../config/scenes/bimanual.toml")),
     ("free_motion", include_str!("../../config/scenes/free_motion.toml")),
+    ("lumps", include_str!("../../config/scenes/lumps.toml")),
     ("palpation", include_str!("../../config/scenes/palpation.toml")),
     ("gravity", include_str!("../../config/scenes/gravity.toml")),
     ("correspondence", include_str!("../../config/scenes/correspondence.toml")),
@@ -213,6 +207,11 @@ impl Scene {
             left: _,
             cross_talk: _,
             tissue: _,
+            layers: _,
+            lumps: _,
+            relaxation: _,
+            membrane: _,
+            walls: _,
             leader: _,
             follower: _,
             sensor: _,
@@ -261,16 +260,7 @@ impl Scene {
         ranges.positive("hand.mass_kg", hand.mass_kg)?;
         ranges.positive("hand.grip_stiffness_n_m", hand.grip_stiffness_n_m)?;
         ranges.not_negative("hand.grip_damping_n_s_m", hand.grip_damping_n_s_m)?;
-        if let Some(tissue) = &self.tissue {
-            ranges.check("tissue.surface_z_m", tissue.surface_z_m, tissue.surface_z_m.abs() <= 1.0, "within 1 m")?;
-            ranges.positive("tissue.size_m", tissue.size_m[0])?;
-            ranges.positive("tissue.size_m", tissue.size_m[1])?;
-            ranges.not_negative("tissue.stiffness", tissue.stiffness)?;
-            ranges.check("tissue.exponent", tissue.exponent, (1.0..=3.0).contains(&tissue.exponent), "1 to 3")?;
-            ranges.not_negative("tissue.damping_s_m", tissue.damping_s_m)?;
-            ranges.not_negative("tissue.friction", tissue.friction)?;
-            ranges.not_negative("tissue.shear_stiffness_n_m", tissue.shear_stiffness_n_m)?;
-        }
+        self.validate_ground(&ranges)?;
         if let Some(leader) = &self.leader {
             ranges.positive("leader.resolution_m", leader.resolution_m)?;
             ranges.positive("leader.force_max_n", leader.force_max_n)?;

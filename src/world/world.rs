@@ -11,7 +11,7 @@ use nima_machine::rig::{Inputs, Outputs, Prompt, Sensed};
 use crate::{
     Hand, Tissue, Trocar,
     person::Person,
-    scene::{Follower, Leader, Scene},
+    scene::{Follower, Leader, Scene, Wall},
     trocar,
     wrist::{Loads, Wrist, along_shaft},
 };
@@ -25,6 +25,7 @@ pub struct World {
     leader: Option<Leader>,
     follower: Option<Follower>,
     tissue: Option<Tissue>,
+    walls: Vec<Wall>,
     sensor_noise_n: Option<(f64, Noise)>,
     wrist: Option<Wrist>,
     trocar: Option<Trocar>,
@@ -70,7 +71,8 @@ impl World {
             time_s: 0.0,
             leader: scene.leader,
             follower: scene.follower,
-            tissue: scene.tissue.map(Tissue::new),
+            tissue: Tissue::of(scene, 1.0 / rate_hz),
+            walls: scene.walls.clone(),
             sensor_noise_n: scene.sensor.map(|sensor| (sensor.noise_n, Noise::new(scene.seed ^ 0x5e_50))),
             wrist: scene.wrist.as_ref().map(|wrist| Wrist::new(wrist, scene.tissue_sensor, scene.seed ^ 0x77_51)),
             trocar: scene.trocar.map(|trocar| Trocar::new(trocar, scene.trocar_m)),
@@ -213,7 +215,9 @@ impl World {
             Some(tissue) if !self.aside => tissue.contact_n(&self.tip_m, &self.tip_velocity_m_s),
             _ => Vector3::zeros(),
         };
-        tissue_n + self.hands().tip
+        let wall_n = |wall: &Wall| wall.contact_n(&self.tip_m, &self.tip_velocity_m_s);
+        let walls_n: Vector3<f64> = self.walls.iter().filter(|_| !self.aside).map(wall_n).sum();
+        tissue_n + walls_n + self.hands().tip
     }
 
     fn world_from_s1(&self) -> UnitQuaternion<f64> {

@@ -4,6 +4,7 @@
 //! code.
 
 mod baselines;
+mod effects;
 mod faults;
 mod gates;
 mod network;
@@ -76,6 +77,8 @@ macro_rules! studies {
 studies! {
     /// Compare the methods of others with every mode, on recordings and scenes: error at the horizon over delayed reflection
     Baselines(baselines::Arguments),
+    /// Measure what each effect of a scene costs in a tick, and what leaving it out changes in the force
+    Effects(effects::Arguments),
     /// Inject every kind of fault in every state; report what is detected, how soon, and the force error at the hand
     Faults(faults::Faults),
     /// Send extreme force requests through the gates and count violations of their limits

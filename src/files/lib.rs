@@ -1,5 +1,5 @@
 //! Files that a user names. Read with checks and limits ([`read`], [`open_table`], [`open_file`]), written so that nothing half-written is ever
-//! seen ([`write_atomically`]), quoted in messages at a bounded length ([`quoted`]).
+//! seen ([`write_atomically`]; [`write_private`] for keys), quoted in messages at a bounded length ([`quoted`]).
 //!
 //! Bad input is an `io::Error` that says what is wrong and what to do; the caller adds which file it was.
 #![warn(missing_docs)]
@@ -9,5 +9,5 @@ mod output;
 mod quote;
 
 pub use input::{CONFIG_MAX, Input, MODEL_MAX, TABLE_MAX, open_file, open_table, read, read_text};
-pub use output::{check_output, copy_atomically, write_atomically};
+pub use output::{check_output, copy_atomically, write_atomically, write_private};
 pub use quote::{PASSAGE, QUOTE, quoted, shortened};

@@ -47,6 +47,28 @@ pub fn copy_atomically(from: &Path, to: &Path) -> io::Result<()> {
     Target::at(to)?.replace(Some(&metadata), |file| io::copy(&mut old, file).map(drop))
 }
 
+/// Writes a new file that its owner alone can read, as a key needs it.
+///
+/// # Errors
+/// A file that is there already, and whatever the system says while writing.
+///
+/// ```
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("key");
+/// nima_files::write_private(&path, "secret\n")?;
+/// assert!(nima_files::write_private(&path, "another\n").is_err());
+/// assert_eq!(std::fs::read(&path)?, b"secret\n");
+/// # Ok::<(), std::io::Error>(())
+/// ```
+pub fn write_private(path: &Path, text: &str) -> io::Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    // A temporary file is its owner's alone from the beginning.
+    let mut file = NamedTempFile::new_in(folder)?;
+    file.write_all(text.as_bytes())?;
+    file.as_file().sync_all()?;
+    file.persist_noclobber(path).map(drop).map_err(|error| error.error)
+}
+
 /// Whether [`write_atomically`] could replace `path` without destroying one of the `inputs`; before the work that is to be written.
 ///
 /// # Errors

@@ -13,7 +13,7 @@ use std::{
 
 use foxglove::{ChannelBuilder, Context, FoxgloveError, PartialMetadata, RawChannel, Schema, WebSocketServerHandle};
 use nima_recording::session::Encoding;
-use nima_session::outlet::Audience;
+use nima_session::{outlet::Audience, recorder::JOURNAL_TOPIC};
 
 /// Messages that wait for a viewer, at most: more than two seconds of two arms, which give 6 100 in a second.
 const BACKLOG: usize = 16_384;
@@ -108,12 +108,15 @@ impl fmt::Debug for Server {
 /// The channels of one session.
 struct Viewers {
     context: Arc<Context>,
-    /// By number; `None` where the library refuses one.
+    /// By number; `None` where the library refuses one, and for the journal, which no viewer can read.
     channels: Vec<Option<Arc<RawChannel>>>,
 }
 
 impl Audience for Viewers {
     fn channel(&mut self, topic: &str, encoding: &Encoding) {
+        if topic == JOURNAL_TOPIC {
+            return self.channels.push(None);
+        }
         let Encoding { schema, schema_encoding, schema_data, message_encoding } = encoding;
         let schema = Schema::new(schema.clone(), schema_encoding.clone(), schema_data.clone());
         let channel = ChannelBuilder::new(topic).schema(schema).message_encoding(message_encoding.clone());

@@ -2,7 +2,7 @@
 
 use std::{
     fmt, fs,
-    io::{self, ErrorKind, Write as _},
+    io::{self, ErrorKind},
     path::{Path, PathBuf},
     str::FromStr,
 };
@@ -293,15 +293,7 @@ const fn mode_for_others(_: &fs::Metadata) -> Option<u32> {
 }
 
 fn write_new(path: &Path, text: &str) -> Result<(), KeyError> {
-    let mut options = fs::OpenOptions::new();
-    options.write(true).create_new(true);
-    #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-    let written = options.open(path).and_then(|mut file| {
-        file.write_all(text.as_bytes())?;
-        file.sync_all()
-    });
-    written.map_err(|source| KeyError::File { path: path.into(), source })
+    nima_files::write_private(path, text).map_err(|source| KeyError::File { path: path.into(), source })
 }
 
 #[cfg(test)]

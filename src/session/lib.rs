@@ -16,11 +16,14 @@
 //! | `shelf` | the folder of a user's sessions: which are kept, and room for the next |
 //! | `outlook` | how long the disk has room for a session |
 //! | `report` | the figures of a session, from what is plotted of it |
+//! | `watched` | what a screen elsewhere is told of a loop while it runs |
+//! | `copied` | the file of a session, written elsewhere while it happens |
 //! | `replay` | the same loop, fed from them; and with one thing changed |
 #![warn(missing_docs)]
 
 pub mod anonymous;
 mod codec;
+pub mod copied;
 pub mod cut;
 pub mod digest;
 pub mod file;
@@ -36,5 +39,6 @@ pub mod report;
 pub mod scribe;
 pub mod shelf;
 mod topics;
+pub mod watched;
 
 pub use topics::{STATES, Words};

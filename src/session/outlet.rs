@@ -7,6 +7,10 @@ mod rescue;
 
 use std::{collections::BTreeMap, fmt::Debug, path::Path};
 
+use nima_machine::{
+    messages::{Event, Tick},
+    rig::SIDES,
+};
 use nima_recording::session::{ChannelId, Encoding, WriteError, Writer};
 
 use crate::recorder::{Attached, RecordError};
@@ -21,7 +25,7 @@ pub struct Destination<'a> {
     /// Another one, which is begun when the first can no longer be written.
     pub second: Option<&'a Path>,
     /// Those who watch.
-    pub audience: Option<Box<dyn Audience>>,
+    pub audiences: Vec<Box<dyn Audience>>,
 }
 
 impl<'a> Destination<'a> {
@@ -31,34 +35,44 @@ impl<'a> Destination<'a> {
     }
 }
 
-/// Those who watch a session while it happens: they get the channels and messages of its file, without the journal. Called on the
-/// recorder's thread, which must not wait for them.
+/// Those who watch a session while it happens: they get all that its file gets. Called on the recorder's thread, which must not wait for
+/// them.
 pub trait Audience: Send + Debug {
+    /// A session begins, recorded by this program; its loop's clock began at this time (ns since 1970).
+    fn begins(&mut self, _program: &str, _started_ns: u64) {}
+
+    /// Named values.
+    fn metadata(&mut self, _name: &str, _entries: &BTreeMap<String, String>) {}
+
+    /// A whole file.
+    fn attachment(&mut self, _time_ns: u64, _attached: &Attached) {}
+
     /// A new channel. Its number is the count of those before it.
     fn channel(&mut self, topic: &str, encoding: &Encoding);
 
     /// A message of a channel, with the time of its sample (ns since 1970).
     fn message(&mut self, channel: usize, log_time_ns: u64, data: &[u8]);
+
+    /// A tick as the screen sees it, and the events that were told in it. All of it is in the journal too.
+    fn tick(&mut self, _t_s: f64, _ticks: &[Option<Tick>; SIDES], _events: &[Event]) {}
 }
 
 /// A channel of an outlet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Channel(usize);
 
-/// A channel, as the file and as the audience know it.
+/// A channel, as the file knows it. Audiences know it by its number.
 struct Known {
     topic: String,
     encoding: Encoding,
     of_file: Option<ChannelId>,
-    /// `None`: it is in the file alone.
-    of_audience: Option<usize>,
 }
 
-/// The file, if there is one, and the audience, if there is one.
+/// The file, if there is one, and the audiences.
 pub(crate) struct Outlet {
     file: Option<Writer>,
     channels: Vec<Known>,
-    audience: Option<Box<dyn Audience>>,
+    audiences: Vec<Box<dyn Audience>>,
     /// What becomes of a recording whose file fails; without it, the caller is told.
     rescue: Option<Rescue>,
 }
@@ -66,49 +80,42 @@ pub(crate) struct Outlet {
 impl Outlet {
     /// Begins the file. Where it fails later, the recording goes on as far as it can, and [`Outlet::troubles`] tells.
     pub(crate) fn create(to: Destination<'_>, program: &str, started_ns: u64) -> Result<Self, RecordError> {
-        let Destination { file: path, second, audience } = to;
+        let Destination { file: path, second, mut audiences } = to;
         let mut rescue = Rescue::new(path, second, program, started_ns);
         let file = path.map(|path| Writer::create(path, program)).transpose()?;
         if let Some(file) = &file {
             rescue.synchronise(file)?;
         }
-        Ok(Self { file, channels: Vec::new(), audience, rescue: Some(rescue) })
+        for audience in &mut audiences {
+            audience.begins(program, started_ns);
+        }
+        Ok(Self { file, channels: Vec::new(), audiences, rescue: Some(rescue) })
     }
 
     /// A file alone, which was begun before.
     pub(crate) const fn of(file: Writer) -> Self {
-        Self { file: Some(file), channels: Vec::new(), audience: None, rescue: None }
+        Self { file: Some(file), channels: Vec::new(), audiences: Vec::new(), rescue: None }
     }
 
     /// Whether anybody takes what is written.
     pub(crate) const fn is_heard(&self) -> bool {
-        self.file.is_some() || self.audience.is_some()
+        self.file.is_some() || !self.audiences.is_empty()
     }
 
     /// A channel of the file and of those who watch.
     pub(crate) fn channel(&mut self, topic: &str, encoding: Encoding) -> Result<Channel, WriteError> {
-        if let Some(audience) = &mut self.audience {
+        for audience in &mut self.audiences {
             audience.channel(topic, &encoding);
         }
-        let heard = self.channels.iter().filter(|known| known.of_audience.is_some()).count();
-        self.add(topic, encoding, Some(heard))
-    }
-
-    /// A channel of the file alone.
-    pub(crate) fn channel_of_file(&mut self, topic: &str, encoding: Encoding) -> Result<Channel, WriteError> {
-        self.add(topic, encoding, None)
-    }
-
-    fn add(&mut self, topic: &str, encoding: Encoding, of_audience: Option<usize>) -> Result<Channel, WriteError> {
         let of_file = self.file.as_mut().map(|file| file.channel(topic, encoding.clone())).transpose()?;
-        self.channels.push(Known { topic: topic.to_owned(), encoding, of_file, of_audience });
+        self.channels.push(Known { topic: topic.to_owned(), encoding, of_file });
         Ok(Channel(self.channels.len() - 1))
     }
 
     pub(crate) fn message(&mut self, channel: Channel, log_time_ns: u64, data: &[u8]) -> Result<(), WriteError> {
-        let Some(Known { of_file, of_audience, .. }) = self.channels.get(channel.0) else { return Ok(()) };
-        if let (Some(audience), Some(number)) = (&mut self.audience, of_audience) {
-            audience.message(*number, log_time_ns, data);
+        let Some(Known { of_file, .. }) = self.channels.get(channel.0) else { return Ok(()) };
+        for audience in &mut self.audiences {
+            audience.message(channel.0, log_time_ns, data);
         }
         let (Some(file), Some(id)) = (&mut self.file, of_file) else { return Ok(()) };
         let written = file.message(*id, log_time_ns, data);
@@ -118,8 +125,18 @@ impl Outlet {
         self.or_rescue(written)
     }
 
-    /// Writes named values into the file.
+    /// A tick, for those who watch; the file has it in its journal.
+    pub(crate) fn tick(&mut self, t_s: f64, ticks: &[Option<Tick>; SIDES], events: &[Event]) {
+        for audience in &mut self.audiences {
+            audience.tick(t_s, ticks, events);
+        }
+    }
+
+    /// Writes named values.
     pub(crate) fn metadata(&mut self, name: &str, entries: &BTreeMap<String, String>) -> Result<(), WriteError> {
+        for audience in &mut self.audiences {
+            audience.metadata(name, entries);
+        }
         let Some(file) = &mut self.file else { return Ok(()) };
         let written = file.metadata(name, entries);
         if let Some(rescue) = &mut self.rescue {
@@ -128,8 +145,11 @@ impl Outlet {
         self.or_rescue(written)
     }
 
-    /// Writes a whole file into the file.
+    /// Writes a whole file.
     pub(crate) fn attachment(&mut self, time_ns: u64, attached: &Attached) -> Result<(), WriteError> {
+        for audience in &mut self.audiences {
+            audience.attachment(time_ns, attached);
+        }
         let Some(file) = &mut self.file else { return Ok(()) };
         let Attached { name, media_type, data } = attached;
         let written = file.attachment(name, media_type, time_ns, data);

@@ -63,7 +63,7 @@ pub struct About {
 }
 
 /// A file inside a session file.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attached {
     /// Its name.
     pub name: String,
@@ -311,7 +311,6 @@ impl Session {
 /// The file and its channels.
 struct SessionFile {
     out: Outlet,
-    /// In the file alone.
     journal: Channel,
     topics: Topics,
     started_ns: u64,
@@ -338,7 +337,7 @@ impl SessionFile {
             out.attachment(started_ns, attached)?;
         }
         let encoding = Encoding { message_encoding: JOURNAL_ENCODING.to_owned(), ..Encoding::default() };
-        let journal = out.channel_of_file(JOURNAL_TOPIC, encoding)?;
+        let journal = out.channel(JOURNAL_TOPIC, encoding)?;
         let topics = Topics::new(&mut out, sides, words, devices)?;
         Ok(Self { out, journal, topics, started_ns, blocks: 0 })
     }
@@ -362,7 +361,9 @@ impl Pages for SessionFile {
     }
 
     fn tick(&mut self, stepped: &Stepped, events: &[Event]) -> Result<(), RecordError> {
-        let time_ns = self.log_time_ns(stepped.timing.now_s);
+        let t_s = stepped.timing.now_s;
+        let time_ns = self.log_time_ns(t_s);
+        self.out.tick(t_s, &stepped.ticks, events);
         Ok(self.topics.tick(&mut self.out, time_ns, stepped, events)?)
     }
 

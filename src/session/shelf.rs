@@ -22,6 +22,22 @@ const MARK: &str = "mcap.kept";
 /// Longest part of a rig's name in a file's name, bytes.
 const NAME_MAX: usize = 40;
 
+/// A path in this folder for a new session that began then (UTC, ISO 8601), with the rig's name in it.
+///
+/// # Errors
+/// A thousand sessions that began in the same second.
+pub fn free_name(folder: &Path, started: &str, rig: &str) -> io::Result<PathBuf> {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+    let rig: String = rig.chars().map(plain).take(NAME_MAX).collect();
+    let stem: String = started.chars().filter(char::is_ascii_alphanumeric).collect();
+    let name = |number: u32| match number {
+        0 => format!("{stem}-{rig}.{EXTENSION}"),
+        _ => format!("{stem}-{rig}-{number}.{EXTENSION}"),
+    };
+    let mut free = (0..1000).map(|number| folder.join(name(number))).filter(|path| !path.exists());
+    free.next().ok_or_else(|| io::Error::other("a thousand sessions began in this second"))
+}
+
 /// The folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shelf {
@@ -62,15 +78,7 @@ impl Shelf {
     pub fn place(&self, started: &str, rig: &str) -> io::Result<PathBuf> {
         fs::create_dir_all(&self.folder)?;
         self.make_room(None)?;
-        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
-        let rig: String = rig.chars().map(plain).take(NAME_MAX).collect();
-        let stem: String = started.chars().filter(char::is_ascii_alphanumeric).collect();
-        let name = |number: u32| match number {
-            0 => format!("{stem}-{rig}.{EXTENSION}"),
-            _ => format!("{stem}-{rig}-{number}.{EXTENSION}"),
-        };
-        let mut free = (0..1000).map(|number| self.folder.join(name(number))).filter(|path| !path.exists());
-        free.next().ok_or_else(|| io::Error::other("a thousand sessions began in this second"))
+        free_name(&self.folder, started, rig)
     }
 
     /// The sessions, oldest first.

@@ -1,16 +1,17 @@
-//! What comes out of the loop. Most of it is compared and never put together again, so that it only has one way.
+//! What comes out of the loop: compared by a replay, and shown by screens elsewhere.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
-    frames::Wrench,
+    calibration::frames::FrameSample,
+    frames::{Wrench, WristSample},
     impedance::{Excitation, MAX_DEGREE, Mode, ModeSet, Report, SLOTS},
     safety::{ChainSettings, EnergyMode, GATES, GateCounts, GateReport, Implausible, Reason, State, Why},
     tip_force::{Fallback, TipForceReport, Unsure},
 };
 use nima_devices::Loss;
 use nima_machine::{
-    messages::{Command, Event, FarStop, Fault, ForceReport, ForceSource, Refusal, Scheduling},
-    rig::{DeviceEvent, Obstacle, Outputs, Prompt, Side},
+    messages::{Command, Event, FarStop, Fault, ForceReport, ForceSource, Refusal, Scheduling, Tick},
+    rig::{DeviceEvent, Obstacle, Outputs, Prompt, Side, View},
 };
 
 use super::{Put, Sink, Source, Take, Wrong, choice, record};
@@ -26,7 +27,36 @@ record!(put Outputs {
     lets_go: bool,
 });
 
-record!(put ForceReport {
+record!(Tick {
+    index: u64,
+    side: Side,
+    t_s: f64,
+    state: State<Fault>,
+    mode: Mode,
+    delay_s: f64,
+    leader_m: Vector3<f64>,
+    tip_m: Vector3<f64>,
+    measured_n: Vector3<f64>,
+    force: ForceReport,
+    wrist: Option<WristSample>,
+    frames: FrameSample,
+    view: View,
+    prompt: Prompt,
+    guide_m: Option<Vector3<f64>>,
+    delayed_n: Vector3<f64>,
+    asked_n: [Vector3<f64>; SLOTS],
+    rendered_n: Vector3<f64>,
+    gates: GateReport,
+    gate_settings: ChainSettings,
+    identification: Report,
+    wake_s: f64,
+    work_s: f64,
+    sample_to_force_s: Option<f64>,
+    missed: u64,
+    dropped: u64,
+});
+
+record!(ForceReport {
     source: ForceSource,
     tip_n: Vector3<f64>,
     gravity_free: Option<Wrench>,
@@ -47,7 +77,7 @@ choice!(ForceSource {
 choice!(Unsure { 0 => OutsideTraining {}, 1 => NotMoved {}, 2 => Missing {} });
 choice!(Fallback { 0 => WristForce {}, 1 => HoldAndFade {} });
 
-record!(put TipForceReport {
+record!(TipForceReport {
     force_s1_n: Vector3<f64>,
     network_share: f64,
     unsure: Option<Unsure>,
@@ -55,7 +85,7 @@ record!(put TipForceReport {
     doubt: f32,
 });
 
-record!(put Report {
+record!(Report {
     t_s: f64,
     modes: ModeSet,
     resting: bool,
@@ -78,7 +108,7 @@ record!(put Report {
     horizon_error_n: [f64; SLOTS],
 });
 
-record!(put Excitation { position_m: Vector3<f64>, velocity_m_s: Vector3<f64>, acceleration_m_s2: Vector3<f64> });
+record!(Excitation { position_m: Vector3<f64>, velocity_m_s: Vector3<f64>, acceleration_m_s2: Vector3<f64> });
 
 impl Put for ModeSet {
     const COLUMNS: usize = 1;
@@ -102,7 +132,7 @@ impl Take for ModeSet {
     }
 }
 
-record!(put GateReport {
+record!(GateReport {
     reasons: [Reason; GATES],
     withheld_n: f64,
     governed: f64,
@@ -111,9 +141,9 @@ record!(put GateReport {
     counts: GateCounts,
 });
 
-record!(put GateCounts { ticks: u64, acted: [u64; GATES], last: [Reason; GATES] });
+record!(GateCounts { ticks: u64, acted: [u64; GATES], last: [Reason; GATES] });
 
-choice!(put Reason {
+choice!(Reason {
     0 => Open {},
     1 => NotPermitted {},
     2 => NothingAsked {},
@@ -133,7 +163,7 @@ choice!(put Reason {
     16 => HandGone {},
 });
 
-record!(put ChainSettings {
+record!(ChainSettings {
     gain: f64,
     gain_rate_per_s: f64,
     ceiling_n: f64,
@@ -150,9 +180,9 @@ record!(put ChainSettings {
     brake_n_s_m: f64,
 });
 
-choice!(put EnergyMode { 0 => Off {}, 1 => Observe {}, 2 => Control {} });
+choice!(EnergyMode { 0 => Off {}, 1 => Observe {}, 2 => Control {} });
 
-choice!(put State<Fault> {
+choice!(State<Fault> {
     0 => Disconnected {},
     1 => Idle {},
     2 => Ready {},
@@ -162,7 +192,7 @@ choice!(put State<Fault> {
     6 => Faulted { 0: fault: Fault },
 });
 
-choice!(put Fault {
+choice!(Fault {
     0 => SourceSilent {},
     1 => LoopStalled { periods: periods: u64 },
     2 => ForceUnknown {},
@@ -176,7 +206,7 @@ choice!(put Fault {
     10 => FarEnd { stop: stop: FarStop },
 });
 
-choice!(put Implausible {
+choice!(Implausible {
     0 => ForceFrozen {},
     1 => ForceJumped {},
     2 => ForceAlong {},
@@ -187,7 +217,7 @@ choice!(put Implausible {
     7 => ArmAstray {},
 });
 
-choice!(put Event {
+choice!(Event {
     0 => StateChanged { t_s: t_s: f64, side: side: Side, from: from: State<Fault>, to: into: State<Fault>, why: why: Why },
     1 => FaultRaised { t_s: t_s: f64, side: side: Side, fault: fault: Fault },
     2 => CommandRefused { t_s: t_s: f64, side: side: Side, command: command: Command, why: why: Refusal },
@@ -195,7 +225,7 @@ choice!(put Event {
     4 => Scheduling { 0: granted: Scheduling },
 });
 
-choice!(put Why {
+choice!(Why {
     0 => Asked {},
     1 => Connected {},
     2 => Disconnected {},
@@ -206,9 +236,9 @@ choice!(put Why {
     7 => Fault {},
 });
 
-record!(put Scheduling { fifo: bool, deadline: bool, memory_locked: bool });
+record!(Scheduling { fifo: bool, deadline: bool, memory_locked: bool });
 
-choice!(put Refusal {
+choice!(Refusal {
     0 => State { 0: state: State<Fault> },
     1 => StillPresent { 0: fault: Fault },
     2 => ForceUnknown {},

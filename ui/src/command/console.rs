@@ -18,8 +18,8 @@ use crate::{
     },
     emulators::Emulators,
     line::Reopen,
-    live::Live,
     telling::tell,
+    watching::Watching,
 };
 
 #[derive(Debug, Default, Args)]
@@ -27,7 +27,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     setup: Setup,
     #[command(flatten)]
-    live: Live,
+    watching: Watching,
     #[command(flatten)]
     network: ToFollower,
     /// Record into this folder when sessions can no longer be written into the usual one: best on another disk
@@ -52,7 +52,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "CLASS")]
     scheduling: Option<SchedulingClass>,
     /// Save a screenshot of every view (PNG) in this folder, then close
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["exit_after", "calibrate", "role", "live"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["exit_after", "calibrate", "role", "live", "share"])]
     pictures: Option<PathBuf>,
     /// Write the loop's timing and errors (JSON) to this file when the window closes
     #[arg(long, value_name = "FILE")]
@@ -93,12 +93,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     plan.engage = by_itself && plan.may_engage();
     // Pictures are taken of a session that nobody looks for afterwards.
     let folder = in_force.store().and_then(|store| store.folder().parent()).filter(|_| arguments.pictures.is_none());
-    let live = arguments.live.start()?;
+    let servers = arguments.watching.start()?;
     anyhow::ensure!(
-        live.is_none() || folder.is_some(),
-        "live viewing shows what is recorded, and there is no folder for sessions: set NIMA_DATA_DIR"
+        servers.is_empty() || folder.is_some(),
+        "who watches sees what is recorded, and there is no folder for sessions: set NIMA_DATA_DIR"
     );
-    let mut sessions = Sessions::of_user(folder, arguments.second_place.as_deref(), live);
+    let mut sessions = Sessions::of_user(folder, arguments.second_place.as_deref(), servers);
     let network = arguments.network.clone();
     let far = line.as_ref().map(|line| (line.door(), Reopen::new(move |rig, scene| network.open(rig, scene))));
     let handle = start_recorded(&plan, &mut sessions, line)?;

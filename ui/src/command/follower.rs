@@ -6,7 +6,7 @@ use clap::Args;
 use nima_machine::config::SchedulingClass;
 
 use super::{network, run, setup::Setup};
-use crate::telling::tell;
+use crate::{telling::tell, watching::Watching};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -24,6 +24,8 @@ pub(super) struct Arguments {
     /// Record the session of this machine into a new file
     #[arg(long, value_name = "FILE.mcap")]
     record: Option<PathBuf>,
+    #[command(flatten)]
+    watching: Watching,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
@@ -31,8 +33,8 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: Arguments) -> anyhow::Result<()> {
     let at = network::listening(arguments.listen.as_deref())?;
-    let Arguments { setup, seconds, scheduling, record, json, .. } = arguments;
-    let run = run::Arguments::of_follower(setup, seconds, scheduling, record, json);
+    let Arguments { setup, seconds, scheduling, record, watching, json, .. } = arguments;
+    let run = run::Arguments::of_follower(setup, seconds, scheduling, record, watching, json);
     run::run_with(&run, |rig, scene| {
         let line = network::listen(rig, scene, at)?;
         tell(format_args!("the follower listens at {at}"));

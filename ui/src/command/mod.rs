@@ -3,6 +3,7 @@
 mod calibrate;
 mod check;
 mod console;
+pub(crate) mod department;
 mod devices;
 mod emulate;
 mod ending;
@@ -62,6 +63,9 @@ enum Command {
     Report(report::Arguments),
     /// Identify impedance on a recording, sample by sample, from past data only
     Identify(identify::Arguments),
+    /// Rigs of a department: certificates, which are shared, watch and record them from other machines
+    #[command(subcommand, arg_required_else_help = false)]
+    Department(department::DepartmentCommand),
     /// List connected devices and test them; for each failure, print its cause and what to do
     Devices(devices::Arguments),
     /// Emulate devices on their real interfaces (serial port, network, HID)
@@ -118,6 +122,7 @@ pub fn main() -> ExitCode {
         Command::Sessions(arguments) => sessions::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
+        Command::Department(command) => department::run(&command),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Emulate(arguments) => emulate::run(&arguments),
         Command::Calibrate(calibrate) => calibrate::run(&calibrate),

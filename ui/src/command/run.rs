@@ -43,8 +43,8 @@ use crate::{
     emulators::Emulators,
     leaving::Leave,
     line::{Line, LinkFigures, LinkNews},
-    live::{Live, Server},
     telling::tell,
+    watching::Watching,
     words::{Remedy as _, drift as drift_in_words, link_rows},
 };
 
@@ -73,7 +73,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     compare: bool,
     /// Run on a virtual clock, as fast as this computer can
-    #[arg(long = "virtual", conflicts_with_all = ["live", "follower"])]
+    #[arg(long = "virtual", conflicts_with_all = ["live", "share", "follower"])]
     virtual_clock: bool,
     /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
     #[arg(long, value_name = "CLASS")]
@@ -85,7 +85,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE.mcap", requires = "record")]
     second_place: Option<PathBuf>,
     #[command(flatten)]
-    live: Live,
+    watching: Watching,
     #[command(flatten)]
     network: ToFollower,
     /// Print the results as one JSON object
@@ -100,9 +100,10 @@ impl Arguments {
         seconds: Option<f64>,
         scheduling: Option<SchedulingClass>,
         record: Option<PathBuf>,
+        watching: Watching,
         json: bool,
     ) -> Self {
-        Self { setup, seconds, scheduling, record, json, ..Self::default() }
+        Self { setup, seconds, scheduling, record, watching, json, ..Self::default() }
     }
 }
 
@@ -166,11 +167,11 @@ pub(super) fn run_with(
             plan.scene.name
         );
     }
-    let live = arguments.live.start()?;
+    let servers = arguments.watching.start()?;
     let to = Destination {
         file: arguments.record.as_deref(),
         second: arguments.second_place.as_deref(),
-        audience: live.as_ref().map(Server::audience),
+        audiences: servers.audiences(),
     };
     let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock, arguments.seconds)?;
     let mut summary = if arguments.virtual_clock {

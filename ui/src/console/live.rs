@@ -72,6 +72,18 @@ pub enum Of {
     Now,
     /// A moment of a recorded session: nothing may act on the machine.
     Past,
+    /// A loop at another machine, which is only watched.
+    Elsewhere,
+}
+
+impl Of {
+    /// Why controls that act on a machine are off.
+    pub(in crate::console) const fn blocked(self) -> &'static str {
+        match self {
+            Self::Elsewhere => text::monitor::BLOCKED,
+            Self::Now | Self::Past => text::past::BLOCKED,
+        }
+    }
 }
 
 /// A command that was refused.
@@ -130,7 +142,7 @@ pub struct Live {
     pub is_unchecked: bool,
     /// The devices of the rig; empty if everything is simulated.
     pub roster: Roster,
-    /// Of a recorded session: its devices, and how each was at that moment.
+    /// Where nothing may act on the devices: their names, and how each is at the moment that is shown.
     pub devices_then: Vec<(String, Standing)>,
     /// Health of the devices, in the same order.
     pub healths: Healths,
@@ -222,9 +234,16 @@ impl Live {
         Self { of: Of::Past, ..Self::new(rig, scene) }
     }
 
-    /// Whether this is a moment of a recorded session.
-    pub fn is_past(&self) -> bool {
-        self.of == Of::Past
+    /// Before the first tick of a loop at another machine, which is only watched.
+    pub fn of_elsewhere(rig: RigConfig, scene: Scene) -> Self {
+        let devices = rig.device_names();
+        let devices_then = devices.into_iter().map(|name| (name, Standing::Opening)).collect();
+        Self { of: Of::Elsewhere, devices_then, ..Self::new(rig, scene) }
+    }
+
+    /// Whether nothing on the screen may act on a machine.
+    pub fn is_shown_only(&self) -> bool {
+        self.of != Of::Now
     }
 
     /// Records that a tick arrived at this moment and waits to be read: the loop is not silent.
@@ -358,7 +377,7 @@ impl Live {
             state: self.first_tick().map(|_| self.state()),
             first_fault: self.first_fault,
             running: self.running,
-            silence: if self.is_past() { Duration::ZERO } else { self.tick_at.elapsed() },
+            silence: if self.is_shown_only() { Duration::ZERO } else { self.tick_at.elapsed() },
             missed_share: self.missed_share.get(),
             scheduling: self.scheduling,
             stop_is_stuck,

@@ -20,6 +20,7 @@ pub mod in_force;
 mod keys;
 pub mod live;
 mod menu;
+pub mod monitor;
 pub mod outbox;
 pub(crate) mod overview;
 pub mod panels;
@@ -96,8 +97,14 @@ pub(crate) struct Begun {
 
 /// Opens the console for a running loop; returns when the window is closed and the loop has ended.
 pub(crate) fn run(begun: Begun, options: Options) -> anyhow::Result<()> {
+    let create: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(console(cc, begun, options))));
+    open_window(text::top_bar::NIMA_CONSOLE, create)
+}
+
+/// Opens a window; returns when it is closed.
+pub(crate) fn open_window(title: &str, create: eframe::AppCreator<'_>) -> anyhow::Result<()> {
     let viewport = egui::ViewportBuilder::default()
-        .with_title(text::top_bar::NIMA_CONSOLE)
+        .with_title(title)
         .with_app_id("nima-console")
         .with_inner_size([1600.0, 1000.0])
         .with_min_inner_size([1100.0, 680.0]);
@@ -111,9 +118,7 @@ pub(crate) fn run(begun: Begun, options: Options) -> anyhow::Result<()> {
         centered: true,
         ..Default::default()
     };
-    let create: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(console(cc, begun, options))));
-    eframe::run_native(text::top_bar::NIMA_CONSOLE, native, create)
-        .map_err(|error| NoWindow::new(&error.to_string()).into())
+    eframe::run_native(title, native, create).map_err(|error| NoWindow::new(&error.to_string()).into())
 }
 
 /// The console with the user's settings; screenshots use the defaults and do not change the settings.

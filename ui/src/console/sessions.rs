@@ -5,7 +5,6 @@
 
 use std::{
     collections::VecDeque,
-    net::SocketAddr,
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
@@ -24,7 +23,11 @@ use super::{
     alarms::{Alarm, Kind, Priority, Signs, judge, log::AlarmLog},
     chain, text,
 };
-use crate::{live::Server, recording, words};
+use crate::{
+    recording,
+    watching::{self, Servers},
+    words,
+};
 
 /// A loop that ran for fewer ticks than this was no session: a window that could not be opened, a rig that was changed at once.
 const LEAST_TICKS: u64 = 1000;
@@ -40,8 +43,8 @@ pub(crate) struct Sessions {
     shelf: Option<Shelf>,
     /// Where a recording goes on that can no longer be written there.
     second: Option<Shelf>,
-    /// Those who watch.
-    live: Option<Server>,
+    /// Those who let others watch.
+    servers: Servers,
     now: Option<Now>,
     /// Why the last recording could not begin, or ended by itself.
     trouble: Option<String>,
@@ -84,16 +87,16 @@ pub(crate) struct Shown {
     /// Marks in it.
     pub(crate) marks: usize,
     /// Where others can watch, and how many do.
-    pub(crate) live: Option<(SocketAddr, usize)>,
+    pub(crate) watched: Vec<watching::Shown>,
 }
 
 impl Sessions {
     /// Records into the folder `sessions` of the user's data folder, and into `second` when that can no longer be written; lets those
-    /// of this server watch.
-    pub(crate) fn of_user(data_folder: Option<&Path>, second: Option<&Path>, live: Option<Server>) -> Self {
+    /// of these servers watch.
+    pub(crate) fn of_user(data_folder: Option<&Path>, second: Option<&Path>, servers: Servers) -> Self {
         let shelf = data_folder.map(|folder| Shelf::new(folder.join("sessions"), MOST_BYTES));
         let second = second.map(|folder| Shelf::new(folder, MOST_BYTES));
-        Self { shelf, second, live, now: None, trouble: None, looked: None, full_in: None }
+        Self { shelf, second, servers, now: None, trouble: None, looked: None, full_in: None }
     }
 
     /// Begins to record a loop of this plan; the tap is for it. `None` if nothing is recorded.
@@ -106,8 +109,8 @@ impl Sessions {
             shelf.place(&started, &plan.rig.name).map_err(|error| text::sessions::no_folder(shelf.folder(), &error))
         };
         let begin = |path: PathBuf, second: Option<PathBuf>| {
-            let audience = self.live.as_ref().map(Server::audience);
-            let to = Destination { file: Some(&path), second: second.as_deref(), audience };
+            let audiences = self.servers.audiences();
+            let to = Destination { file: Some(&path), second: second.as_deref(), audiences };
             let (tap, recorder) = recording::begin(to, plan, "real").map_err(|error| chain(&error))?;
             let began = Instant::now();
             let outlook = Outlook::new(&path, recorder.progress().bytes, began);
@@ -212,7 +215,7 @@ impl Sessions {
             bytes: progress.bytes,
             lost: progress.lost,
             marks: now.told.marks,
-            live: self.live.as_ref().map(|live| (live.address(), live.viewers())),
+            watched: self.servers.shown(),
         })
     }
 
@@ -279,7 +282,7 @@ mod tests {
     #[test]
     fn every_loop_is_recorded_and_its_session_replays() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None, None);
+        let mut sessions = Sessions::of_user(Some(folder.path()), None, Servers::default());
         let mut paths = Vec::new();
         for kept in [true, false] {
             let plan = plan();
@@ -309,7 +312,7 @@ mod tests {
     #[test]
     fn marks_and_alarms_of_the_screen_are_in_the_session_at_their_moments_and_it_replays() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None, None);
+        let mut sessions = Sessions::of_user(Some(folder.path()), None, Servers::default());
         let plan = plan();
         let tap = sessions.begin(&plan);
         let handle = start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap();
@@ -360,7 +363,7 @@ mod tests {
     #[test]
     fn a_loop_that_ends_at_once_leaves_no_session() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None, None);
+        let mut sessions = Sessions::of_user(Some(folder.path()), None, Servers::default());
         let plan = plan();
         let tap = sessions.begin(&plan);
         drop(start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap());
@@ -373,7 +376,7 @@ mod tests {
     fn a_folder_that_cannot_be_made_is_told_and_the_loop_runs_without_a_recording() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("sessions"), "a file").unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None, None);
+        let mut sessions = Sessions::of_user(Some(folder.path()), None, Servers::default());
         assert!(sessions.begin(&plan()).is_none());
         let trouble = sessions.trouble().unwrap();
         assert!(trouble.contains("sessions"), "{trouble}");
@@ -385,7 +388,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("sessions"), "a file").unwrap();
         let second = folder.path().join("second");
-        let mut sessions = Sessions::of_user(Some(folder.path()), Some(&second), None);
+        let mut sessions = Sessions::of_user(Some(folder.path()), Some(&second), Servers::default());
         let tap = sessions.begin(&plan());
         let handle = start(Assembly { tap, ..plan().assembly().unwrap() }).unwrap();
         sessions.toggle_kept();

@@ -49,6 +49,8 @@ pub struct Palette {
     pub series: [Color32; 4],
     /// The frame of what is recorded, and nothing else.
     pub past: Color32,
+    /// The frame of a rig at another machine that is only watched.
+    pub watching: Color32,
     /// The loop runs and feeds force back.
     pub engaged: Color32,
     /// The loop is at rest.
@@ -85,6 +87,7 @@ pub const DARK: Palette = Palette {
     reference: rgb(0x87_919d),
     series: [rgb(0xf3_e9d2), rgb(0x6c_9dff), rgb(0x63_c28c), rgb(0xc0_7ad8)],
     past: rgb(0xd0_6ae0),
+    watching: rgb(0xe9_8b3a),
     engaged: rgb(0x63_c28c),
     at_rest: rgb(0xc3_cad2),
     alarm_high: rgb(0xff_4d4d),
@@ -112,6 +115,7 @@ pub const LIGHT: Palette = Palette {
     reference: rgb(0x6c_7783),
     series: [rgb(0x5d_4715), rgb(0x1c_63dd), rgb(0x1f_8a53), rgb(0x8a_3ba8)],
     past: rgb(0x93_2fa8),
+    watching: rgb(0xa8_5200),
     engaged: rgb(0x1f_8a53),
     at_rest: rgb(0x5a_646f),
     alarm_high: rgb(0xc9_1f2a),

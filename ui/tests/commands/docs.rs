@@ -79,7 +79,11 @@ fn every_command_and_flag_in_the_pages_exists() {
             let words: Vec<String> = command.split_whitespace().skip(1).map(str::to_owned).collect();
             // Some commands have a second word of their own: `nima study faults`.
             let depth =
-                if ["study", "train", "evaluate", "calibrate", "check"].contains(&words[0].as_str()) { 2 } else { 1 };
+                if ["study", "train", "evaluate", "calibrate", "check", "department"].contains(&words[0].as_str()) {
+                    2
+                } else {
+                    1
+                };
             let named: Vec<String> =
                 words.iter().take(depth).take_while(|word| !word.starts_with('-')).cloned().collect();
             if named.iter().any(|word| word.chars().any(char::is_uppercase)) {

@@ -6,6 +6,7 @@ mod calibrate_correspondence;
 mod calibrate_gravity;
 mod calibrate_rig;
 mod check_rig;
+mod department;
 mod devices;
 mod docs;
 mod endings;

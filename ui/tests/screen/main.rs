@@ -8,6 +8,7 @@ mod console;
 mod desk;
 mod drift;
 mod instruments;
+mod monitor;
 mod past;
 mod ready;
 mod roles;

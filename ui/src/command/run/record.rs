@@ -55,7 +55,7 @@ impl Recording {
         is_virtual: bool,
         seconds: Option<f64>,
     ) -> anyhow::Result<(Option<Tap>, Self)> {
-        if to.file.is_none() && to.audience.is_none() {
+        if to.file.is_none() && to.audiences.is_empty() {
             return Ok((None, Self::default()));
         }
         let file = to.file.map(ToOwned::to_owned);

@@ -92,6 +92,9 @@ impl Live {
                 if let Some(health) = self.healths.devices.get_mut(usize::from(event.device)) {
                     health.standing = event.standing;
                 }
+                if let Some((_, standing)) = self.devices_then.get_mut(usize::from(event.device)) {
+                    *standing = event.standing;
+                }
             }
         }
     }

@@ -191,7 +191,7 @@ fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
             if ui.add(Button::new(name).selected(paused).min_size(size)).on_hover_text(meaning).clicked() {
                 state.paused_at_s = if paused { None } else { Some(state.history(live).latest_s()) };
             }
-            let mark = ui.add_enabled(!live.is_past(), Button::new(text::forces::MARK).min_size(size));
+            let mark = ui.add_enabled(!live.is_shown_only(), Button::new(text::forces::MARK).min_size(size));
             if mark.on_hover_text(text::forces::MARK_HOVER).clicked() {
                 live.mark();
             }

@@ -26,8 +26,8 @@ pub fn horizon_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
     ui.label(small(text::horizon::ahead(live.delay_s() * 1e3)));
     let mut compares = live.compares();
     let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE);
-    let compare = ui.add_enabled(!live.is_past(), compare).on_hover_text(text::horizon::COMPARE_HOVER);
-    if compare.on_disabled_hover_text(text::past::BLOCKED).changed() {
+    let compare = ui.add_enabled(!live.is_shown_only(), compare).on_hover_text(text::horizon::COMPARE_HOVER);
+    if compare.on_disabled_hover_text(live.of.blocked()).changed() {
         outbox.push(Command::Compare(compares));
     }
     ui.add_space(2.0);

@@ -31,5 +31,6 @@ pub use horizon::horizon_ui;
 pub use link::link_ui;
 pub use safety::safety_ui;
 pub use timing::{TimingState, timing_ui};
+pub(super) use top_bar::state_ui;
 pub use top_bar::{TopBarState, top_bar_ui};
 pub use tradeoff::{TradeoffState, tradeoff_ui};

@@ -14,7 +14,7 @@ use crate::{
         live::{Live, Refused},
         menu::menu_ui,
         outbox::Outbox,
-        roles::switch_ui,
+        roles::{Role, switch_ui},
         scene3d::side_name,
         sessions::Shown,
         settings::Settings,
@@ -110,7 +110,7 @@ fn identity_ui(
             ui.label(small(text::top_bar::RESEARCH_ONLY));
         });
         ui.horizontal(|ui| {
-            switch_ui(ui, &mut settings.role, !calibrating);
+            switch_ui(ui, &Role::ALL, &mut settings.role, !calibrating);
             let start = Button::new(text::start::OPEN).min_size(vec2(44.0, 30.0));
             let why = if state.past { text::past::BLOCKED } else { text::start::OPEN_DISABLED_HOVER };
             let free = !calibrating && !state.past;
@@ -148,7 +148,7 @@ fn recorded_ui(ui: &mut Ui, state: &mut TopBarState) {
 
 /// The state of the arm that needs more attention; where the other arm is in another state, both, one below the other: an idle
 /// arm must not hide that the other hand feels a force.
-fn state_ui(ui: &mut Ui, live: &Live, state: LoopState) {
+pub(in crate::console) fn state_ui(ui: &mut Ui, live: &Live, state: LoopState) {
     let (what, colour, meaning) = match state {
         LoopState::Disconnected => (Sign::Ring, theme::now().text_weak, text::top_bar::DISCONNECTED_MEANING),
         LoopState::Ready => (Sign::Ring, theme::now().engaged, text::top_bar::READY_MEANING),

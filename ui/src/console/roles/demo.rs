@@ -278,14 +278,14 @@ fn may_show(live: &Live, step: &Step) -> bool {
 
 /// Draws the view.
 pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox: &mut Outbox) {
-    if may_play(live) && !live.is_past() {
+    if may_play(live) && !live.is_shown_only() {
         let dt_s = f64::from(ui.input(|input| input.stable_dt)).min(0.1);
         panels.demo.play(live, panels.scene.is_led(), dt_s, outbox);
     }
     let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
     let height = if ui.available_width() < ONE_ROW { 176.0 } else { 140.0 };
     // The script is not what happened in the past.
-    if !live.is_past() {
+    if !live.is_shown_only() {
         let frame = side.inner_margin(Margin::symmetric(18, 12));
         let caption = Panel::bottom("caption").exact_size(height).resizable(false).frame(frame);
         caption.show(ui, |ui| caption_ui(ui, live, &mut panels.demo));

@@ -141,10 +141,10 @@ fn acts<R>(ui: &mut Ui, past: bool, controls: impl FnOnce(&mut Ui) -> R) -> R {
     ui.add_enabled_ui(!past, controls).inner
 }
 
-/// One button for each role.
-pub fn switch_ui(ui: &mut Ui, now: &mut Role, allowed: bool) {
+/// One button for each of these roles.
+pub fn switch_ui(ui: &mut Ui, roles: &[Role], now: &mut Role, allowed: bool) {
     ui.spacing_mut().item_spacing.x = 4.0;
-    for role in Role::ALL {
+    for &role in roles {
         let button = Button::selectable(*now == role, role.name()).frame_when_inactive(true).min_size(vec2(62.0, 30.0));
         let response = ui.add_enabled(allowed, button);
         let response = response.on_hover_text(text::roles::meaning_and_key(role.meaning(), role.key().name()));

@@ -22,7 +22,7 @@ const BEYOND_CEILING: f64 = 1.25;
 
 /// Draws the view.
 pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox: &mut Outbox) {
-    let past = live.is_past();
+    let past = live.is_shown_only();
     let strip = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
     Panel::bottom("strip").exact_size(STRIP).resizable(false).frame(strip).show(ui, |ui| {
         let room = ui.available_rect_before_wrap();

@@ -6,7 +6,7 @@ use super::{Panels, Wishes, acts};
 use crate::console::{
     desk::{Layout, Panel},
     in_force::InForce,
-    live::Live,
+    live::{Live, Of},
     outbox::Outbox,
     panels::{
         calibrations_ui, degrees_ui, devices_ui, feedback_ui, force_space_ui, forces_ui, gates_ui, horizon_ui, link_ui,
@@ -26,7 +26,7 @@ pub(super) fn technician_ui(
     in_force: &InForce,
     outbox: &mut Outbox,
 ) -> Wishes {
-    let (mut wishes, past) = (Wishes::default(), live.is_past());
+    let (mut wishes, past) = (Wishes::default(), live.is_shown_only());
     let mut desk = std::mem::take(&mut panels.desk);
     desk.ui(ui, layout, &mut |ui, panel| match panel {
         Panel::Field => scene_ui(ui, live, &mut panels.scene, outbox),
@@ -45,7 +45,8 @@ pub(super) fn technician_ui(
         Panel::Degrees => degrees_ui(ui, live),
         Panel::Timing => timing_ui(ui, live, &mut panels.timing),
         Panel::Link if past => {
-            ui.label(weak(text::link::NOT_IN_SESSIONS));
+            let elsewhere = live.of == Of::Elsewhere;
+            ui.label(weak(if elsewhere { text::monitor::NO_LINK } else { text::link::NOT_IN_SESSIONS }));
         }
         Panel::Link => link_ui(ui, live),
         Panel::Tradeoff => wishes.restart = acts(ui, past, |ui| tradeoff_ui(ui, live, &mut panels.tradeoff, outbox)),
@@ -54,17 +55,18 @@ pub(super) fn technician_ui(
     wishes
 }
 
-/// The devices of a recorded session as they were, and what of them is not in it.
+/// The devices of a recorded session or of another machine, and what of them is not known here.
 fn devices_then_ui(ui: &mut Ui, live: &Live) {
+    let elsewhere = live.of == Of::Elsewhere;
     Frame::new().inner_margin(Margin::same(8)).show(ui, |ui| {
         if live.devices_then.is_empty() {
-            ui.label(text::past::SIMULATED);
+            ui.label(if elsewhere { text::monitor::SIMULATED } else { text::past::SIMULATED });
         }
         for (name, standing) in &live.devices_then {
             ui.label(text::past::device(name, *standing));
         }
         ui.add_space(6.0);
-        ui.label(weak(text::past::NOT_OF_DEVICES));
+        ui.label(weak(if elsewhere { text::monitor::NOT_OF_DEVICES } else { text::past::NOT_OF_DEVICES }));
     });
 }
 

@@ -47,7 +47,7 @@ impl Lead {
         camera: &Camera,
         outbox: &mut Outbox,
     ) -> bool {
-        let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged) && !live.is_past();
+        let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged) && !live.is_shown_only();
         if self.is_on() && !runs {
             // The loop has ended the leading already.
             self.at_m = None;

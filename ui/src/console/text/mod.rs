@@ -27,6 +27,7 @@ pub(super) mod help;
 pub(super) mod horizon;
 pub(super) mod link;
 pub(super) mod menu;
+pub(super) mod monitor;
 pub(super) mod overview;
 pub(super) mod past;
 pub(super) mod ready;

@@ -29,11 +29,12 @@ pub(in crate::console) fn hover(shown: &Shown) -> String {
     };
     let lost =
         if shown.lost > 0 { format!("\n{} entries lost: the disk is too slow", shown.lost) } else { String::new() };
-    let live = shown
-        .live
-        .map_or_else(String::new, |(address, viewers)| format!("\nLive at ws://{address}, viewers: {viewers}"));
+    let watched = shown
+        .watched
+        .iter()
+        .fold(String::new(), |words, one| words + &format!("\nOthers watch at {}: {} now", one.at, one.watchers));
     let (path, megabytes) = (shown.path.display(), shown.bytes as f64 * 1e-6);
-    format!("{what}\n{path}\n{megabytes:.1} MB, marks: {} (key E sets one){lost}{live}", shown.marks)
+    format!("{what}\n{path}\n{megabytes:.1} MB, marks: {} (key E sets one){lost}{watched}", shown.marks)
 }
 
 /// The folder cannot be used.

@@ -1,0 +1,106 @@
+//! The last minutes of a session, for those who come late or have missed something.
+
+use std::{collections::VecDeque, sync::Arc};
+
+use nima_session::copied::{Bundle, Head};
+
+use crate::keys::{pack, unpack};
+
+/// Bytes of bundles that are kept, compressed: about ten minutes of two arms.
+const MOST_BYTES: usize = 64 << 20;
+
+/// A session as far as it is kept.
+#[derive(Debug)]
+pub(crate) struct Kept {
+    head: Head,
+    bundles: VecDeque<Arc<[u8]>>,
+    bytes: usize,
+    most_bytes: usize,
+}
+
+impl Kept {
+    /// At the beginning of a session.
+    pub(crate) const fn new(head: Head) -> Self {
+        Self { head, bundles: VecDeque::new(), bytes: 0, most_bytes: MOST_BYTES }
+    }
+
+    #[cfg(test)]
+    pub(crate) const fn with_room(head: Head, most_bytes: usize) -> Self {
+        Self { head, bundles: VecDeque::new(), bytes: 0, most_bytes }
+    }
+
+    /// Adds the next bundle; its compressed bytes.
+    pub(crate) fn add(&mut self, bundle: &Bundle) -> Arc<[u8]> {
+        let packed: Arc<[u8]> = pack(&bundle.pack()).into();
+        self.bytes += packed.len();
+        self.bundles.push_back(Arc::clone(&packed));
+        while self.bytes > self.most_bytes && self.bundles.len() > 1 {
+            let Some(oldest) = self.bundles.pop_front() else { break };
+            self.bytes -= oldest.len();
+            // It was packed here.
+            if let Some(bundle) = unpack(&oldest).and_then(|bytes| Bundle::read(&bytes).ok()) {
+                self.head.outlive(bundle);
+            }
+        }
+        packed
+    }
+
+    /// What is needed to begin with the oldest bundle that is kept.
+    pub(crate) fn head(&self) -> Vec<u8> {
+        pack(&self.head.pack())
+    }
+
+    /// Its number, and the session's.
+    pub(crate) fn session(&self) -> u64 {
+        self.head.session
+    }
+
+    /// The bundles from this one on, with their numbers, about so many bytes of them but at least one.
+    pub(crate) fn from(&self, number: u64, most_bytes: usize) -> Vec<(u64, Arc<[u8]>)> {
+        let Some(skipped) = number.checked_sub(self.head.first) else { return Vec::new() };
+        let skipped = usize::try_from(skipped).unwrap_or(usize::MAX);
+        let mut bytes = 0;
+        let mut fits = |packed: &Arc<[u8]>| {
+            let fits = bytes < most_bytes;
+            bytes += packed.len();
+            fits
+        };
+        let kept = self.bundles.iter().skip(skipped);
+        (number..).zip(kept.take_while(|packed| fits(packed)).cloned()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use nima_session::copied::Part;
+
+    use super::*;
+
+    fn bundle(number: u64) -> Bundle {
+        let table = Part::table(&format!("table {number}"), &BTreeMap::new());
+        let random: Vec<u8> = std::iter::repeat_with(|| fastrand::u8(..)).take(1000).collect();
+        Bundle::new(1, number, vec![table, Part::message(0, number, &random)], false)
+    }
+
+    #[test]
+    fn what_is_too_old_goes_and_its_tables_stay() {
+        let mut kept = Kept::with_room(Head::new(1, "test", 0), 5000);
+        for number in 0..10 {
+            kept.add(&bundle(number));
+        }
+        let head = Head::read(&unpack(&kept.head()).unwrap()).unwrap();
+        assert!(head.lacks && (5..8).contains(&head.first), "{}", head.first);
+        let all = kept.from(head.first, usize::MAX);
+        assert_eq!(all.iter().map(|(number, _)| *number).collect::<Vec<_>>(), (head.first..10).collect::<Vec<_>>());
+        let first = Bundle::read(&unpack(&all[0].1).unwrap()).unwrap();
+        assert_eq!(first.number, head.first);
+        for number in 0..=head.first {
+            assert!(head.table(&first, &format!("table {number}")).is_some(), "{number}");
+        }
+        assert_eq!(kept.from(9, 1).len(), 1);
+        assert_eq!(kept.from(8, 1).len(), 1);
+        assert!(kept.from(0, usize::MAX).is_empty() && kept.from(10, usize::MAX).is_empty());
+    }
+}

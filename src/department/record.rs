@@ -1,0 +1,223 @@
+//! A rig's session in a file on this machine, while it happens.
+
+use std::{
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+use crossbeam_channel::{Receiver, RecvTimeoutError, unbounded};
+use nima_session::{
+    copied::{Bundle, Copy, Head},
+    shelf,
+};
+use zenoh::{Wait as _, pubsub::Subscriber};
+
+use crate::{DepartmentError, Rig, keys};
+
+/// How long is waited for a bundle before it is asked for.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// How long a query for bundles may take.
+const ANSWER: Duration = Duration::from_secs(5);
+
+/// What a step brought.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Nothing new: the rig runs no loop, or is silent.
+    Waits,
+    /// A session is being written.
+    Writes {
+        /// Its file.
+        file: PathBuf,
+        /// Bytes in it.
+        bytes: u64,
+    },
+    /// A session has ended, and its file with it.
+    Ended {
+        /// Its file.
+        file: PathBuf,
+        /// Messages in it.
+        messages: u64,
+    },
+}
+
+/// Writes the sessions of a rig into a folder, one file for each.
+pub struct Recording<'a> {
+    rig: &'a Rig,
+    folder: PathBuf,
+    came: Receiver<Vec<u8>>,
+    file: Option<Open>,
+    /// The session whose file has ended.
+    over: Option<u64>,
+    asked: Option<Instant>,
+    _subscriber: Subscriber<()>,
+}
+
+struct Open {
+    copy: Copy,
+    path: PathBuf,
+    session: u64,
+}
+
+impl<'a> Recording<'a> {
+    /// Begins with the session that runs now, from its beginning if the rig still has it.
+    ///
+    /// # Errors
+    /// [`DepartmentError`] if the rig cannot be asked or there is no such folder.
+    pub fn start(rig: &'a Rig, folder: &Path) -> Result<Self, DepartmentError> {
+        std::fs::create_dir_all(folder).map_err(DepartmentError::of_file(folder))?;
+        let (to, came) = unbounded();
+        let heard = move |sample: zenoh::sample::Sample| drop(to.send(sample.payload().to_bytes().into_owned()));
+        let subscriber = rig.session.declare_subscriber(keys::bundles(&rig.name)).callback(heard).wait();
+        let subscriber = subscriber.map_err(|error| rig.silent(&error.to_string()))?;
+        let folder = folder.to_owned();
+        Ok(Self { rig, folder, came, file: None, over: None, asked: None, _subscriber: subscriber })
+    }
+
+    /// Waits for what comes next, at most for this time, and writes it.
+    ///
+    /// # Errors
+    /// [`DepartmentError`] if the file cannot be written, or the rig runs another version.
+    pub fn step(&mut self, wait: Duration) -> Result<Step, DepartmentError> {
+        if self.file.is_none() && self.asked.is_none_or(|at| at.elapsed() >= wait) {
+            self.asked = Some(Instant::now());
+            self.begin()?;
+        }
+        let bundle = match self.came.recv_timeout(wait.min(PATIENCE)) {
+            Ok(packed) => keys::unpack(&packed).map(|bytes| Bundle::read(&bytes)).transpose()?,
+            Err(RecvTimeoutError::Disconnected) => return Err(self.rig.silent("the connection is closed")),
+            Err(RecvTimeoutError::Timeout) => None,
+        };
+        match (bundle, &self.file) {
+            (Some(bundle), Some(open)) if bundle.session == open.session => self.take(&bundle),
+            // Another session has begun; the end of this one was not heard, or is still there to be asked for.
+            (Some(_), Some(_)) => {
+                self.catch_up()?;
+                self.end()
+            }
+            (Some(bundle), None) if Some(bundle.session) != self.over => {
+                self.begin()?;
+                Ok(self.told())
+            }
+            (Some(_) | None, None) => Ok(Step::Waits),
+            (None, Some(_)) => self.catch_up(),
+        }
+    }
+
+    /// Ends the file that is being written.
+    ///
+    /// # Errors
+    /// [`DepartmentError`] if it cannot be written.
+    pub fn finish(mut self) -> Result<Step, DepartmentError> {
+        self.end()
+    }
+
+    fn told(&self) -> Step {
+        self.file
+            .as_ref()
+            .map_or(Step::Waits, |open| Step::Writes { file: open.path.clone(), bytes: open.copy.bytes() })
+    }
+
+    fn end(&mut self) -> Result<Step, DepartmentError> {
+        let Some(Open { copy, path, session }) = self.file.take() else { return Ok(Step::Waits) };
+        self.over = Some(session);
+        self.asked = None;
+        Ok(Step::Ended { file: path, messages: copy.finish()? })
+    }
+
+    /// Begins a file with the oldest bundle that the rig has, if it runs a session.
+    fn begin(&mut self) -> Result<(), DepartmentError> {
+        let Some(head) = self.rig.ask(&keys::head(&self.rig.name))? else { return Ok(()) };
+        let Some(head) = keys::unpack(&head.to_bytes()).map(|bytes| Head::read(&bytes)).transpose()? else {
+            return Ok(());
+        };
+        if self.over == Some(head.session) {
+            return Ok(());
+        }
+        let bundles = self.ask_from(head.first)?;
+        let Some((first, rest)) = bundles.split_first().filter(|(first, _)| first.number == head.first) else {
+            return Ok(());
+        };
+        let words = |key: &str| head.table(first, "session").and_then(|table| table.get(key)).cloned();
+        let started = words("started").unwrap_or_else(|| "session".to_owned());
+        let path =
+            shelf::free_name(&self.folder, &started, &self.rig.name).map_err(DepartmentError::of_file(&self.folder))?;
+        let copy = Copy::create(&path, &head, first)?;
+        self.file = Some(Open { copy, path, session: head.session });
+        for bundle in rest {
+            self.take(bundle)?;
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, bundle: &Bundle) -> Result<Step, DepartmentError> {
+        let Some(open) = &mut self.file else { return Ok(Step::Waits) };
+        // Those that were asked for come a second time.
+        if bundle.session != open.session || bundle.number < open.copy.due() {
+            return Ok(self.told());
+        }
+        if bundle.number > open.copy.due() {
+            return self.catch_up();
+        }
+        open.copy.add(bundle)?;
+        if bundle.closes { self.end() } else { Ok(self.told()) }
+    }
+
+    /// Asks for what is due, until there is nothing more. What the rig no longer has is lost: the file ends there, and another one begins.
+    fn catch_up(&mut self) -> Result<Step, DepartmentError> {
+        loop {
+            let Some(open) = &self.file else { return Ok(Step::Waits) };
+            let (due, session) = (open.copy.due(), open.session);
+            let bundles = self.ask_from(due)?;
+            let next = bundles.iter().find(|bundle| bundle.number == due && bundle.session == session);
+            if next.is_none() {
+                return if self.has_lost(due, session)? { self.lose() } else { Ok(self.told()) };
+            }
+            for bundle in &bundles {
+                let Some(open) = &mut self.file else { return Ok(Step::Waits) };
+                if bundle.session == session && bundle.number == open.copy.due() {
+                    open.copy.add(bundle)?;
+                    if bundle.closes {
+                        return self.end();
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether the rig no longer has this bundle.
+    fn has_lost(&self, number: u64, session: u64) -> Result<bool, DepartmentError> {
+        let Some(head) = self.rig.ask(&keys::head(&self.rig.name))? else { return Ok(false) };
+        let head = keys::unpack(&head.to_bytes()).map(|bytes| Head::read(&bytes)).transpose()?;
+        Ok(head.is_some_and(|head| head.session != session || head.first > number))
+    }
+
+    fn lose(&mut self) -> Result<Step, DepartmentError> {
+        let ended = self.end()?;
+        // The session may go on: what comes is a stretch of it in a file of its own.
+        self.over = None;
+        Ok(ended)
+    }
+
+    /// The bundles from this one on that come in one answer, in order.
+    fn ask_from(&self, number: u64) -> Result<Vec<Bundle>, DepartmentError> {
+        let key = format!("{}?from={number}", keys::bundles(&self.rig.name));
+        let replies =
+            self.rig.session.get(key).consolidation(zenoh::query::ConsolidationMode::None).timeout(ANSWER).wait();
+        let replies = replies.map_err(|error| self.rig.silent(&error.to_string()))?;
+        let mut bundles = Vec::new();
+        for reply in replies {
+            let Ok(sample) = reply.into_result() else { continue };
+            if let Some(bytes) = keys::unpack(&sample.payload().to_bytes()) {
+                bundles.push(Bundle::read(&bytes)?);
+            }
+        }
+        bundles.sort_by_key(|bundle| bundle.number);
+        Ok(bundles)
+    }
+}
+
+impl std::fmt::Debug for Recording<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Recording").field("rig", &self.rig).field("folder", &self.folder).finish_non_exhaustive()
+    }
+}

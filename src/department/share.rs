@@ -1,0 +1,243 @@
+//! The rig's end: a thread that publishes what the recorder tells, and answers those who come late.
+
+use std::{
+    fmt,
+    net::SocketAddr,
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    thread::JoinHandle,
+    time::Duration,
+};
+
+use crossbeam_channel::{Receiver, Sender, bounded};
+use nima_session::outlet::Audience;
+use prost::Message as _;
+use zenoh::{
+    Session, Wait as _,
+    key_expr::KeyExpr,
+    liveliness::LivelinessToken,
+    qos::{CongestionControl, Priority},
+    query::{Query, Queryable},
+};
+
+use crate::{
+    DepartmentError, Identity,
+    config::{self, Scouting},
+    feed::{Feed, Told},
+    kept::Kept,
+    keys,
+    watch::About,
+};
+
+/// What waits for the thread that publishes, at most: some seconds.
+const BACKLOG: usize = 256;
+/// How often the thread looks whether it is to end.
+const LOOK_EVERY: Duration = Duration::from_millis(100);
+/// Bytes of bundles in one answer, about.
+const ANSWER_BYTES: usize = 512 << 10;
+
+/// A rig that is shared with its department until this is dropped, for one session after the other.
+pub struct Share {
+    to: Sender<Told>,
+    dropped: Arc<AtomicU64>,
+    session: Session,
+    address: SocketAddr,
+    name: String,
+    watchers: Arc<AtomicU64>,
+    ends: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+    /// What zenoh offers; it ends with them.
+    _offers: Offers,
+}
+
+struct Offers {
+    _presence: LivelinessToken,
+    _answers: [Queryable<()>; 3],
+    _watchers: zenoh::pubsub::Subscriber<()>,
+}
+
+/// What late-comers are told.
+#[derive(Debug)]
+struct State {
+    about: About,
+    kept: Option<Kept>,
+}
+
+impl Share {
+    /// Shares this rig at this address.
+    ///
+    /// # Errors
+    /// [`DepartmentError`] if this machine may only watch, or the address cannot be used.
+    pub fn start(own: &Identity, address: SocketAddr, scouting: bool) -> Result<Self, DepartmentError> {
+        let own = own.as_rig()?;
+        let scouting = if scouting { Scouting::Answers } else { Scouting::Silent };
+        let refused =
+            |why: &dyn fmt::Display| DepartmentError::Listen { address: address.to_string(), why: why.to_string() };
+        // Zenoh tells neither a port that is in use nor a free one that it took.
+        let address = free(address).map_err(|error| refused(&error))?;
+        let session = zenoh::open(config::rig(own, &address.to_string(), scouting)?).wait();
+        let session = session.map_err(|error| refused(&error))?;
+        let state = Arc::new(Mutex::new(State { about: About::of(own), kept: None }));
+        let watchers = Arc::new(AtomicU64::new(0));
+        let offers = offer(&session, &own.name, &state, &watchers).map_err(|error| refused(&error))?;
+        let (to, told) = bounded(BACKLOG);
+        let ends = Arc::new(AtomicBool::new(false));
+        let thread = {
+            let (session, state, name, ends) =
+                (session.clone(), Arc::clone(&state), own.name.clone(), Arc::clone(&ends));
+            let run = move || publish(&session, &name, &state, &told, &ends);
+            std::thread::Builder::new().name("department".to_owned()).spawn(run).map_err(|error| refused(&error))?
+        };
+        Ok(Self {
+            to,
+            dropped: Arc::new(AtomicU64::new(0)),
+            session,
+            address,
+            name: own.name.clone(),
+            watchers,
+            ends,
+            thread: Some(thread),
+            _offers: offers,
+        })
+    }
+
+    /// Where it listens.
+    pub const fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Name of the rig.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Watchers that are connected now.
+    pub fn watchers(&self) -> usize {
+        usize::try_from(self.watchers.load(Ordering::Relaxed)).unwrap_or(usize::MAX)
+    }
+
+    /// What could not be published in time.
+    pub fn dropped(&self) -> u64 {
+        self.dropped.load(Ordering::Relaxed)
+    }
+
+    /// For the recorder of the next session.
+    pub fn audience(&self) -> Box<dyn Audience> {
+        Box::new(Feed::new(self.to.clone(), Arc::clone(&self.dropped)))
+    }
+}
+
+impl Drop for Share {
+    fn drop(&mut self) {
+        self.ends.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            thread.join().ok();
+        }
+        self.session.close().wait().ok();
+    }
+}
+
+impl fmt::Debug for Share {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Share").field("name", &self.name).field("address", &self.address).finish_non_exhaustive()
+    }
+}
+
+/// The address, with a port that is free if none is named.
+fn free(address: SocketAddr) -> std::io::Result<SocketAddr> {
+    std::net::TcpListener::bind(address)?.local_addr()
+}
+
+fn locked(state: &Mutex<State>) -> std::sync::MutexGuard<'_, State> {
+    state.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn offer(session: &Session, name: &str, state: &Arc<Mutex<State>>, watchers: &Arc<AtomicU64>) -> zenoh::Result<Offers> {
+    let answer = |key: String, answer: fn(&Query, &str, &Mutex<State>)| {
+        let (state, name) = (Arc::clone(state), name.to_owned());
+        session.declare_queryable(key).callback(move |query| answer(&query, &name, &state)).wait()
+    };
+    let answers = [
+        answer(keys::about(name), answer_about)?,
+        answer(keys::head(name), answer_head)?,
+        answer(keys::bundles(name), answer_bundles)?,
+    ];
+    let count = Arc::clone(watchers);
+    let came_or_went = move |sample: zenoh::sample::Sample| {
+        let change = |count: u64| match sample.kind() {
+            zenoh::sample::SampleKind::Put => Some(count + 1),
+            zenoh::sample::SampleKind::Delete => Some(count.saturating_sub(1)),
+        };
+        count.fetch_update(Ordering::Relaxed, Ordering::Relaxed, change).ok();
+    };
+    let watchers = session.liveliness().declare_subscriber(keys::watchers(name)).callback(came_or_went).wait()?;
+    let presence = session.liveliness().declare_token(keys::presence(name)).wait()?;
+    Ok(Offers { _presence: presence, _answers: answers, _watchers: watchers })
+}
+
+/// Answers, on zenoh's thread for this watcher: who does not take it makes nobody else wait.
+fn reply(query: &Query, key: String, payload: Vec<u8>) {
+    let Ok(key) = KeyExpr::try_from(key) else { return };
+    query.reply(key, payload).wait().ok();
+}
+
+fn answer_about(query: &Query, name: &str, state: &Mutex<State>) {
+    let about = locked(state).about.encode_to_vec();
+    reply(query, keys::about(name), about);
+}
+
+fn answer_head(query: &Query, name: &str, state: &Mutex<State>) {
+    let head = locked(state).kept.as_ref().map(Kept::head);
+    if let Some(head) = head {
+        reply(query, keys::head(name), head);
+    }
+}
+
+fn answer_bundles(query: &Query, name: &str, state: &Mutex<State>) {
+    let Some(from) = query.parameters().get("from").and_then(|from| from.parse().ok()) else { return };
+    let bundles = locked(state).kept.as_ref().map(|kept| kept.from(from, ANSWER_BYTES)).unwrap_or_default();
+    for (number, packed) in bundles {
+        reply(query, keys::bundle(name, number), packed.to_vec());
+    }
+}
+
+/// The thread that publishes.
+fn publish(session: &Session, name: &str, state: &Mutex<State>, told: &Receiver<Told>, ends: &AtomicBool) {
+    let put = |key: String, payload: Vec<u8>, priority| {
+        session.put(key, payload).congestion_control(CongestionControl::Drop).priority(priority).wait().ok();
+    };
+    loop {
+        let next = match told.recv_timeout(LOOK_EVERY) {
+            Ok(next) => next,
+            // A recorder may tell on when nobody is to hear it any more.
+            Err(_) if ends.load(Ordering::Relaxed) => return,
+            Err(_) => continue,
+        };
+        match next {
+            Told::Begins(head) => {
+                let mut state = locked(state);
+                state.about.begins(&head);
+                state.kept = Some(Kept::new(head));
+            }
+            Told::File(file, text) => locked(state).about.file(&file, text),
+            Told::Bundle(bundle) => {
+                let mut state = locked(state);
+                // The end of a session that another one has followed already.
+                let Some(kept) = state.kept.as_mut().filter(|kept| kept.session() == bundle.session) else { continue };
+                let packed = kept.add(&bundle).to_vec();
+                if bundle.closes {
+                    state.about.ends();
+                }
+                drop(state);
+                put(keys::bundle(name, bundle.number), packed, Priority::Background);
+            }
+            Told::Moments(session, moments) => {
+                let mut message = session.to_le_bytes().to_vec();
+                message.extend(keys::pack(&moments));
+                put(keys::moments(name), message, Priority::InteractiveLow);
+            }
+        }
+    }
+}

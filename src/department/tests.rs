@@ -1,0 +1,325 @@
+//! A rig and those who watch it, over TLS on loopback.
+
+use std::{
+    io::{Read as _, Write as _},
+    net::{SocketAddr, TcpListener, TcpStream},
+    path::{Path, PathBuf},
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use nima_machine::{
+    config::RigConfig,
+    messages::Tick,
+    rig::Side,
+    runtime::{Assembly, Handle, Summary, start, tap},
+};
+use nima_session::{
+    file::Recorded,
+    outlet::Destination,
+    recorder::{About as AboutSession, Attached, Recorder},
+    replay::replay,
+};
+use nima_world::{Plan, scene::Scene};
+use zenoh::Wait as _;
+
+use super::*;
+use crate::keys;
+
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A department with a rig and a watcher.
+struct Department {
+    folder: tempfile::TempDir,
+    rig: Identity,
+    watcher: Identity,
+}
+
+impl Department {
+    fn new(name: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let authority = Authority::create(folder.path(), name).unwrap();
+        let issue = |name: &str, role| authority.issue(name, role, &folder.path().join(name)).unwrap();
+        let (rig, watcher) = (issue("theatre-1", Role::Rig), issue("teacher", Role::Watcher));
+        Self { folder, rig, watcher }
+    }
+
+    fn share(&self) -> Share {
+        Share::start(&self.rig, "127.0.0.1:0".parse().unwrap(), false).unwrap()
+    }
+}
+
+/// A loop that runs and is recorded into a file and for these.
+struct Running {
+    handle: Option<Handle>,
+    recorder: Option<Recorder>,
+}
+
+impl Running {
+    fn start(path: &Path, share: &Share) -> Self {
+        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
+        let file = |name: &str, text: String| Attached {
+            name: name.to_owned(),
+            media_type: "application/toml".to_owned(),
+            data: text.into_bytes(),
+        };
+        let (rig_text, scene_text) = (toml::to_string(&rig).unwrap(), toml::to_string(&scene).unwrap());
+        let files = vec![file("rig.toml", rig_text), file("scene.toml", scene_text)];
+        let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+        let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap();
+        let table = [("started".to_owned(), "2026-11-25T08:00:00Z".to_owned())].into();
+        let about = AboutSession {
+            program: "a test".to_owned(),
+            started_ns: since.as_nanos() as u64,
+            metadata: [("session".to_owned(), table)].into(),
+            files,
+            words: nima_session::Words { event: |_, _| String::new(), operation: |_, _| String::new() },
+        };
+        let (entry, end) = tap();
+        let to = Destination { file: Some(path), audiences: vec![share.audience()], ..Destination::default() };
+        let recorder = Recorder::start(to, about, plan.origin(), end).unwrap();
+        let handle = start(Assembly { tap: Some(entry), ..plan.assembly().unwrap() }).unwrap();
+        Self { handle: Some(handle), recorder: Some(recorder) }
+    }
+
+    fn end(mut self) -> Summary {
+        let summary = self.handle.take().unwrap().stop_and_join().unwrap();
+        self.recorder.take().unwrap().finish().unwrap();
+        summary
+    }
+}
+
+fn wait(what: &str, mut until: impl FnMut() -> bool) {
+    let began = Instant::now();
+    while !until() {
+        assert!(began.elapsed() < PATIENCE, "never: {what}");
+        thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// Writes a rig's session until it ends.
+fn write_session(rig: &Rig, folder: &Path, ends: &AtomicBool) -> PathBuf {
+    let mut recording = Recording::start(rig, folder).unwrap();
+    loop {
+        match recording.step(Duration::from_millis(100)).unwrap() {
+            Step::Ended { file, .. } => return file,
+            Step::Writes { .. } | Step::Waits if !ends.load(Ordering::Relaxed) => {}
+            _ => match recording.finish().unwrap() {
+                Step::Ended { file, .. } => return file,
+                step => panic!("nothing was written: {step:?}"),
+            },
+        }
+    }
+}
+
+fn address(share: &Share) -> String {
+    share.address().to_string()
+}
+
+#[test]
+fn a_screen_elsewhere_sees_the_loop_and_a_file_elsewhere_replays_to_the_bit() {
+    let department = Department::new("lab");
+    let share = department.share();
+    let original = department.folder.path().join("original.mcap");
+    let running = Running::start(&original, &share);
+
+    let rig = Rig::open(&department.watcher, &address(&share)).unwrap();
+    assert_eq!(rig.name(), "theatre-1");
+    wait("a session", || rig.about().unwrap().session != 0);
+    let about = rig.about().unwrap();
+    assert_eq!((about.department.as_str(), about.program.as_str()), ("lab", "a test"));
+    assert!(toml::from_str::<RigConfig>(&about.rig).is_ok() && toml::from_str::<Scene>(&about.scene).is_ok());
+    wait("the watcher is counted", || share.watchers() == 1);
+
+    let ticks: Arc<Mutex<Vec<Tick>>> = Arc::default();
+    let watching = {
+        let ticks = Arc::clone(&ticks);
+        rig.watch(move |session, moments| {
+            assert_eq!(session, about.session);
+            let shown = moments.unwrap().into_iter().filter_map(|moment| moment.ticks[Side::Right.index()]);
+            ticks.lock().unwrap().extend(shown);
+        })
+        .unwrap()
+    };
+    let over = AtomicBool::new(false);
+    let folder = department.folder.path().join("elsewhere");
+    let copied = thread::scope(|scope| {
+        let writer = scope.spawn(|| write_session(&rig, &folder, &over));
+        wait("two seconds of ticks", || ticks.lock().unwrap().len() > 400);
+        running.end();
+        writer.join().unwrap()
+    });
+    drop(watching);
+
+    let ticks = ticks.lock().unwrap();
+    let steps: Vec<f64> = ticks.windows(2).map(|two| two[1].t_s - two[0].t_s).collect();
+    assert!(steps.iter().all(|step| *step > 0.0), "in order");
+    let moved = ticks
+        .iter()
+        .map(|tick| tick.tip_m.norm())
+        .fold([f64::INFINITY, 0.0], |[low, high], x| [low.min(x), high.max(x)]);
+    assert!(moved[1] - moved[0] > 1e-4, "{moved:?} m: the tip moves");
+
+    let original = replay(Recorded::open(&original).unwrap().journal().unwrap(), |_| ()).unwrap();
+    let copy = replay(Recorded::open(&copied).unwrap().journal().unwrap(), |_| ()).unwrap();
+    assert!(copy.closed && copy.differs.is_none(), "{copy:?}");
+    assert_eq!(copy.ticks, original.ticks, "nothing is missing");
+    wait("no session", || rig.about().unwrap().session == 0);
+    drop(rig);
+    wait("the watcher is gone", || share.watchers() == 0);
+}
+
+#[test]
+fn strangers_and_those_without_a_certificate_are_refused() {
+    let (ours, theirs) = (Department::new("lab"), Department::new("lab"));
+    let share = ours.share();
+    assert!(Rig::open(&ours.watcher, &address(&share)).is_ok());
+    let refused = Rig::open(&theirs.watcher, &address(&share)).unwrap_err();
+    assert!(matches!(refused, DepartmentError::Connect { .. }), "{refused}");
+    assert!(matches!(
+        Share::start(&ours.watcher, "127.0.0.1:0".parse().unwrap(), false),
+        Err(DepartmentError::Role { .. })
+    ));
+    // A watcher that says it is a rig has a certificate that says otherwise.
+    let poser = Identity { role: Role::Rig, ..ours.watcher.clone() };
+    let posed = Share::start(&poser, "127.0.0.1:0".parse().unwrap(), false).unwrap();
+    assert!(Rig::open(&ours.watcher, &address(&posed)).is_err());
+}
+
+#[test]
+fn who_watches_can_neither_publish_nor_pose_as_a_rig() {
+    let department = Department::new("lab");
+    let share = department.share();
+    let [victim, hostile] = [0; 2].map(|_| Rig::open(&department.watcher, &address(&share)).unwrap());
+    let heard = Arc::new(AtomicBool::new(false));
+    let watching = {
+        let heard = Arc::clone(&heard);
+        victim.watch(move |_, _| heard.store(true, Ordering::Relaxed)).unwrap()
+    };
+    let false_rig = hostile.session.liveliness().declare_token(keys::presence("theatre-9")).wait().unwrap();
+    let answers = hostile.session.declare_queryable(keys::about("theatre-1")).callback(|query| {
+        query.reply(keys::about("theatre-1"), "false").wait().ok();
+    });
+    let answers = answers.wait().unwrap();
+    for _ in 0..200 {
+        hostile.session.put(keys::moments("theatre-1"), vec![0; 100]).wait().unwrap();
+        hostile.session.put("nima/anything", vec![0; 100]).wait().unwrap();
+    }
+    thread::sleep(Duration::from_millis(300));
+    assert!(!heard.load(Ordering::Relaxed), "a watcher's message reached another watcher");
+    let third = Rig::open(&department.watcher, &address(&share)).unwrap();
+    assert_eq!((third.name(), third.about().unwrap().name.as_str()), ("theatre-1", "theatre-1"));
+    drop((false_rig, answers, watching));
+}
+
+/// Passes bytes on between whoever connects and this address, at most so many in a second from there.
+fn slow_way(to: SocketAddr, bytes_s: usize) -> SocketAddr {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    thread::spawn(move || {
+        for here in listener.incoming().flatten() {
+            let Ok(there) = TcpStream::connect(to) else { return };
+            let pass = |mut from: TcpStream, mut into: TcpStream, bytes_s: Option<usize>| {
+                let mut buffer = vec![0; bytes_s.map_or(1 << 16, |bytes_s| bytes_s / 10)];
+                while let Ok(count @ 1..) = from.read(&mut buffer) {
+                    if into.write_all(&buffer[..count]).is_err() {
+                        return;
+                    }
+                    if bytes_s.is_some() {
+                        thread::sleep(Duration::from_millis(100));
+                    }
+                }
+            };
+            let (up, down) = ((here.try_clone().unwrap(), there.try_clone().unwrap()), (there, here));
+            thread::spawn(move || pass(up.0, up.1, None));
+            thread::spawn(move || pass(down.0, down.1, Some(bytes_s)));
+        }
+    });
+    address
+}
+
+#[test]
+fn a_screen_that_is_too_slow_makes_nobody_wait() {
+    let department = Department::new("lab");
+    let share = department.share();
+    let running = Running::start(&department.folder.path().join("session.mcap"), &share);
+    // Fast until it watches, so that it gets that far.
+    let slow = slow_way(share.address(), 20_000);
+    let slow = Rig::open(&department.watcher, &slow.to_string()).unwrap();
+    let of_slow = slow.watch(|_, _| ()).unwrap();
+    let fast = Rig::open(&department.watcher, &address(&share)).unwrap();
+    let times: Arc<Mutex<Vec<Instant>>> = Arc::default();
+    let watching = {
+        let times = Arc::clone(&times);
+        fast.watch(move |_, moments| {
+            assert_eq!(moments.unwrap().len(), 10);
+            times.lock().unwrap().push(Instant::now());
+        })
+        .unwrap()
+    };
+    wait("three seconds", || times.lock().unwrap().len() >= 60);
+    let times = times.lock().unwrap();
+    let took = times[59].duration_since(times[0]);
+    // 59 bundles of 50 ms.
+    assert!(took < Duration::from_secs(6), "{took:?}");
+    assert_eq!(share.dropped(), 0, "the recorder was never kept waiting");
+    running.end();
+    drop((of_slow, watching));
+}
+
+/// Lateness and work of the loop alone and with ten watchers, one of which reads 1 kB in a second; in turns, because the machine changes.
+#[test]
+#[ignore = "a minute and a half; printed, not judged"]
+fn figures_of_ten_watchers() {
+    let department = Department::new("lab");
+    for round in 0..3 {
+        for count in [0, 10] {
+            let share = department.share();
+            let session = department.folder.path().join(format!("{round}-{count}.mcap"));
+            let running = Running::start(&session, &share);
+            let slow = slow_way(share.address(), 1000).to_string();
+            let of = |number: usize| if number == 0 { slow.clone() } else { address(&share) };
+            // The slow one may not even get through the handshake.
+            let rigs: Vec<Rig> =
+                (0..count).filter_map(|number| Rig::open(&department.watcher, &of(number)).ok()).collect();
+            let watching: Vec<_> = rigs.iter().map(|rig| rig.watch(|_, _| ()).unwrap()).collect();
+            thread::sleep(Duration::from_secs(12));
+            let [watched, dropped] = [share.watchers() as u64, share.dropped()];
+            drop(watching);
+            let summary = running.end();
+            let (wake, work) = (summary.wake_us, summary.work_us);
+            println!(
+                "{count} watchers ({watched} connected, {dropped} messages of the recorder dropped): wake-up late by p50 {:.0} p99 {:.0} p99.9 {:.0} us, work p50 {:.0} p99.9 {:.0} us, {} of {} periods missed",
+                wake.p50, wake.p99, wake.p999, work.p50, work.p999, summary.missed, summary.ticks
+            );
+        }
+    }
+}
+
+#[test]
+fn the_files_of_a_department_are_checked_and_private() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    assert!(matches!(Authority::load(folder.path()), Err(DepartmentError::Missing { .. })));
+    assert!(matches!(Authority::create(folder.path(), "a/b"), Err(DepartmentError::Name(_))));
+    let authority = Authority::create(folder.path(), "lab").unwrap();
+    assert!(matches!(Authority::create(folder.path(), "lab"), Err(DepartmentError::Exists(_))));
+    authority.issue("theatre-1", Role::Rig, &at("issued")).unwrap();
+    assert!(matches!(authority.issue("theatre-1", Role::Rig, &at("issued")), Err(DepartmentError::Exists(_))));
+    std::fs::write(at("garbage"), "department = 3").unwrap();
+    assert!(matches!(Identity::join(folder.path(), &at("garbage")), Err(DepartmentError::NotOne { .. })));
+    std::fs::write(at("bytes"), [0xff, 0xfe]).unwrap();
+    assert!(matches!(Identity::join(folder.path(), &at("bytes")), Err(DepartmentError::NotOne { .. })));
+    assert!(matches!(Identity::load(folder.path()), Err(DepartmentError::Missing { .. })));
+    Identity::join(folder.path(), &at("issued")).unwrap();
+    assert_eq!(Identity::load(folder.path()).unwrap().name, "theatre-1");
+    #[cfg(unix)]
+    for name in ["department.toml", "own.toml", "issued"] {
+        use std::os::unix::fs::PermissionsExt as _;
+        assert_eq!(std::fs::metadata(at(name)).unwrap().permissions().mode() & 0o777, 0o600, "{name}");
+    }
+}

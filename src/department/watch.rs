@@ -1,0 +1,254 @@
+//! The other end: rigs are found, and their screens shown.
+
+use std::{
+    fmt,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+    time::Duration,
+};
+
+use nima_session::{
+    copied::Head,
+    watched::{Moment, WatchError, read},
+};
+use zenoh::{Session, Wait as _, bytes::ZBytes, liveliness::LivelinessToken, pubsub::Subscriber, sample::SampleKind};
+
+use crate::{DepartmentError, Identity, config, keys};
+
+/// How long a rig has to answer.
+const ANSWER: Duration = Duration::from_secs(3);
+
+/// What a rig is and what it runs.
+#[derive(Clone, PartialEq, prost::Message)]
+pub struct About {
+    /// Its department.
+    #[prost(string, tag = "1")]
+    pub department: String,
+    /// Its name there.
+    #[prost(string, tag = "2")]
+    pub name: String,
+    /// Name and version of its program; empty before the first session.
+    #[prost(string, tag = "3")]
+    pub program: String,
+    /// Which session of it runs; 0 if none does.
+    #[prost(uint64, tag = "4")]
+    pub session: u64,
+    /// When that began, ns since 1970 (UTC).
+    #[prost(fixed64, tag = "5")]
+    pub started_ns: u64,
+    /// Its rig file.
+    #[prost(string, tag = "6")]
+    pub rig: String,
+    /// Its scene file.
+    #[prost(string, tag = "7")]
+    pub scene: String,
+}
+
+impl About {
+    pub(crate) fn of(own: &Identity) -> Self {
+        Self { department: own.department.clone(), name: own.name.clone(), ..Self::default() }
+    }
+
+    pub(crate) fn begins(&mut self, head: &Head) {
+        let Head { session, program, started_ns, .. } = head;
+        (self.session, self.program, self.started_ns) = (*session, program.clone(), *started_ns);
+        (self.rig, self.scene) = (String::new(), String::new());
+    }
+
+    pub(crate) fn file(&mut self, name: &str, text: String) {
+        match name {
+            "rig.toml" => self.rig = text,
+            "scene.toml" => self.scene = text,
+            _ => {}
+        }
+    }
+
+    pub(crate) const fn ends(&mut self) {
+        self.session = 0;
+    }
+}
+
+/// A rig that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Where: the first of its addresses that answered.
+    pub address: String,
+    /// What it is and what it runs.
+    pub about: About,
+    /// How many watch it.
+    pub watchers: usize,
+}
+
+/// The rigs of this department that answer in the local network within this time, by name.
+///
+/// # Errors
+/// [`DepartmentError`] if nothing can be sent into it.
+pub fn find(own: &Identity, wait: Duration) -> Result<Vec<Found>, DepartmentError> {
+    let unsent =
+        |why: zenoh::Error| DepartmentError::Connect { address: "any address".to_owned(), why: why.to_string() };
+    let (to, came) = crossbeam_channel::unbounded();
+    let answered = move |hello: zenoh::scouting::Hello| drop(to.send(hello));
+    let scout = zenoh::scout(zenoh::config::WhatAmI::Router, config::scout()?).callback(answered).wait();
+    let scout = scout.map_err(unsent)?;
+    std::thread::sleep(wait);
+    scout.stop();
+    let mut hellos: Vec<_> = came.try_iter().collect();
+    hellos.sort_by_key(|hello| hello.zid().to_string());
+    hellos.dedup_by_key(|hello| hello.zid().to_string());
+    let at = |hello: &zenoh::scouting::Hello| {
+        let addresses = hello.locators().iter().filter_map(|at| at.as_str().strip_prefix("tls/").map(str::to_owned));
+        // Others may answer too: rigs of another department, programs that are no rigs.
+        addresses.into_iter().find_map(|address| find_at(own, &address).ok())
+    };
+    let mut found: Vec<Found> = hellos.iter().filter_map(at).collect();
+    found.sort_by(|a, b| a.about.name.cmp(&b.about.name));
+    Ok(found)
+}
+
+/// The rig at this address.
+///
+/// # Errors
+/// [`DepartmentError`] if none of this department answers there.
+pub fn find_at(own: &Identity, address: &str) -> Result<Found, DepartmentError> {
+    let rig = Rig::connect(own, address)?;
+    Ok(Found { address: address.to_owned(), about: rig.about()?, watchers: rig.watchers() })
+}
+
+/// A rig at another machine.
+pub struct Rig {
+    pub(crate) session: Session,
+    pub(crate) name: String,
+    address: String,
+    /// Tells the rig that somebody watches.
+    token: Option<LivelinessToken>,
+}
+
+impl Rig {
+    /// Connects to the rig at this address (`HOST:PORT`), to watch it.
+    ///
+    /// # Errors
+    /// [`DepartmentError`] if none of this department answers there.
+    pub fn open(own: &Identity, address: &str) -> Result<Self, DepartmentError> {
+        let mut rig = Self::connect(own, address)?;
+        let key = keys::watcher(&rig.name, &format!("{}-{}", own.name, rig.session.zid()));
+        rig.token = rig.session.liveliness().declare_token(key).wait().ok();
+        Ok(rig)
+    }
+
+    fn connect(own: &Identity, address: &str) -> Result<Self, DepartmentError> {
+        let failed = |why: String| DepartmentError::Connect { address: address.to_owned(), why };
+        let session = zenoh::open(config::watcher(own, address)?).wait().map_err(|error| failed(error.to_string()))?;
+        let present = session.liveliness().get(keys::PRESENCES).timeout(ANSWER).wait();
+        let replies = present.map_err(|error| failed(error.to_string()))?;
+        let mut names = replies.into_iter().filter_map(|reply| {
+            let sample = reply.into_result().ok()?;
+            keys::rig_of(sample.key_expr().as_str()).map(str::to_owned)
+        });
+        let name = names.next().ok_or_else(|| failed("it is none".to_owned()))?;
+        Ok(Self { session, name, address: address.to_owned(), token: None })
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Where it is.
+    pub fn address(&self) -> &str {
+        &self.address
+    }
+
+    /// What it is and what it runs.
+    ///
+    /// # Errors
+    /// [`DepartmentError`] if it does not answer.
+    pub fn about(&self) -> Result<About, DepartmentError> {
+        let answer = self.ask(&keys::about(&self.name))?;
+        let answer = answer.ok_or_else(|| self.silent("no answer in time"))?;
+        prost::Message::decode(answer.to_bytes().as_ref()).map_err(|error| self.silent(&error.to_string()))
+    }
+
+    pub(crate) fn silent(&self, why: &str) -> DepartmentError {
+        DepartmentError::Silent { rig: self.name.clone(), why: why.to_owned() }
+    }
+
+    /// The first answer.
+    pub(crate) fn ask(&self, key: &str) -> Result<Option<ZBytes>, DepartmentError> {
+        let replies = self.session.get(key).timeout(ANSWER).wait().map_err(|error| self.silent(&error.to_string()))?;
+        Ok(replies.into_iter().find_map(|reply| Some(reply.into_result().ok()?.payload().clone())))
+    }
+
+    fn watchers(&self) -> usize {
+        let replies = self.session.liveliness().get(keys::watchers(&self.name)).timeout(ANSWER).wait();
+        replies.map_or(0, |replies| replies.into_iter().filter(|reply| reply.result().is_ok()).count())
+    }
+
+    /// Calls `each` with what its screen shows, from now on and as long as the answer is kept; it must not wait for anything. The number
+    /// is the session's, as in [`About`].
+    ///
+    /// # Errors
+    /// [`DepartmentError`] if the rig cannot be asked.
+    pub fn watch(
+        &self,
+        each: impl Fn(u64, Result<Vec<Moment>, WatchError>) + Send + Sync + 'static,
+    ) -> Result<Watching, DepartmentError> {
+        let heard = move |sample: zenoh::sample::Sample| {
+            if sample.kind() == SampleKind::Delete {
+                return;
+            }
+            let message = sample.payload().to_bytes();
+            let Some((session, packed)) = message.split_first_chunk::<8>() else { return each(0, read(&[])) };
+            let moments = read(&keys::unpack(packed).unwrap_or_default());
+            each(u64::from_le_bytes(*session), moments);
+        };
+        let watching = self.session.declare_subscriber(keys::moments(&self.name)).callback(heard).wait();
+        Ok(Watching(watching.map_err(|error| self.silent(&error.to_string()))?))
+    }
+
+    /// Whether it is there: false as soon as it is not, or can no longer be reached.
+    ///
+    /// # Errors
+    /// [`DepartmentError`] if that cannot be watched.
+    pub fn presence(&self) -> Result<Presence, DepartmentError> {
+        let there = Arc::new(AtomicU64::new(1));
+        let told = Arc::clone(&there);
+        let changed = move |sample: zenoh::sample::Sample| {
+            told.store(u64::from(sample.kind() == SampleKind::Put), Ordering::Relaxed);
+        };
+        let key = keys::presence(&self.name);
+        let subscriber = self.session.liveliness().declare_subscriber(key).history(true).callback(changed).wait();
+        Ok(Presence { there, _subscriber: subscriber.map_err(|error| self.silent(&error.to_string()))? })
+    }
+}
+
+impl Drop for Rig {
+    fn drop(&mut self) {
+        self.session.close().wait().ok();
+    }
+}
+
+impl fmt::Debug for Rig {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Rig").field("name", &self.name).field("address", &self.address).finish_non_exhaustive()
+    }
+}
+
+/// As long as this is kept, a rig is watched.
+#[derive(Debug)]
+pub struct Watching(#[expect(dead_code, reason = "its drop ends it")] Subscriber<()>);
+
+/// Whether a rig is there.
+#[derive(Debug)]
+pub struct Presence {
+    there: Arc<AtomicU64>,
+    _subscriber: Subscriber<()>,
+}
+
+impl Presence {
+    /// Whether it is.
+    pub fn is_there(&self) -> bool {
+        self.there.load(Ordering::Relaxed) != 0
+    }
+}

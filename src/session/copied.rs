@@ -1,0 +1,508 @@
+//! The file of a session, written elsewhere while it happens.
+//!
+//! The recorder's thread hands on everything that it writes, as [`Part`]s in numbered [`Bundle`]s. Whoever has all of them from the first
+//! one writes a file that replays as the original does. Whoever comes later begins with a [`Head`], which holds the tables, files and
+//! channels of what is no longer there, and writes a stretch: a journal can be replayed from its beginning only.
+
+use std::{collections::BTreeMap, path::Path};
+
+use nima_recording::session::{ChannelId, Encoding, WriteError, Writer};
+use prost::{Message as _, Oneof};
+
+use crate::{
+    cut::{self, Kept},
+    recorder::{Attached, JOURNAL_TOPIC},
+};
+
+/// Version of heads and bundles; another one is refused.
+const VERSION: u32 = 1;
+
+/// What was written into a file, one after the other.
+#[derive(Clone, PartialEq, Oneof)]
+pub enum Part {
+    /// Named values.
+    #[prost(message, tag = "1")]
+    Table(Table),
+    /// A whole file.
+    #[prost(message, tag = "2")]
+    File(WholeFile),
+    /// A new channel. Its number is the count of those before it.
+    #[prost(message, tag = "3")]
+    Channel(NewChannel),
+    /// A message of a channel.
+    #[prost(message, tag = "4")]
+    Message(OfChannel),
+}
+
+/// Named values.
+#[derive(Clone, PartialEq, prost::Message)]
+pub struct Table {
+    /// Name of the table.
+    #[prost(string, tag = "1")]
+    pub name: String,
+    /// Its values, by name.
+    #[prost(btree_map = "string, string", tag = "2")]
+    pub entries: BTreeMap<String, String>,
+}
+
+/// A whole file.
+#[derive(Clone, PartialEq, prost::Message)]
+pub struct WholeFile {
+    /// When it was made, ns since 1970.
+    #[prost(uint64, tag = "1")]
+    pub time_ns: u64,
+    /// Its name.
+    #[prost(string, tag = "2")]
+    pub name: String,
+    /// Its media type.
+    #[prost(string, tag = "3")]
+    pub media_type: String,
+    /// Its content.
+    #[prost(bytes = "vec", tag = "4")]
+    pub data: Vec<u8>,
+}
+
+/// A channel, as [`Encoding`] describes it.
+#[derive(Clone, PartialEq, prost::Message)]
+#[expect(missing_docs, reason = "as those of Encoding")]
+pub struct NewChannel {
+    #[prost(string, tag = "1")]
+    pub topic: String,
+    #[prost(string, tag = "2")]
+    pub schema: String,
+    #[prost(string, tag = "3")]
+    pub schema_encoding: String,
+    #[prost(bytes = "vec", tag = "4")]
+    pub schema_data: Vec<u8>,
+    #[prost(string, tag = "5")]
+    pub message_encoding: String,
+}
+
+/// A message of a channel.
+#[derive(Clone, PartialEq, prost::Message)]
+pub struct OfChannel {
+    /// Number of the channel.
+    #[prost(uint32, tag = "1")]
+    pub channel: u32,
+    /// Time of its sample, ns since 1970.
+    #[prost(fixed64, tag = "2")]
+    pub time_ns: u64,
+    /// Its content.
+    #[prost(bytes = "vec", tag = "3")]
+    pub data: Vec<u8>,
+}
+
+impl Part {
+    /// Whether it is a message; everything else belongs into every file of the session.
+    pub const fn is_message(&self) -> bool {
+        matches!(self, Self::Message(_))
+    }
+
+    /// A table.
+    pub fn table(name: &str, entries: &BTreeMap<String, String>) -> Self {
+        Self::Table(Table { name: name.to_owned(), entries: entries.clone() })
+    }
+
+    /// A whole file.
+    pub fn file(time_ns: u64, attached: &Attached) -> Self {
+        let Attached { name, media_type, data } = attached.clone();
+        Self::File(WholeFile { time_ns, name, media_type, data })
+    }
+
+    /// A channel.
+    pub fn channel(topic: &str, encoding: &Encoding) -> Self {
+        let Encoding { schema, schema_encoding, schema_data, message_encoding } = encoding.clone();
+        Self::Channel(NewChannel { topic: topic.to_owned(), schema, schema_encoding, schema_data, message_encoding })
+    }
+
+    /// A message.
+    pub fn message(channel: usize, time_ns: u64, data: &[u8]) -> Self {
+        Self::Message(OfChannel { channel: channel as u32, time_ns, data: data.to_vec() })
+    }
+}
+
+/// A part in a message of its own.
+#[derive(Clone, PartialEq, prost::Message)]
+pub struct Slot {
+    /// `None` in a damaged message.
+    #[prost(oneof = "Part", tags = "1, 2, 3, 4")]
+    pub part: Option<Part>,
+}
+
+/// What was written in a short time.
+#[derive(Clone, PartialEq, prost::Message)]
+pub struct Bundle {
+    /// See [`VERSION`].
+    #[prost(uint32, tag = "1")]
+    version: u32,
+    /// Which session of the rig's program this is.
+    #[prost(uint64, tag = "2")]
+    pub session: u64,
+    /// Counts the bundles of a session from 0.
+    #[prost(uint64, tag = "3")]
+    pub number: u64,
+    /// The session has ended: this is its last bundle.
+    #[prost(bool, tag = "4")]
+    pub closes: bool,
+    #[prost(message, repeated, tag = "5")]
+    parts: Vec<Slot>,
+}
+
+impl Bundle {
+    /// A bundle of these parts.
+    pub fn new(session: u64, number: u64, parts: Vec<Part>, closes: bool) -> Self {
+        let parts = parts.into_iter().map(|part| Slot { part: Some(part) }).collect();
+        Self { version: VERSION, session, number, closes, parts }
+    }
+
+    /// Its parts.
+    pub fn parts(&self) -> impl Iterator<Item = &Part> {
+        self.parts.iter().filter_map(|slot| slot.part.as_ref())
+    }
+
+    /// Its bytes.
+    pub fn pack(&self) -> Vec<u8> {
+        self.encode_to_vec()
+    }
+
+    /// Reads what [`Bundle::pack`] wrote.
+    ///
+    /// # Errors
+    /// [`CopyError`] if it comes from another version, or is damaged.
+    pub fn read(bytes: &[u8]) -> Result<Self, CopyError> {
+        let bundle = Self::decode(bytes).map_err(|error| CopyError::Damaged(error.to_string()))?;
+        if bundle.version == VERSION { Ok(bundle) } else { Err(CopyError::Version) }
+    }
+}
+
+/// What is needed of a session's past to begin with one of its bundles.
+#[derive(Clone, PartialEq, prost::Message)]
+pub struct Head {
+    #[prost(uint32, tag = "1")]
+    version: u32,
+    /// Which session of the rig's program this is.
+    #[prost(uint64, tag = "2")]
+    pub session: u64,
+    /// Name and version of the program that records.
+    #[prost(string, tag = "3")]
+    pub program: String,
+    /// When the loop's clock began, ns since 1970 (UTC).
+    #[prost(fixed64, tag = "4")]
+    pub started_ns: u64,
+    /// Number of the first bundle that is still there.
+    #[prost(uint64, tag = "5")]
+    pub first: u64,
+    /// Messages were in the bundles before it.
+    #[prost(bool, tag = "6")]
+    pub lacks: bool,
+    #[prost(message, repeated, tag = "7")]
+    parts: Vec<Slot>,
+}
+
+impl Head {
+    /// At the beginning of a session.
+    pub fn new(session: u64, program: &str, started_ns: u64) -> Self {
+        let program = program.to_owned();
+        Self { version: VERSION, session, program, started_ns, first: 0, lacks: false, parts: Vec::new() }
+    }
+
+    /// The oldest bundle goes: what is not a message stays here.
+    pub fn outlive(&mut self, oldest: Bundle) {
+        self.first = oldest.number + 1;
+        for slot in oldest.parts {
+            match &slot.part {
+                Some(part) if !part.is_message() => self.parts.push(slot),
+                _ => self.lacks = true,
+            }
+        }
+    }
+
+    /// Its bytes.
+    pub fn pack(&self) -> Vec<u8> {
+        self.encode_to_vec()
+    }
+
+    /// Reads what [`Head::pack`] wrote.
+    ///
+    /// # Errors
+    /// [`CopyError`] if it comes from another version, or is damaged.
+    pub fn read(bytes: &[u8]) -> Result<Self, CopyError> {
+        let head = Self::decode(bytes).map_err(|error| CopyError::Damaged(error.to_string()))?;
+        if head.version == VERSION { Ok(head) } else { Err(CopyError::Version) }
+    }
+
+    /// A table of the session, from here or from its first bundle.
+    pub fn table<'a>(&'a self, first: &'a Bundle, name: &str) -> Option<&'a BTreeMap<String, String>> {
+        let parts = self.parts.iter().chain(&first.parts).filter_map(|slot| slot.part.as_ref());
+        parts.into_iter().find_map(|part| match part {
+            Part::Table(table) if table.name == name => Some(&table.entries),
+            _ => None,
+        })
+    }
+}
+
+/// Why a session cannot be written elsewhere.
+#[derive(Debug, thiserror::Error)]
+pub enum CopyError {
+    /// Another version of the program.
+    #[error("the rig runs another version of this program; install the same version here and there")]
+    Version,
+    /// It is damaged.
+    #[error("a message of the rig is damaged: {0}")]
+    Damaged(String),
+    /// The file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A bundle is missing.
+    #[error("bundle {came} of the session came where bundle {due} was due")]
+    Gap {
+        /// The one that came.
+        came: u64,
+        /// The one that was due.
+        due: u64,
+    },
+}
+
+/// A session file that is written elsewhere.
+pub struct Copy {
+    writer: Writer,
+    /// Of the file, by their numbers in the session; `None` for the journal of a stretch.
+    channels: Vec<Option<ChannelId>>,
+    is_stretch: bool,
+    due: u64,
+}
+
+impl Copy {
+    /// Begins a new file with this head; `first` is the bundle that follows it.
+    ///
+    /// # Errors
+    /// [`CopyError`] if the file cannot be written, or `first` is another bundle.
+    pub fn create(path: &Path, head: &Head, first: &Bundle) -> Result<Self, CopyError> {
+        let writer = Writer::create(path, &head.program)?;
+        let mut copy = Self { writer, channels: Vec::new(), is_stretch: head.lacks, due: head.first };
+        if head.lacks {
+            let begins_ns = first.parts().find_map(|part| match part {
+                Part::Message(message) => Some(message.time_ns),
+                _ => None,
+            });
+            let times_ns = begins_ns.unwrap_or(head.started_ns)..u64::MAX;
+            let session = head.table(first, "session").and_then(|table| table.get("started"));
+            let name = session.map_or("a session", String::as_str);
+            let table = cut::table(name, head.started_ns, &times_ns, Kept::LeftOut, None);
+            copy.writer.metadata(cut::TABLE, &table)?;
+        }
+        for part in head.parts.iter().filter_map(|slot| slot.part.as_ref()) {
+            copy.part(part)?;
+        }
+        copy.add(first)?;
+        Ok(copy)
+    }
+
+    /// Adds the next bundle, and closes the chunk of the file.
+    ///
+    /// # Errors
+    /// [`CopyError`] if it is not the next one, or the file cannot be written.
+    pub fn add(&mut self, bundle: &Bundle) -> Result<(), CopyError> {
+        if bundle.number != self.due {
+            return Err(CopyError::Gap { came: bundle.number, due: self.due });
+        }
+        for part in bundle.parts() {
+            self.part(part)?;
+        }
+        self.due += 1;
+        Ok(self.writer.flush()?)
+    }
+
+    /// Number of the bundle that is due.
+    pub const fn due(&self) -> u64 {
+        self.due
+    }
+
+    /// Bytes in the file.
+    pub fn bytes(&self) -> u64 {
+        self.writer.bytes().1
+    }
+
+    /// Ends the file; how many messages are in it.
+    ///
+    /// # Errors
+    /// [`CopyError`] if it cannot be written.
+    pub fn finish(self) -> Result<u64, CopyError> {
+        Ok(self.writer.finish()?.messages)
+    }
+
+    fn part(&mut self, part: &Part) -> Result<(), WriteError> {
+        match part {
+            Part::Table(Table { name, entries }) => self.writer.metadata(name, entries),
+            Part::File(WholeFile { time_ns, name, media_type, data }) => {
+                self.writer.attachment(name, media_type, *time_ns, data)
+            }
+            Part::Channel(channel) => {
+                let of_file = !self.is_stretch || channel.topic != JOURNAL_TOPIC;
+                let id = of_file.then(|| self.writer.channel(&channel.topic, channel.encoding())).transpose()?;
+                self.channels.push(id);
+                Ok(())
+            }
+            Part::Message(OfChannel { channel, time_ns, data }) => {
+                let channel = usize::try_from(*channel).ok().and_then(|number| self.channels.get(number));
+                channel.copied().flatten().map_or(Ok(()), |id| self.writer.message(id, *time_ns, data))
+            }
+        }
+    }
+}
+
+impl NewChannel {
+    fn encoding(&self) -> Encoding {
+        let Self { topic: _, schema, schema_encoding, schema_data, message_encoding } = self.clone();
+        Encoding { schema, schema_encoding, schema_data, message_encoding }
+    }
+}
+
+impl std::fmt::Debug for Copy {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Copy").field("due", &self.due).field("is_stretch", &self.is_stretch).finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::{Arc, Mutex};
+
+    use nima_recording::session::Reader;
+
+    use super::*;
+    use crate::outlet::{Audience, Destination, Outlet};
+
+    /// Keeps everything that it is given.
+    #[derive(Clone, Debug, Default)]
+    struct Listener(Arc<Mutex<(Head, Vec<Part>)>>);
+
+    impl Listener {
+        fn add(&self, part: Part) {
+            self.0.lock().unwrap().1.push(part);
+        }
+    }
+
+    impl Audience for Listener {
+        fn begins(&mut self, program: &str, started_ns: u64) {
+            self.0.lock().unwrap().0 = Head::new(7, program, started_ns);
+        }
+
+        fn metadata(&mut self, name: &str, entries: &BTreeMap<String, String>) {
+            self.add(Part::table(name, entries));
+        }
+
+        fn attachment(&mut self, time_ns: u64, attached: &Attached) {
+            self.add(Part::file(time_ns, attached));
+        }
+
+        fn channel(&mut self, topic: &str, encoding: &Encoding) {
+            self.add(Part::channel(topic, encoding));
+        }
+
+        fn message(&mut self, channel: usize, log_time_ns: u64, data: &[u8]) {
+            self.add(Part::message(channel, log_time_ns, data));
+        }
+    }
+
+    const START_NS: u64 = 1_700_000_000_000_000_000;
+
+    /// A session of 100 messages of two channels, a table in their middle; its head, and its bundles of ten parts.
+    fn made(path: &Path) -> (Head, Vec<Bundle>) {
+        let listener = Listener::default();
+        let to =
+            Destination { file: Some(path), audiences: vec![Box::new(listener.clone())], ..Destination::default() };
+        let mut out = Outlet::create(to, "a test", START_NS).unwrap();
+        let table = |key: &str| BTreeMap::from([(key.to_owned(), "2026-11-25T08:00:00Z".to_owned())]);
+        out.metadata("session", &table("started")).unwrap();
+        let rig = Attached { name: "rig.toml".into(), media_type: "application/toml".into(), data: b"a = 1".to_vec() };
+        out.attachment(START_NS, &rig).unwrap();
+        let journal = Encoding { message_encoding: "nima-journal".into(), ..Encoding::default() };
+        let channels = [out.channel(JOURNAL_TOPIC, journal).unwrap(), out.channel("log", Encoding::default()).unwrap()];
+        for i in 0..100_u8 {
+            out.message(channels[usize::from(i % 2)], START_NS + u64::from(i) * 1_000_000, &[i; 40]).unwrap();
+            if i == 50 {
+                out.metadata("calibrations 1", &table("made")).unwrap();
+            }
+        }
+        out.finish().unwrap();
+        let (head, parts) = listener.0.lock().unwrap().clone();
+        let last = parts.len().div_ceil(10) - 1;
+        let bundle = |(i, parts): (usize, &[Part])| Bundle::new(7, i as u64, parts.to_vec(), i == last);
+        (head, parts.chunks(10).enumerate().map(bundle).collect())
+    }
+
+    /// All that is in a file.
+    fn content(path: &Path) -> String {
+        let reader = Reader::open(path).unwrap();
+        let messages: Vec<_> = reader
+            .messages(&[], 0..u64::MAX)
+            .map(|message| message.unwrap())
+            .map(|message| (message.channel(), message.log_time_ns(), message.data().to_vec()))
+            .collect();
+        let files: Vec<_> = reader.attachments().iter().map(|one| reader.attachment(one).unwrap()).collect();
+        let channels: Vec<_> = reader.channels().iter().map(|one| (one.topic.clone(), one.encoding.clone())).collect();
+        format!("{} {channels:?} {files:?} {:?} {messages:?}", reader.library(), reader.metadata().unwrap())
+    }
+
+    fn sent(bundle: &Bundle) -> Bundle {
+        Bundle::read(&bundle.pack()).unwrap()
+    }
+
+    #[test]
+    fn whoever_has_all_bundles_writes_the_same_session() {
+        let folder = tempfile::tempdir().unwrap();
+        let [original, copied] = ["a.mcap", "b.mcap"].map(|name| folder.path().join(name));
+        let (head, bundles) = made(&original);
+        let mut copy = Copy::create(&copied, &Head::read(&head.pack()).unwrap(), &sent(&bundles[0])).unwrap();
+        for bundle in &bundles[1..] {
+            copy.add(&sent(bundle)).unwrap();
+        }
+        assert_eq!(copy.finish().unwrap(), 100);
+        assert_eq!(content(&original), content(&copied));
+    }
+
+    #[test]
+    fn whoever_comes_late_writes_a_stretch_with_every_table_and_without_the_journal() {
+        let folder = tempfile::tempdir().unwrap();
+        let [original, copied] = ["a.mcap", "b.mcap"].map(|name| folder.path().join(name));
+        let (mut head, bundles) = made(&original);
+        for bundle in &bundles[..8] {
+            head.outlive(bundle.clone());
+        }
+        assert!(head.lacks && head.first == 8);
+        assert_eq!(head.table(&bundles[8], "session").unwrap()["started"], "2026-11-25T08:00:00Z");
+        let mut copy = Copy::create(&copied, &Head::read(&head.pack()).unwrap(), &sent(&bundles[8])).unwrap();
+        for bundle in &bundles[9..] {
+            copy.add(&sent(bundle)).unwrap();
+        }
+        copy.finish().unwrap();
+        let reader = Reader::open(&copied).unwrap();
+        let tables: BTreeMap<_, _> = reader.metadata().unwrap().into_iter().collect();
+        assert!(tables.contains_key("calibrations 1") && tables.contains_key("session"), "{tables:?}");
+        assert_eq!(tables[cut::TABLE][cut::BEGINNING], START_NS.to_string());
+        assert!(reader.channels().iter().all(|channel| channel.topic != JOURNAL_TOPIC));
+        let firsts: Vec<u8> = reader.messages(&[], 0..u64::MAX).map(|message| message.unwrap().data()[0]).collect();
+        // Two tables, a file, two channels, and a table among 75 messages: the eighth bundle begins with message 74.
+        assert_eq!(firsts, (75..100).filter(|i| i % 2 == 1).collect::<Vec<u8>>());
+    }
+
+    #[test]
+    fn a_missing_bundle_another_version_and_damage_are_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let (head, bundles) = made(&folder.path().join("a.mcap"));
+        let mut copy = Copy::create(&folder.path().join("b.mcap"), &head, &bundles[0]).unwrap();
+        let gap = copy.add(&bundles[2]).unwrap_err();
+        assert!(matches!(gap, CopyError::Gap { came: 2, due: 1 }), "{gap}");
+        copy.add(&bundles[1]).unwrap();
+        let other = Bundle { version: VERSION + 1, ..bundles[2].clone() };
+        assert!(matches!(Bundle::read(&other.pack()), Err(CopyError::Version)));
+        let mut random = fastrand::Rng::with_seed(3);
+        for _ in 0..5000 {
+            let mut bytes = bundles[3].pack();
+            let place = random.usize(..bytes.len());
+            bytes[place] = random.u8(..);
+            Bundle::read(&bytes).ok();
+        }
+    }
+}

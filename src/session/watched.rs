@@ -1,0 +1,236 @@
+//! What a screen elsewhere is told of a loop: every event, and a tick of each side every few milliseconds.
+//!
+//! A bundle of moments can be read without those before it, so that a screen may come late, and miss some.
+
+use nima_machine::{
+    messages::{Event, Tick},
+    rig::SIDES,
+};
+
+use crate::codec::{Columns, Put, Sink, Source, Take, Unpacked, Wrong, number, record, take_number};
+
+/// Version of the bundles; another one is refused.
+const VERSION: u8 = 1;
+/// Time between two ticks of a bundle, s: what a trace on a screen can show.
+const STEP_S: f64 = 0.005;
+/// Most moments of a bundle, and most events of a moment.
+const MOST: u64 = 1024;
+
+/// What happened up to a tick.
+#[derive(Clone, Debug)]
+pub struct Moment {
+    /// What the loop told since the moment before, oldest first.
+    pub events: Vec<Event>,
+    /// What each side shows.
+    pub ticks: [Option<Tick>; SIDES],
+}
+
+/// One row of a bundle.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    ticks: [Option<Tick>; SIDES],
+}
+
+record!(Row { ticks: [Option<Tick>; SIDES] });
+
+/// Why a bundle cannot be shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum WatchError {
+    /// It comes from another version of the program.
+    #[error("the rig runs another version of this program; install the same version here and there")]
+    Version,
+    /// It is damaged.
+    #[error("a message of the rig is damaged: {0}")]
+    Damaged(#[from] Wrong),
+}
+
+/// Collects moments.
+#[derive(Clone, Debug, Default)]
+pub struct MomentWriter {
+    columns: Columns,
+    rows: u64,
+    /// Events with the number of the moment that they belong to.
+    events: Vec<(u64, Event)>,
+    last_s: Option<f64>,
+}
+
+impl MomentWriter {
+    /// Adds a tick, in which these events were told.
+    pub fn tick(&mut self, t_s: f64, ticks: &[Option<Tick>; SIDES], events: &[Event]) {
+        self.events.extend(events.iter().map(|event| (self.rows, *event)));
+        let is_due = self.last_s.is_none_or(|last_s| t_s - last_s >= STEP_S - 1e-6 || t_s < last_s);
+        if (is_due || self.events.len() as u64 >= MOST) && self.rows < MOST {
+            self.columns.next_row();
+            Row { ticks: *ticks }.put(&mut self.columns);
+            self.rows += 1;
+            self.last_s = Some(t_s);
+        }
+    }
+
+    /// Moments so far.
+    pub const fn len(&self) -> u64 {
+        self.rows
+    }
+
+    /// Whether there is none.
+    pub const fn is_empty(&self) -> bool {
+        self.rows == 0
+    }
+
+    /// The bundle so far; it is empty afterwards. Events whose moment is still to come stay for the next one.
+    pub fn take(&mut self) -> Vec<u8> {
+        let mut bytes = vec![VERSION];
+        let told = self.events.partition_point(|(moment, _)| *moment < self.rows);
+        number(&mut bytes, self.rows);
+        number(&mut bytes, told as u64);
+        for (moment, event) in self.events.drain(..told) {
+            let mut words = Vec::new();
+            event.put(&mut words);
+            number(&mut bytes, moment);
+            number(&mut bytes, words.len() as u64);
+            for word in words {
+                number(&mut bytes, word);
+            }
+        }
+        for (moment, _) in &mut self.events {
+            *moment = 0;
+        }
+        self.columns.pack(&mut bytes);
+        self.columns.clear();
+        self.rows = 0;
+        bytes
+    }
+}
+
+/// The moments of a bundle, oldest first.
+///
+/// # Errors
+/// [`WatchError`] if it comes from another version, or is damaged.
+pub fn read(bundle: &[u8]) -> Result<Vec<Moment>, WatchError> {
+    let (version, mut from) = bundle.split_first().ok_or(Wrong::Short)?;
+    if *version != VERSION {
+        return Err(WatchError::Version);
+    }
+    let from = &mut from;
+    let (rows, told) = (take_number(from)?, take_number(from)?);
+    if rows > MOST || told > 2 * MOST {
+        return Err(Wrong::Long.into());
+    }
+    let events = (0..told).map(|_| take_event(from, rows)).collect::<Result<Vec<_>, _>>()?;
+    let columns = Unpacked::of(from, Row::COLUMNS)?;
+    if !from.is_empty() {
+        return Err(Wrong::Long.into());
+    }
+    let mut source = columns.rows();
+    let mut row = || {
+        source.next_row();
+        Row::take(&mut source)
+    };
+    let ticks = (0..rows).map(|_| row()).collect::<Result<Vec<_>, _>>()?;
+    source.end()?;
+    let mut moments: Vec<Moment> =
+        ticks.into_iter().map(|Row { ticks }| Moment { events: Vec::new(), ticks }).collect();
+    for (moment, event) in events {
+        moments[moment].events.push(event);
+    }
+    Ok(moments)
+}
+
+/// An event, and the number of its moment, which is below `rows`.
+fn take_event(from: &mut &[u8], rows: u64) -> Result<(usize, Event), Wrong> {
+    let moment = take_number(from)?;
+    let count = take_number(from)?;
+    if moment >= rows {
+        return Err(Wrong::NoSuchValue);
+    }
+    if count > Event::COLUMNS as u64 {
+        return Err(Wrong::Long);
+    }
+    let words = (0..count).map(|_| take_number(from)).collect::<Result<Vec<_>, _>>()?;
+    let mut words = words.into_iter();
+    let event = Event::take(&mut words)?;
+    if words.len() > 0 {
+        return Err(Wrong::Long);
+    }
+    Ok((usize::try_from(moment).map_err(|_| Wrong::NoSuchValue)?, event))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+    use nima_core::kinematics::Hand;
+    use nima_machine::{
+        config::RigConfig,
+        messages::Command,
+        rig::{Inputs, Sensed, Side},
+        teleop::{Calibrations, Loop, Timing},
+    };
+
+    use super::*;
+
+    type Shown = [Option<Tick>; SIDES];
+
+    /// Two seconds of a loop that is engaged and then stopped, told in bundles of 50 ms; every tick and event of it.
+    fn told() -> (Vec<Vec<u8>>, Vec<Shown>, Vec<Event>) {
+        let rig = RigConfig::load("simulated").unwrap();
+        let mut control = Loop::new(&rig, &[Some(Calibrations::default()), None]).unwrap();
+        let mut writer = MomentWriter::default();
+        let (mut bundles, mut ticks, mut events) = (Vec::new(), Vec::new(), Vec::new());
+        for i in 0..2000_u32 {
+            let t_s = f64::from(i) * 1e-3;
+            let hand = Hand::at(Vector3::new(0.0, 0.0, 0.01 * (6.0 * t_s).sin()));
+            let sensed = Sensed::AtTip(Vector3::new(0.0, 0.0, 2.0 * (6.0 * t_s).sin().max(0.0)));
+            let inputs = Inputs { hand, sensed, tip_m: hand.position_m, powered: true, ..Inputs::NOTHING };
+            match i {
+                5 => control.obey(Command::Engage, t_s),
+                1503 => control.obey(Command::Stop, t_s),
+                _ => {}
+            }
+            let timing = Timing { now_s: t_s, ..Timing::default() };
+            let (_, shown) = control.step([Some(inputs), None], &timing);
+            let new: Vec<Event> = control.events().copied().collect();
+            control.clear_events();
+            writer.tick(t_s, &shown, &new);
+            events.extend(new);
+            ticks.push(shown);
+            if writer.len() == 10 {
+                bundles.push(writer.take());
+            }
+        }
+        (bundles, ticks, events)
+    }
+
+    #[test]
+    fn every_fifth_tick_comes_back_to_the_bit_and_every_event_once() {
+        let (bundles, ticks, events) = told();
+        assert_eq!(bundles.len(), 40);
+        let moments: Vec<Moment> = bundles.iter().flat_map(|bundle| read(bundle).unwrap()).collect();
+        assert_eq!(moments.len(), 400);
+        for (moment, shown) in moments.iter().zip(ticks.iter().step_by(5)) {
+            assert_eq!(format!("{:?}", moment.ticks), format!("{shown:?}"));
+        }
+        let came: Vec<Event> = moments.iter().flat_map(|moment| moment.events.clone()).collect();
+        assert_eq!(came, events);
+        let state = |at: usize| moments[at].ticks[Side::Right.index()].unwrap().state.word();
+        assert_ne!((state(200), state(390)), (state(0), state(200)));
+        assert!(events.len() >= 3, "{events:?}");
+    }
+
+    #[test]
+    fn a_bundle_is_read_without_those_before_it_and_a_damaged_one_never_panics() {
+        let (bundles, ..) = told();
+        assert_eq!(read(bundles.last().unwrap()).unwrap().len(), 10);
+        assert_eq!(read(&[]).unwrap_err(), WatchError::Damaged(Wrong::Short));
+        assert_eq!(read(&[VERSION + 1, 0, 0]).unwrap_err(), WatchError::Version);
+        let mut random = fastrand::Rng::with_seed(5);
+        for _ in 0..20_000 {
+            let mut bundle = bundles[random.usize(..bundles.len())].clone();
+            for _ in 0..random.usize(1..4) {
+                let place = random.usize(1..bundle.len());
+                bundle[place] = random.u8(..);
+            }
+            bundle.truncate(random.usize(1..=bundle.len()));
+            read(&bundle).ok();
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! `nima department`: rigs that others may watch and record. In programs that were built with the feature `department`.
+
+#[cfg(feature = "department")]
+mod engine;
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+
+use super::run::positive_seconds;
+use crate::console::roles::Role;
+
+/// Told by a program without it.
+#[cfg(not(feature = "department"))]
+pub(crate) const NO_DEPARTMENT: &str = "this program was built without sharing; build it with \
+`cargo build --release --locked -p nima-console --features department`";
+
+#[cfg(feature = "department")]
+pub(crate) use engine::own_identity;
+
+#[derive(Debug, Subcommand)]
+pub(super) enum DepartmentCommand {
+    /// Create a department on this machine, which issues the certificates
+    Create {
+        /// Its name: letters, digits and -
+        name: String,
+    },
+    /// Issue a certificate: a file to carry to a rig or to a machine that watches
+    Issue {
+        /// Name of that machine: letters, digits and -
+        name: String,
+        /// It may watch only
+        #[arg(long)]
+        watcher: bool,
+        /// The file
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+    },
+    /// Take the certificate that was issued for this machine
+    Join {
+        /// The file
+        file: PathBuf,
+    },
+    /// List the rigs that are shared now
+    Rigs(RigsArguments),
+    /// Show a rig of another machine in a window that can do nothing to it
+    Monitor(MonitorArguments),
+    /// Record the sessions of a rig of another machine into a folder here
+    Record(RecordArguments),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RigsArguments {
+    /// Ask this address instead of the local network; may be repeated
+    #[arg(long, value_name = "HOST[:PORT]")]
+    at: Vec<String>,
+    /// Print the list as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// The views of a window that can do nothing to its rig.
+fn watching_role(word: &str) -> Result<Role, String> {
+    match word {
+        "surgeon" => Ok(Role::Surgeon),
+        "technician" => Ok(Role::Technician),
+        _ => Err("surgeon or technician".to_owned()),
+    }
+}
+
+/// A rig at another machine.
+#[derive(Debug, Args)]
+struct Which {
+    /// Its name, if several are shared in the local network
+    rig: Option<String>,
+    /// Its address; without one it is looked for in the local network
+    #[arg(long, value_name = "HOST[:PORT]")]
+    at: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct MonitorArguments {
+    #[command(flatten)]
+    which: Which,
+    /// Start in this view: surgeon or technician
+    #[arg(long, value_name = "ROLE", default_value = "surgeon", value_parser = watching_role)]
+    role: Role,
+    /// Close after this many seconds
+    #[arg(long, visible_alias = "seconds", value_name = "S", value_parser = positive_seconds)]
+    exit_after: Option<f64>,
+    /// Save a screenshot (PNG) just before closing; needs --exit-after
+    #[arg(long, value_name = "FILE", requires = "exit_after")]
+    screenshot: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RecordArguments {
+    #[command(flatten)]
+    which: Which,
+    /// Folder for the session files
+    #[arg(long, value_name = "DIR")]
+    into: PathBuf,
+    /// Seconds to record (default: until Ctrl-C)
+    #[arg(long, value_name = "S", value_parser = positive_seconds)]
+    seconds: Option<f64>,
+}
+
+#[cfg(feature = "department")]
+pub(super) fn run(command: &DepartmentCommand) -> anyhow::Result<()> {
+    engine::run(command)
+}
+
+#[cfg(not(feature = "department"))]
+pub(super) fn run(_: &DepartmentCommand) -> anyhow::Result<()> {
+    anyhow::bail!(NO_DEPARTMENT)
+}

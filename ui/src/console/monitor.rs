@@ -1,0 +1,282 @@
+//! A window that only shows a rig at another machine: the second screen of the surgeon, a teacher's screen.
+//!
+//! The views are those of the console, fed by what the rig sends. What they would send to a machine is thrown away: there is no way back.
+
+use std::{
+    path::PathBuf,
+    time::{Duration, Instant},
+};
+
+use crossbeam_channel::{Receiver, Sender, unbounded};
+use eframe::glow;
+use egui::{Align, CentralPanel, Frame, Label, Layout, Margin, Panel, RichText, Stroke, StrokeKind, Ui};
+use nima_machine::config::RigConfig;
+use nima_session::watched::Moment;
+use nima_world::scene::Scene;
+
+use super::{
+    alarms::judge,
+    in_force::InForce,
+    keys,
+    live::Live,
+    outbox::Outbox,
+    panels::state_ui,
+    roles::{Panels, Role, role_ui, switch_ui},
+    scene3d::SceneView,
+    screenshot,
+    settings::Settings,
+    text, theme,
+    widgets::weak,
+};
+use crate::telling::tell;
+
+const HEAD: f32 = 72.0;
+/// A demonstration leads its rig, which a monitor cannot.
+const ROLES: [Role; 2] = [Role::Surgeon, Role::Technician];
+const SWITCH: egui::Vec2 = egui::vec2(150.0, 40.0);
+/// Width of the frame.
+const FRAME: f32 = 4.0;
+/// Nothing new for this long is told, s.
+const SILENT_S: f64 = 1.0;
+/// Interval between frames: about thirty a second.
+const EVERY: Duration = Duration::from_millis(31);
+/// Time to take the screenshot before the window closes.
+const SCREENSHOT_BEFORE_EXIT: Duration = Duration::from_millis(700);
+
+/// What comes from the rig.
+#[derive(Debug)]
+pub enum Heard {
+    /// A loop of this rig runs there.
+    Runs(Box<RigConfig>, Box<Scene>),
+    /// No loop runs there.
+    Rests,
+    /// What its screen shows.
+    Shows(Vec<Moment>),
+    /// Why nothing comes.
+    Trouble(String),
+}
+
+/// For whoever hears from the rig; each call wakes the window.
+#[derive(Clone, Debug)]
+pub struct Teller {
+    to: Sender<Heard>,
+    ctx: egui::Context,
+}
+
+impl Teller {
+    /// Tells the window. False when it is closed.
+    pub fn tell(&self, heard: Heard) -> bool {
+        let told = self.to.send(heard).is_ok();
+        self.ctx.request_repaint();
+        told
+    }
+}
+
+/// Options of the window.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// The view.
+    pub role: Role,
+    /// Close after this time.
+    pub exit_after: Option<Duration>,
+    /// Save a screenshot just before that.
+    pub screenshot: Option<PathBuf>,
+}
+
+/// The window.
+#[derive(Debug)]
+pub struct Monitor {
+    rig: String,
+    came: Receiver<Heard>,
+    live: Option<Box<Live>>,
+    trouble: Option<String>,
+    /// When something new was last shown.
+    heard: Instant,
+    panels: Panels,
+    in_force: InForce,
+    /// Takes what the views would tell a machine; it is never sent.
+    outbox: Outbox,
+    settings: Settings,
+    options: Options,
+    opened: Instant,
+    pictured: bool,
+}
+
+impl Monitor {
+    /// A window for the rig of this name, and who tells it.
+    pub fn new(cc: &eframe::CreationContext<'_>, rig: &str, options: Options) -> (Self, Teller) {
+        theme::apply(&cc.egui_ctx);
+        let (to, came) = unbounded();
+        let now = Instant::now();
+        let monitor = Self {
+            rig: rig.to_owned(),
+            came,
+            live: None,
+            trouble: None,
+            heard: now,
+            panels: Panels { scene: SceneView::new(cc.gl.as_deref()), ..Panels::default() },
+            in_force: InForce::of_past(Vec::new()),
+            outbox: Outbox::default(),
+            settings: Settings { role: options.role, ..Settings::default() },
+            options,
+            opened: now,
+            pictured: false,
+        };
+        (monitor, Teller { to, ctx: cc.egui_ctx.clone() })
+    }
+
+    /// What is shown.
+    pub fn live(&self) -> Option<&Live> {
+        self.live.as_deref()
+    }
+
+    fn take_in(&mut self) {
+        let before_s = self.shown_s();
+        for heard in self.came.try_iter() {
+            match heard {
+                Heard::Runs(rig, scene) => {
+                    self.live = Some(Box::new(Live::of_elsewhere(*rig, *scene)));
+                    (self.trouble, self.heard) = (None, Instant::now());
+                }
+                Heard::Rests => (self.live, self.trouble) = (None, Some(text::monitor::RESTS.to_owned())),
+                Heard::Trouble(why) => self.trouble = Some(why),
+                Heard::Shows(moments) => {
+                    let Some(live) = &mut self.live else { continue };
+                    for Moment { events, ticks } in &moments {
+                        live.replay(events.iter(), ticks);
+                    }
+                    (self.trouble, self.heard) = (None, Instant::now());
+                }
+            }
+        }
+        let passed_s = self.shown_s() - before_s;
+        if let Some(live) = self.live.as_mut().filter(|_| passed_s > 0.0) {
+            live.settle(passed_s);
+        }
+    }
+
+    fn shown_s(&self) -> f64 {
+        self.live.as_ref().and_then(|live| live.first_tick()).map_or(0.0, |tick| tick.t_s)
+    }
+
+    /// Why what is shown is old.
+    fn stale(&self) -> Option<String> {
+        let seconds = self.heard.elapsed().as_secs_f64();
+        let silent = self.live.is_some() && seconds > SILENT_S;
+        self.trouble.clone().or_else(|| silent.then(|| text::monitor::silent(seconds)))
+    }
+
+    fn head_ui(&mut self, ui: &mut Ui) {
+        let frame = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
+        Panel::top("watching").exact_size(HEAD).resizable(false).frame(frame).show(ui, |ui| {
+            ui.horizontal_centered(|ui| {
+                let word =
+                    RichText::new(text::monitor::WATCHING).font(theme::strong(26.0)).color(theme::now().watching);
+                ui.label(word).on_hover_text(text::monitor::WATCHING_HOVER);
+                ui.add_space(10.0);
+                let scene = self.live.as_ref().map(|live| live.scene.name.clone()).unwrap_or_default();
+                let words = text::monitor::rig_and_scene(&self.rig, &scene);
+                ui.label(RichText::new(words).font(theme::strong(19.0)));
+                ui.add_space(10.0);
+                let stale = self.stale();
+                if let Some(live) = self.live.as_ref().filter(|_| stale.is_none()) {
+                    state_ui(ui, live, live.state());
+                    ui.add_space(10.0);
+                }
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    // From right to left.
+                    ui.allocate_ui_with_layout(SWITCH, Layout::left_to_right(Align::Center), |ui| {
+                        switch_ui(ui, &ROLES, &mut self.settings.role, true);
+                    });
+                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| self.words_ui(ui, stale));
+                });
+            });
+        });
+    }
+
+    /// Why what is shown is old, or else the alarm at the rig.
+    fn words_ui(&self, ui: &mut Ui, stale: Option<String>) {
+        let alarm = || {
+            let alarm = judge(&self.live.as_ref()?.signs(false, None)).into_iter().next()?;
+            Some(text::monitor::alarm(alarm.priority.word(), &alarm.cause))
+        };
+        let Some(words) = stale.or_else(alarm) else { return };
+        let label = RichText::new(&words).font(theme::strong(16.0)).color(theme::now().alarm_high);
+        ui.add(Label::new(label).truncate()).on_hover_text(words);
+    }
+
+    fn view_ui(&mut self, ui: &mut Ui) {
+        let stale = self.stale();
+        let Self { live, settings, panels, in_force, outbox, .. } = self;
+        let Some(live) = live else {
+            let words = stale.unwrap_or_else(|| text::monitor::CONNECTING.to_owned());
+            ui.centered_and_justified(|ui| ui.label(weak(words)));
+            return;
+        };
+        if stale.is_some() {
+            ui.set_opacity(0.45);
+        }
+        role_ui(ui, settings, live, panels, in_force, outbox);
+        outbox.forget();
+    }
+
+    fn obey_options(&mut self, ctx: &egui::Context) {
+        let open = self.opened.elapsed();
+        let Options { exit_after, screenshot, .. } = &self.options;
+        let Some(exit_after) = *exit_after else { return };
+        if let Some(path) = screenshot.clone().filter(|_| !self.pictured && open + SCREENSHOT_BEFORE_EXIT >= exit_after)
+        {
+            self.pictured = true;
+            ctx.request_screenshot(move |picture| {
+                if let Err(error) = screenshot::save(&path, &picture) {
+                    tell(format_args!("{error:#}"));
+                }
+            });
+        }
+        if open >= exit_after {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+}
+
+impl eframe::App for Monitor {
+    fn logic(&mut self, _ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.take_in();
+    }
+
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        if let Some(role) = keys::role_pressed(&ctx).filter(|role| ROLES.contains(role)) {
+            self.settings.role = role;
+        }
+        let room = ui.available_rect_before_wrap();
+        self.head_ui(ui);
+        CentralPanel::no_frame().show(ui, |ui| self.view_ui(ui));
+        ui.painter().rect_stroke(room, 0.0, Stroke::new(FRAME, theme::now().watching), StrokeKind::Inside);
+        self.obey_options(&ctx);
+        ctx.request_repaint_after(if self.live.is_some() { EVERY } else { Duration::from_millis(250) });
+    }
+
+    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
+        theme::now().background.to_normalized_gamma_f32()
+    }
+
+    fn on_exit(&mut self, gl: Option<&glow::Context>) {
+        if let Some(gl) = gl {
+            self.panels.scene.destroy(gl);
+        }
+    }
+}
+
+/// Opens the window; `begin` starts whoever tells it. Returns when it is closed.
+///
+/// # Errors
+/// If no window can be opened.
+pub fn open(rig: &str, options: Options, begin: impl FnOnce(Teller)) -> anyhow::Result<()> {
+    let create: eframe::AppCreator<'_> = Box::new(|cc| {
+        let (monitor, teller) = Monitor::new(cc, rig, options);
+        begin(teller);
+        Ok(Box::new(monitor))
+    });
+    super::open_window(&text::monitor::title(rig), create)
+}

@@ -1,0 +1,106 @@
+//! A department of three machines, played by three folders of one: who issues certificates, a rig, and who watches it.
+#[cfg(not(feature = "department"))]
+use crate::every_command::nima;
+
+#[cfg(not(feature = "department"))]
+#[test]
+fn without_its_feature_a_department_says_how_to_build_it() {
+    for arguments in [
+        &["run", "--share", "--seconds", "1"][..],
+        &["department", "rigs"],
+        &["department", "create", "lab"],
+        &["department", "monitor", "--at", "127.0.0.1"],
+    ] {
+        let output = nima(arguments);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && told.contains("--features department"), "{told}");
+        assert_eq!(told.lines().count(), 1, "{told}");
+    }
+}
+
+#[cfg(feature = "department")]
+mod engine {
+    use std::{
+        net::TcpListener,
+        path::Path,
+        process::{Command, Output, Stdio},
+        thread::sleep,
+        time::{Duration, Instant},
+    };
+
+    use serde_json::Value;
+
+    fn at(folder: &Path, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_nima"));
+        command.args(arguments).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env("NIMA_DATA_DIR", folder);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+
+    fn ran(folder: &Path, arguments: &[&str]) -> String {
+        let Output { status, stdout, stderr } = at(folder, arguments).output().unwrap();
+        assert!(status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&stderr));
+        String::from_utf8(stdout).unwrap()
+    }
+
+    fn refused(folder: &Path, arguments: &[&str]) -> String {
+        let Output { status, stderr, .. } = at(folder, arguments).output().unwrap();
+        let told = String::from_utf8(stderr).unwrap();
+        assert!(!status.success(), "{arguments:?} succeeded");
+        assert_eq!(told.lines().count(), 1, "{told}");
+        told
+    }
+
+    #[test]
+    fn a_rig_is_found_listed_and_recorded_elsewhere_to_the_last_bit() {
+        let machines = tempfile::tempdir().unwrap();
+        let folder = |name: &str| machines.path().join(name);
+        let [office, rig, teacher] = ["office", "rig", "teacher"].map(folder);
+        let file = |name: &str| folder(name).display().to_string();
+        let address = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
+
+        let told = refused(&teacher, &["department", "rigs"]);
+        assert!(told.contains("nima department join"), "{told}");
+        ran(&office, &["department", "create", "lab"]);
+        ran(&office, &["department", "issue", "theatre-1", "--out", &file("rig.cert")]);
+        ran(&office, &["department", "issue", "teacher", "--watcher", "--out", &file("teacher.cert")]);
+        ran(&rig, &["department", "join", &file("rig.cert")]);
+        assert!(
+            ran(&teacher, &["department", "join", &file("teacher.cert")]).contains("watcher teacher of department lab")
+        );
+        let told = refused(&teacher, &["run", "--share", &address, "--seconds", "1"]);
+        assert!(told.contains("joined as a watcher"), "{told}");
+        let told = refused(&teacher, &["department", "rigs", "--at", &address]);
+        assert!(told.contains("no rig answers"), "{told}");
+
+        let original = file("original.mcap");
+        let run = ["run", "--share", &address, "--seconds", "10", "--record", &original, "--json"];
+        let shared = at(&rig, &run).spawn().unwrap();
+        let began = Instant::now();
+        let list = ["department", "rigs", "--at", &address, "--json"];
+        let listed = loop {
+            let output = at(&teacher, &list).output().unwrap();
+            let listed: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+            if listed[0]["rig"].is_string() {
+                break listed;
+            }
+            assert!(began.elapsed() < Duration::from_secs(8), "{}", String::from_utf8_lossy(&output.stderr));
+            sleep(Duration::from_millis(100));
+        };
+        assert_eq!((&listed[0]["name"], &listed[0]["watchers"]), (&Value::from("theatre-1"), &Value::from(0)));
+        let copies = file("copies");
+        let told = ran(&teacher, &["department", "record", "--at", &address, "--into", &copies, "--seconds", "14"]);
+        let output = shared.wait_with_output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(told.contains("recorded") && told.contains(".mcap"), "{told}");
+        let files: Vec<_> = std::fs::read_dir(&copies).unwrap().map(|file| file.unwrap().path()).collect();
+        assert_eq!(files.len(), 1, "{files:?}");
+        let replay =
+            |path: &str| -> Value { serde_json::from_str(&ran(&teacher, &["replay", path, "--json"])).unwrap() };
+        let (here, there) = (replay(&files[0].display().to_string()), replay(&original));
+        assert_eq!(
+            (&here["identical"], &here["closed"], &here["ticks"]),
+            (&true.into(), &true.into(), &there["ticks"])
+        );
+    }
+}

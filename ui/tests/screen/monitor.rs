@@ -1,0 +1,76 @@
+//! The window that only shows a rig at another machine.
+
+use std::{sync::mpsc, time::Duration};
+
+use egui::Key;
+use egui_kittest::Harness;
+use nima_console::console::monitor::{Heard, Monitor, Options, Teller};
+use nima_machine::{messages::Command, rig::SIDES, runtime};
+use nima_session::watched::{Moment, MomentWriter, read};
+use nima_tests::plan;
+use nima_world::Plan;
+
+use crate::bench::{can_press, read as reads, shows, texts};
+
+fn window() -> (Harness<'static, Monitor>, Teller) {
+    let (to, teller) = mpsc::channel();
+    let harness = Harness::builder().with_size([1600.0, 1000.0]).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
+        let (monitor, teller) = Monitor::new(cc, "theatre-1", Options::default());
+        to.send(teller).unwrap();
+        monitor
+    });
+    (harness, teller.recv().unwrap())
+}
+
+/// What the rig of this plan sends in its first seconds, as it comes over the network; it is stopped after six.
+fn sent(plan: &Plan) -> Vec<Moment> {
+    let (mut writer, mut moments) = (MomentWriter::default(), Vec::new());
+    runtime::run_virtual(plan.simulated().unwrap(), 8.0, |tick| {
+        let mut ticks = [None; SIDES];
+        ticks[tick.side.index()] = Some(*tick);
+        writer.tick(tick.t_s, &ticks, &[]);
+        if writer.len() == 10 {
+            moments.extend(read(&writer.take()).unwrap());
+        }
+        (tick.index == 6000).then_some(Command::Stop)
+    });
+    moments
+}
+
+#[test]
+fn a_rig_elsewhere_is_shown_in_every_view_and_nothing_acts_on_it() {
+    let (mut window, teller) = window();
+    reads(&mut window, "Connecting to the rig");
+    assert!(teller.tell(Heard::Rests));
+    reads(&mut window, "no loop runs there now");
+
+    let plan = plan("peg_transfer");
+    let moments = sent(&plan);
+    let (engaged, stopped) =
+        moments.split_at(moments.iter().position(|moment| moment.ticks[0].unwrap().t_s > 5.0).unwrap());
+    teller.tell(Heard::Runs(Box::new(plan.rig.clone()), Box::new(plan.scene.clone())));
+    teller.tell(Heard::Shows(engaged.to_vec()));
+    reads(&mut window, "Engaged");
+    assert!(shows(&window, "WATCHING") && shows(&window, "theatre-1, "), "{:?}", texts(&window));
+    let live = window.state().live().unwrap();
+    assert!((live.first_tick().unwrap().t_s - 5.0).abs() < 0.02);
+    assert!(live.history[0].latest_s() > 4.9, "the traces are there");
+
+    for key in [Key::F1, Key::F2] {
+        window.key_press(key);
+        window.run_steps(3);
+        for act in ["Engage", "STOP", "Release stop", "Mark", "Compare all modes"] {
+            assert!(!can_press(&window, act), "{act} can be pressed at a screen that only shows");
+        }
+    }
+    teller.tell(Heard::Shows(stopped.to_vec()));
+    reads(&mut window, "Stopped");
+    // What stays on the screen is told to be old.
+    reads(&mut window, "Nothing from the rig for");
+    assert!(!shows(&window, "Stopped"), "a state that may be another by now");
+    teller.tell(Heard::Trouble("rig theatre-1 does not answer".to_owned()));
+    reads(&mut window, "does not answer");
+    std::thread::sleep(Duration::from_millis(50));
+    drop(window);
+    assert!(!teller.tell(Heard::Rests), "the window is closed");
+}

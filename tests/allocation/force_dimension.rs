@@ -25,7 +25,7 @@ fn a_tick_with_the_handle_allocates_nothing() {
         let begin = Instant::now();
         let (mut readings, mut events) = (0, 0);
         let before = calls();
-        while readings < 300 && begin.elapsed() < Duration::from_secs(5) {
+        while readings < 300 && begin.elapsed() < Duration::from_mins(1) {
             readings += u32::from(driver.poll(begin.elapsed().as_secs_f64()).is_some());
             driver.set_force(Vector3::new(0.5, f64::from(readings) * 1e-3, 0.0), 0.1);
             events += u32::from(driver.take_event().is_some());

@@ -1,0 +1,27 @@
+//! How straight the way between grasps and places was.
+
+use crate::{
+    motion::{Motion, path_m},
+    signal::RATE_HZ,
+};
+
+/// A way that is shorter, m, is noise.
+const LEAST_PATH_M: f64 = 1e-3;
+
+/// Straight lines between the places at these times (s from the beginning, in order) over the way that the tip took; `None` if it took none.
+/// A leg with a gap in it is left out.
+pub(crate) fn path_economy(motion: &Motion<'_>, times_s: &[f64]) -> Option<f64> {
+    let (mut straight_m, mut way_m) = (0.0, 0.0);
+    for leg in times_s.windows(2) {
+        let [from, to] = [leg[0], leg[1]].map(|t_s| (t_s * RATE_HZ).round() as usize);
+        let within =
+            |stretch: &&crate::motion::Stretch<'_>| stretch.grid <= from && to < stretch.grid + stretch.points.len();
+        let Some(stretch) = motion.stretches.iter().find(within) else { continue };
+        let Some([first, .., last]) = stretch.points.get(from - stretch.grid..=to.max(from) - stretch.grid) else {
+            continue;
+        };
+        straight_m += (last - first).norm();
+        way_m += stretch.points.get(from - stretch.grid..=to - stretch.grid).map_or(0.0, path_m);
+    }
+    (way_m >= LEAST_PATH_M).then(|| straight_m / way_m)
+}

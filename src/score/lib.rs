@@ -1,0 +1,57 @@
+//! The score of a trial of a training task: peg transfer, palpation, wire loop.
+//!
+//! Takes [`Sample`]s of motion (m) and force (N) of both hands at about 1 kHz, and [`Happening`]s (a ring placed, a wire touched); returns a
+//! [`Score`] of named measures, each with unit, definition and source. [`Proficiency`] and [`LearningCurve`] judge a sequence of
+//! trials. This crate knows no loop, device, file, thread or clock. `docs/score.md` lists the measures.
+//!
+//! ```
+//! use nalgebra::Vector3;
+//! use nima_score::{Event, HandSample, Happening, Sample, Scorer, Side, TaskFile};
+//!
+//! let task = TaskFile::from_toml("name = 'Six rings'\nkind = 'peg_transfer'")?;
+//! let mut scorer = Scorer::new(&task);
+//! scorer.happening(&Happening { t_s: 0.0, event: Event::Begun });
+//! for tick in 0..=2000 {
+//!     let t_s = f64::from(tick) * 1e-3;
+//!     let right = HandSample { tip_m: Vector3::new(0.05 * t_s, 0.0, 0.0), engaged: true, ..HandSample::default() };
+//!     scorer.sample(&Sample { t_s, hands: [None, Some(right)] });
+//! }
+//! scorer.happening(&Happening { t_s: 2.0, event: Event::Ended });
+//! let score = scorer.finish();
+//! assert!((score.of("path_length_m", Side::Right).unwrap_or(0.0) - 0.1).abs() < 1e-6);
+//! assert_eq!(score.value("completion_time_s"), Some(2.0));
+//! assert_eq!(score.of("path_length_m", Side::Left), None, "there is no left hand");
+//! # Ok::<(), nima_score::TaskError>(())
+//! ```
+#![warn(missing_docs)]
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+mod catalogue;
+mod economy;
+mod ellipsoid;
+mod events;
+mod force;
+mod hand;
+mod happening;
+mod jaw;
+mod learning;
+mod motion;
+mod proficiency;
+mod sample;
+mod score;
+mod scorer;
+mod signal;
+mod smoothness;
+mod task;
+#[cfg(test)]
+mod tests;
+mod two_hands;
+
+pub use catalogue::{Definition, MEASURES};
+pub use happening::{Event, Happening};
+pub use learning::{LEAST_TRIALS, LearningCurve, Shape};
+pub use proficiency::{Proficiency, Standing};
+pub use sample::{HandSample, Sample, Side};
+pub use score::{Measure, Outcome, Score};
+pub use scorer::Scorer;
+pub use task::{Criterion, TaskError, TaskFile, TaskKind};

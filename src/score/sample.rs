@@ -1,0 +1,94 @@
+//! What the scorer is fed with: both hands at one moment.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// Largest position that is taken for one, m, and largest force, N. What is beyond is a fault of the input, and its squares would
+/// spoil every mean.
+const LARGEST_M: f64 = 1e3;
+const LARGEST_N: f64 = 1e5;
+
+/// A hand of the operator, and with it the instrument that it moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum Side {
+    Left,
+    Right,
+}
+
+impl Side {
+    /// Both, in the order of [`Sample::hands`].
+    pub const ALL: [Self; 2] = [Self::Left, Self::Right];
+
+    /// Place in [`Sample::hands`].
+    pub fn index(self) -> usize {
+        match self {
+            Self::Left => 0,
+            Self::Right => 1,
+        }
+    }
+
+    /// `left` or `right`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+}
+
+/// Both hands at one moment. Steps may be uneven; a step back in time is skipped and counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Time, s, on any clock that runs forward; that of the happenings.
+    pub t_s: f64,
+    /// Left and right; `None` while that side is not known.
+    pub hands: [Option<HandSample>; 2],
+}
+
+/// One hand at one moment, in the frame `world` (z up).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HandSample {
+    /// Tip of the instrument, m.
+    pub tip_m: Vector3<f64>,
+    /// Opening of the jaw, rad; `None` for an instrument without one.
+    pub jaw_rad: Option<f64>,
+    /// Contact force on the instrument at its tip, N. NaN where it is not known: the motion still counts.
+    pub force_n: Vector3<f64>,
+    /// Force that the hand feels, N.
+    pub rendered_n: Vector3<f64>,
+    /// The hand moves the instrument.
+    pub engaged: bool,
+    /// The tip is in the endoscope's picture.
+    pub in_view: bool,
+}
+
+/// The parts of a hand's sample that can be used.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Usable {
+    pub tip_m: Option<Vector3<f64>>,
+    pub jaw_rad: Option<f64>,
+    pub force_n: Option<Vector3<f64>>,
+    pub rendered_n: Option<Vector3<f64>>,
+    /// Something was there and could not be used.
+    pub spoilt: bool,
+}
+
+impl HandSample {
+    pub(crate) fn usable(&self) -> Usable {
+        let tip_m = within(&self.tip_m, LARGEST_M);
+        let force_n = within(&self.force_n, LARGEST_N);
+        let rendered_n = within(&self.rendered_n, LARGEST_N);
+        let jaw_rad = self.jaw_rad.filter(|jaw| jaw.is_finite());
+        let spoilt = tip_m.is_none()
+            || force_n.is_none()
+            || rendered_n.is_none()
+            || (self.jaw_rad.is_some() && jaw_rad.is_none());
+        Usable { tip_m, jaw_rad, force_n, rendered_n, spoilt }
+    }
+}
+
+fn within(vector: &Vector3<f64>, largest: f64) -> Option<Vector3<f64>> {
+    vector.iter().all(|value| value.abs() <= largest).then_some(*vector)
+}

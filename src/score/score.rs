@@ -1,0 +1,104 @@
+//! The measures of one trial.
+
+use serde::{Serialize, Serializer, ser::SerializeMap};
+
+use crate::{Definition, MEASURES, Side};
+
+/// How a trial went out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// The task was done within the time limit.
+    Completed,
+    /// The time limit was reached.
+    OutOfTime,
+    /// The trial was given up.
+    Aborted,
+    /// The samples end before any of these.
+    Unfinished,
+}
+
+/// One measure of a trial, for one hand where it has a side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measure {
+    /// What is measured: id, words, unit, definition and source.
+    pub definition: &'static Definition,
+    /// The hand; `None` for a measure of the whole trial.
+    pub side: Option<Side>,
+    /// In the unit of the definition, always finite. `None` if there is nothing to measure: no such hand, another task, no contact.
+    pub value: Option<f64>,
+}
+
+impl Measure {
+    /// Its key in JSON: the id, and the hand if it has one (`path_length_m_right`).
+    pub fn key(&self) -> String {
+        match self.side {
+            Some(side) => format!("{}_{}", self.definition.id, side.name()),
+            None => self.definition.id.to_owned(),
+        }
+    }
+}
+
+/// All measures of a trial. Serialises to one flat object of keys and numbers, with `null` for what could not be measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Score {
+    outcome: Outcome,
+    /// For each of [`MEASURES`]: left and right, or the whole trial at the first place.
+    values: Vec<[Option<f64>; 2]>,
+}
+
+impl Score {
+    pub(crate) fn new(outcome: Outcome) -> Self {
+        Self { outcome, values: vec![[None; 2]; MEASURES.len()] }
+    }
+
+    /// How the trial went out.
+    pub fn outcome(&self) -> Outcome {
+        self.outcome
+    }
+
+    /// The value of a measure of the whole trial; `None` also for an id that there is not.
+    pub fn value(&self, id: &str) -> Option<f64> {
+        let place = MEASURES.iter().position(|definition| definition.id == id && !definition.per_hand)?;
+        self.values.get(place)?[0]
+    }
+
+    /// The value of a measure of one hand; `None` also for an id that there is not.
+    pub fn of(&self, id: &str, side: Side) -> Option<f64> {
+        let place = MEASURES.iter().position(|definition| definition.id == id && definition.per_hand)?;
+        self.values.get(place)?[side.index()]
+    }
+
+    /// Every measure, in the order of [`MEASURES`]; one for each hand where they are measured apart.
+    pub fn measures(&self) -> impl Iterator<Item = Measure> {
+        MEASURES.iter().zip(&self.values).flat_map(|(definition, values)| {
+            let sides = if definition.per_hand { Side::ALL.map(Some).to_vec() } else { vec![None] };
+            sides.into_iter().zip(*values).map(move |(side, value)| Measure { definition, side, value })
+        })
+    }
+
+    pub(crate) fn set(&mut self, id: &str, value: Option<f64>) {
+        self.put(id, [value, None]);
+    }
+
+    pub(crate) fn set_hands(&mut self, id: &str, values: [Option<f64>; 2]) {
+        self.put(id, values);
+    }
+
+    fn put(&mut self, id: &str, values: [Option<f64>; 2]) {
+        let place = MEASURES.iter().position(|definition| definition.id == id);
+        if let Some(slot) = place.and_then(|place| self.values.get_mut(place)) {
+            *slot = values.map(|value| value.filter(|value| value.is_finite()));
+        }
+    }
+}
+
+impl Serialize for Score {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for measure in self.measures() {
+            map.serialize_entry(&measure.key(), &measure.value)?;
+        }
+        map.end()
+    }
+}

@@ -1,0 +1,258 @@
+//! From the samples and events of a trial to its score.
+
+use crate::{
+    Event, Happening, Outcome, Sample, Score, Side, TaskFile, TaskKind,
+    economy::path_economy,
+    events::Events,
+    hand::Hand,
+    motion::Motion,
+    signal::{Order, Track, magnitudes, mean, peak},
+    two_hands::TwoHands,
+};
+
+/// Latest time that is taken for one, s: beyond it a clock is broken, and steps of 1 ms begin to blur.
+const LATEST_S: f64 = 1e12;
+/// Force before a mark, s, that belongs to the lump that was marked.
+const BEFORE_MARK_S: f64 = 2.0;
+
+/// Takes the samples and happenings of one trial in the order of time and makes its [`Score`].
+///
+/// Each sample costs the same. Memory is taken at the beginning, for motion and force at 100 Hz up to the time limit (4 MB for 300 s), and
+/// only a signal with very many gaps takes more. Without [`Event::Begun`] the trial begins with the first sample or event.
+#[derive(Clone, Debug)]
+pub struct Scorer {
+    task: TaskFile,
+    hands: [Hand; 2],
+    events: Events,
+    begin_s: Option<f64>,
+    /// Newest sample and newest event, s from the beginning.
+    newest_s: Option<f64>,
+    latest_s: f64,
+    /// The end, s from the beginning, and how it came.
+    end: Option<(f64, Outcome)>,
+    samples: u64,
+    samples_skipped: u64,
+    happenings_skipped: u64,
+}
+
+impl Scorer {
+    /// A scorer for one trial of this task.
+    pub fn new(task: &TaskFile) -> Self {
+        Self {
+            task: task.clone(),
+            hands: [Hand::new(task), Hand::new(task)],
+            events: Events::default(),
+            begin_s: None,
+            newest_s: None,
+            latest_s: 0.0,
+            end: None,
+            samples: 0,
+            samples_skipped: 0,
+            happenings_skipped: 0,
+        }
+    }
+
+    /// Takes the next sample. Samples after the end and before the beginning do not count; what is not finite or goes back in time is
+    /// skipped and counted.
+    pub fn sample(&mut self, sample: &Sample) {
+        if self.end.is_some() {
+            return;
+        }
+        let Some(t_s) = self.since_begin_s(sample.t_s) else {
+            self.samples_skipped += 1;
+            return;
+        };
+        if t_s < 0.0 || self.out_of_time(t_s) {
+            return;
+        }
+        if self.newest_s.is_some_and(|newest_s| t_s <= newest_s) {
+            self.samples_skipped += 1;
+            return;
+        }
+        self.newest_s = Some(t_s);
+        self.latest_s = self.latest_s.max(t_s);
+        self.samples += 1;
+        let mut spoilt = false;
+        for (hand, sample) in self.hands.iter_mut().zip(&sample.hands) {
+            spoilt |= sample.as_ref().is_some_and(|sample| hand.take(t_s, sample));
+        }
+        self.samples_skipped += u64::from(spoilt);
+    }
+
+    /// Takes an event. Its place among the samples may be late by some samples.
+    pub fn happening(&mut self, happening: &Happening) {
+        if happening.event == Event::Begun && happening.t_s.abs() <= LATEST_S {
+            *self = Self { begin_s: Some(happening.t_s), ..Self::new(&self.task) };
+            return;
+        }
+        if self.end.is_some() {
+            return;
+        }
+        let Some(t_s) = self.since_begin_s(happening.t_s).filter(|t_s| *t_s >= 0.0) else {
+            self.happenings_skipped += 1;
+            return;
+        };
+        if self.out_of_time(t_s) {
+            return;
+        }
+        self.latest_s = self.latest_s.max(t_s);
+        match happening.event {
+            Event::Ended => self.end = Some((t_s, Outcome::Completed)),
+            Event::Aborted => self.end = Some((t_s, Outcome::Aborted)),
+            event => self.events.take(t_s, event),
+        }
+    }
+
+    /// Ends the trial with what is known and gives its score. For a trial of 300 s this takes some 100 ms
+    /// and 15 MB, for the spectra: not within the loop.
+    pub fn finish(self) -> Score {
+        let (end_s, outcome) = self.end.unwrap_or((self.latest_s, Outcome::Unfinished));
+        let mut score = Score::new(outcome);
+        self.score_time(&mut score, end_s, outcome);
+        self.score_task(&mut score, end_s);
+        self.score_force(&mut score);
+        let handled_s = Side::ALL.map(|side| self.events.handled_s(side));
+        let [left, right] = self.hands;
+        let tips = [left.tip.finish(), right.tip.finish()];
+        score_motion(&mut score, &tips, &handled_s, end_s);
+        score_force_rate(&mut score, &[left.force.finish(), right.force.finish()]);
+        score
+    }
+
+    /// Time since the beginning, which is now if it was not before; `None` for a time that is none.
+    fn since_begin_s(&mut self, t_s: f64) -> Option<f64> {
+        (t_s.abs() <= LATEST_S).then(|| t_s - *self.begin_s.get_or_insert(t_s))
+    }
+
+    fn out_of_time(&mut self, t_s: f64) -> bool {
+        let limit_s = self.task.limit_s();
+        if t_s >= limit_s {
+            self.end = Some((limit_s, Outcome::OutOfTime));
+        }
+        self.end.is_some()
+    }
+
+    fn score_time(&self, score: &mut Score, end_s: f64, outcome: Outcome) {
+        let completed_s = (outcome == Outcome::Completed).then_some(end_s);
+        score.set("trial_time_s", self.begin_s.map(|_| end_s));
+        score.set("completion_time_s", completed_s);
+        score.set("time_over_reference", completed_s.map(|time_s| time_s / self.task.reference_time_s));
+        score.set_hands("engaged_share", self.each(|hand| hand.times.engaged_share()));
+        score.set_hands("out_of_view_share", self.each(|hand| hand.times.out_of_view_share()));
+        let known_s = self.each(|hand| hand.times.known_s());
+        score.set_hands("unknown_time_s", known_s.map(|known_s| known_s.map(|known_s| (end_s - known_s).max(0.0))));
+        score.set("samples", Some(self.samples as f64));
+        score.set("samples_skipped", Some(self.samples_skipped as f64));
+        score.set("happenings_skipped", Some(self.happenings_skipped as f64));
+        let rest_s = self.task.time_limit_s - end_s - self.task.penalty_s * f64::from(self.events.dropped_out_of_view);
+        let points = match outcome {
+            Outcome::Completed => Some(rest_s.max(0.0)),
+            Outcome::OutOfTime | Outcome::Aborted => Some(0.0),
+            Outcome::Unfinished => None,
+        };
+        score.set("fls_like_score", points.filter(|_| self.task.kind == TaskKind::PegTransfer));
+    }
+
+    fn score_task(&self, score: &mut Score, end_s: f64) {
+        let events = &self.events;
+        match self.task.kind {
+            TaskKind::PegTransfer => {
+                let drops = f64::from(events.dropped_in_view) + f64::from(events.dropped_out_of_view);
+                score.set("time_to_first_grasp_s", events.first_grasp_s);
+                score.set("drops", Some(drops));
+                let counts = [
+                    ("lifts", events.lifts),
+                    ("transfers", events.transfers),
+                    ("rings_placed", events.placed),
+                    ("drops_in_view", events.dropped_in_view),
+                    ("drops_out_of_view", events.dropped_out_of_view),
+                    ("rings_knocked_off", events.knocked_off),
+                ];
+                for (id, count) in counts {
+                    score.set(id, Some(f64::from(count)));
+                }
+            }
+            TaskKind::Palpation => {
+                let found = events.found() as f64;
+                score.set("lumps_found", Some(found));
+                score.set("lumps_false", Some(f64::from(events.false_marks)));
+                score.set("lumps_missed", self.task.lumps.map(|lumps| (f64::from(lumps) - found).max(0.0)));
+                score.set_hands("lump_peak_force_n", Side::ALL.map(|side| self.lump_peak_n(side)));
+            }
+            TaskKind::WireLoop => {
+                score.set("wire_touches", Some(f64::from(events.touches)));
+                score.set("wire_touch_time_s", Some(events.touched_s(end_s)));
+            }
+        }
+    }
+
+    fn lump_peak_n(&self, side: Side) -> Option<f64> {
+        let forces = &self.hands[side.index()].forces;
+        let before = |t_s: &f64| forces.peak_between_n(t_s - BEFORE_MARK_S, *t_s);
+        self.events.marked_s(side).iter().filter_map(before).reduce(f64::max)
+    }
+
+    fn score_force(&self, score: &mut Score) {
+        score.set_hands("peak_force_n", self.each(|hand| hand.forces.peak_n()));
+        score.set_hands("mean_force_n", self.each(|hand| hand.forces.mean_n()));
+        score.set_hands("force_sd_n", self.each(|hand| hand.forces.sd_n()));
+        score.set_hands("rms_force_n", self.each(|hand| hand.forces.rms_n()));
+        let integrals = self.each(|hand| hand.forces.integral_n_s());
+        score.set_hands("force_integral_n_s", integrals);
+        let sum: f64 = integrals.iter().flatten().sum();
+        score.set_hands("force_share", integrals.map(|integral| integral.filter(|_| sum > 0.0).map(|one| one / sum)));
+        score.set_hands("contact_time_s", self.each(|hand| hand.forces.contact_s()));
+        score.set_hands("time_over_threshold_s", self.each(|hand| hand.forces.over_s()));
+        score.set_hands("force_excursions", self.each(|hand| hand.forces.excursions()));
+        score.set_hands("force_volume_n3", self.each(|hand| hand.forces.volume_n3()));
+        score.set_hands("peak_rendered_n", self.each(|hand| hand.rendered.peak_n()));
+        score.set_hands("rms_rendered_n", self.each(|hand| hand.rendered.rms_n()));
+        let openings = self.each(|hand| hand.jaw.openings());
+        let known_s = self.each(|hand| hand.times.known_s());
+        let per_min = |side: usize| Some(openings[side]? * 60.0 / known_s[side]?);
+        score.set_hands("jaw_openings", openings);
+        score.set_hands("jaw_openings_per_min", [per_min(0), per_min(1)]);
+    }
+
+    fn each(&self, of: impl Fn(&Hand) -> Option<f64>) -> [Option<f64>; 2] {
+        [of(&self.hands[0]), of(&self.hands[1])]
+    }
+}
+
+fn score_motion(score: &mut Score, tips: &[Track; 2], handled_s: &[Vec<f64>; 2], end_s: f64) {
+    let motions = tips.each_ref().map(Motion::of);
+    let each = motions.each_ref();
+    let (paths_m, depths_m) = (each.map(Motion::path_m), each.map(Motion::depth_m));
+    let depth_share =
+        |side: usize| paths_m[side].filter(|path_m| *path_m > 0.0).and_then(|path_m| Some(depths_m[side]? / path_m));
+    score.set_hands("path_length_m", paths_m);
+    score.set_hands("depth_m", depths_m);
+    score.set_hands("depth_share", [depth_share(0), depth_share(1)]);
+    score.set_hands("path_economy", [0, 1].map(|side| path_economy(&motions[side], &handled_s[side])));
+    score.set_hands("mean_speed_m_per_s", each.map(Motion::mean_speed));
+    score.set_hands("peak_speed_m_per_s", each.map(Motion::peak_speed));
+    score.set_hands("mean_acceleration_m_per_s2", each.map(Motion::mean_acceleration));
+    score.set_hands("peak_acceleration_m_per_s2", each.map(Motion::peak_acceleration));
+    score.set_hands("mean_jerk_m_per_s3", each.map(Motion::mean_jerk));
+    score.set_hands("hand_idle_time_s", each.map(Motion::idle_s));
+    score.set_hands("movements", each.map(Motion::movements));
+    score.set_hands("motion_volume_m3", each.map(Motion::volume_m3));
+    let whole = each.map(Motion::smoothness);
+    score.set_hands("log_dimensionless_jerk", whole.map(|[jerk, _]| jerk));
+    score.set_hands("sparc", whole.map(|[_, arc]| arc));
+    let single = each.map(Motion::smoothness_of_movements);
+    score.set_hands("log_dimensionless_jerk_per_movement", single.map(|[jerk, _]| jerk));
+    score.set_hands("sparc_per_movement", single.map(|[_, arc]| arc));
+    let hands = TwoHands::of(&motions);
+    // Each point of the grid counts for one step; one more fits into the time than there are steps.
+    score.set("idle_time_s", hands.idle_s().map(|idle_s| idle_s.min(end_s)));
+    score.set("both_move_share", hands.both_move());
+    score.set("bimanual_dexterity", hands.correlation());
+}
+
+fn score_force_rate(score: &mut Score, forces: &[Track; 2]) {
+    let rates: [Vec<Vec<f64>>; 2] =
+        [0, 1].map(|side| forces[side].runs().map(|(_, points)| magnitudes(points, Order::First)).collect());
+    score.set_hands("peak_force_rate_n_per_s", [0, 1].map(|side| peak(rates[side].iter().map(Vec::as_slice))));
+    score.set_hands("mean_force_rate_n_per_s", [0, 1].map(|side| mean(rates[side].iter().map(Vec::as_slice))));
+}

@@ -1,0 +1,54 @@
+//! Derivatives of a stretch of a track.
+
+use nalgebra::Vector3;
+
+use super::STEP_S;
+
+/// Which derivative by time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Order {
+    First,
+    Second,
+    Third,
+}
+
+/// Length of the derivative at each point. Central differences over five points (errors of the fourth order in the step; the third
+/// derivative: second order). Beyond the ends the stretch is continued by turning it half round, as by the filter before.
+pub(crate) fn magnitudes(points: &[Vector3<f64>], order: Order) -> Vec<f64> {
+    let (weights, per_step): ([f64; 5], f64) = match order {
+        Order::First => ([1.0, -8.0, 0.0, 8.0, -1.0], 12.0 * STEP_S),
+        Order::Second => ([-1.0, 16.0, -30.0, 16.0, -1.0], 12.0 * STEP_S * STEP_S),
+        Order::Third => ([-1.0, 2.0, 0.0, -2.0, 1.0], 2.0 * STEP_S * STEP_S * STEP_S),
+    };
+    let at = |place: isize| continued(points, place).unwrap_or_default();
+    let one = |middle: usize| {
+        let around = |(k, weight): (usize, &f64)| at((middle + k).cast_signed() - 2) * *weight;
+        weights.iter().enumerate().map(around).sum::<Vector3<f64>>().norm() / per_step
+    };
+    (0..points.len()).map(one).collect()
+}
+
+fn continued(points: &[Vector3<f64>], place: isize) -> Option<Vector3<f64>> {
+    let end = points.len().cast_signed() - 1;
+    let at = |place: isize| points.get(place.clamp(0, end.max(0)) as usize).copied();
+    Some(match place {
+        _ if place < 0 => at(0)? * 2.0 - at(-place)?,
+        _ if place > end => at(end)? * 2.0 - at(2 * end - place)?,
+        _ => at(place)?,
+    })
+}
+
+/// Mean over time (trapezoid) of stretches at even steps; `None` if they have no duration.
+pub(crate) fn mean<'a>(stretches: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
+    let (mut sum, mut steps) = (0.0, 0.0);
+    for values in stretches.filter(|values| values.len() > 1) {
+        sum += values.windows(2).map(|two| f64::midpoint(two[0], two[1])).sum::<f64>();
+        steps += (values.len() - 1) as f64;
+    }
+    (steps > 0.0).then(|| sum / steps)
+}
+
+/// Largest value; `None` of nothing.
+pub(crate) fn peak<'a>(stretches: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
+    stretches.flatten().copied().reduce(f64::max)
+}

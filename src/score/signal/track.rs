@@ -1,0 +1,48 @@
+//! A track at 100 Hz, in stretches without a gap.
+
+use nalgebra::Vector3;
+
+/// Rate of a track, Hz.
+pub(crate) const RATE_HZ: f64 = 100.0;
+/// Step of a track, s.
+pub(crate) const STEP_S: f64 = 1.0 / RATE_HZ;
+
+/// Points of the shortest stretch that is kept: five points make the first derivative that is not only of its ends.
+const LEAST_POINTS: usize = 5;
+
+/// Points at multiples of [`STEP_S`] from the beginning of the trial.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Track {
+    points: Vec<Vector3<f64>>,
+    runs: Vec<Run>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    /// Place of its first point on the grid of the trial.
+    grid: usize,
+    /// Its points in `points`.
+    start: usize,
+    len: usize,
+}
+
+impl Track {
+    /// Memory for so many seconds is taken now, so that a trial of this length takes no more.
+    pub(super) fn with_room(seconds: f64) -> Self {
+        Self { points: Vec::with_capacity((seconds * RATE_HZ) as usize + 1), runs: Vec::with_capacity(64) }
+    }
+
+    pub(super) fn push(&mut self, grid: usize, point: Vector3<f64>) {
+        match self.runs.last_mut() {
+            Some(run) if run.grid + run.len == grid => run.len += 1,
+            _ => self.runs.push(Run { grid, start: self.points.len(), len: 1 }),
+        }
+        self.points.push(point);
+    }
+
+    /// The stretches without a gap: place of the first point on the grid, and the points. Those under 50 ms are left out.
+    pub(crate) fn runs(&self) -> impl Iterator<Item = (usize, &[Vector3<f64>])> {
+        let long = self.runs.iter().filter(|run| run.len >= LEAST_POINTS);
+        long.filter_map(|run| Some((run.grid, self.points.get(run.start..run.start + run.len)?)))
+    }
+}

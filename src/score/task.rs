@@ -1,0 +1,150 @@
+//! The file that describes a training task.
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// Longest time limit, s: the trajectory of a trial is kept at 100 Hz until it ends.
+const LONGEST_S: f64 = 1200.0;
+
+/// Which measures apply, and what counts as an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum TaskKind {
+    PegTransfer,
+    Palpation,
+    WireLoop,
+}
+
+/// A training task, as its TOML file says it. Every key but `name` and `kind` has a default.
+///
+/// ```
+/// use nima_score::{TaskFile, TaskKind};
+///
+/// let task = TaskFile::from_toml("name = 'Lumps'\nkind = 'palpation'\nlumps = 5\ntime_limit_s = 240.0")?;
+/// assert_eq!((task.kind, task.lumps, task.proficiency.time_s), (TaskKind::Palpation, Some(5), 48.0));
+/// let wrong = TaskFile::from_toml("name = 'Lumps'\nkind = 'palpation'\ntime_limit_s = -1.0");
+/// assert!(wrong.is_err_and(|error| error.to_string().contains("time_limit_s")));
+/// # Ok::<(), nima_score::TaskError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TaskFile {
+    /// Name for the screen.
+    pub name: String,
+    /// What is done.
+    pub kind: TaskKind,
+    /// The trial is over after this time, s. 300 s in the peg transfer of FLS (Derossis et al. 1998).
+    #[serde(default = "time_limit_s")]
+    pub time_limit_s: f64,
+    /// Taken off the score for each drop out of view, s. FLS does not publish its own; 10 s is ours.
+    #[serde(default = "penalty_s")]
+    pub penalty_s: f64,
+    /// Time of an expert, s, which `time_over_reference` compares with.
+    #[serde(default = "reference_time_s")]
+    pub reference_time_s: f64,
+    /// Force at the tip above which time and excursions are counted, N.
+    #[serde(default = "force_threshold_n")]
+    pub force_threshold_n: f64,
+    /// Force at the tip from which on the instrument is in contact, N: above the noise of the force.
+    #[serde(default = "contact_n")]
+    pub contact_n: f64,
+    /// Number of lumps that can be found.
+    #[serde(default)]
+    pub lumps: Option<u32>,
+    /// When training is done.
+    #[serde(default)]
+    pub proficiency: Criterion,
+}
+
+/// When training is done: by default that of peg transfer in Ritter and Scott 2007 (Surg. Innov. 14:107-112) and its curriculum.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Criterion {
+    /// A trial meets the criterion within this time, s.
+    pub time_s: f64,
+    /// Most drops out of view in such a trial.
+    pub drops_out_of_view: u32,
+    /// So many such trials in a row,
+    pub consecutive: u32,
+    /// then so many more, not necessarily in a row.
+    pub additional: u32,
+    /// After so many trials without that, training is given up.
+    pub max_trials: u32,
+}
+
+/// Why a task file was refused.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum TaskError {
+    #[error("the task file cannot be read: {reason}")]
+    Toml { reason: String },
+    #[error("the task file has {key} = {value}: it must be {allowed}")]
+    Setting { key: &'static str, value: f64, allowed: &'static str },
+}
+
+impl Default for Criterion {
+    fn default() -> Self {
+        Self { time_s: 48.0, drops_out_of_view: 0, consecutive: 2, additional: 10, max_trials: 80 }
+    }
+}
+
+impl TaskFile {
+    /// Reads the text of a task file.
+    ///
+    /// # Errors
+    /// [`TaskError::Toml`] if it is no TOML or has an unknown or missing key, [`TaskError::Setting`] if a value is out of range.
+    pub fn from_toml(text: &str) -> Result<Self, TaskError> {
+        let task: Self = toml::from_str(text)
+            .map_err(|error| TaskError::Toml { reason: error.to_string().trim_end().to_owned() })?;
+        task.check()?;
+        Ok(task)
+    }
+
+    /// Whether every value is in its range.
+    ///
+    /// # Errors
+    /// [`TaskError::Setting`] names the first one that is not.
+    pub fn check(&self) -> Result<(), TaskError> {
+        let positive = |key, value: f64, up_to: f64, allowed| {
+            if value > 0.0 && value <= up_to { Ok(()) } else { Err(TaskError::Setting { key, value, allowed }) }
+        };
+        positive("time_limit_s", self.time_limit_s, LONGEST_S, "above 0 s and at most 1200 s")?;
+        positive("reference_time_s", self.reference_time_s, LONGEST_S, "above 0 s and at most 1200 s")?;
+        positive("force_threshold_n", self.force_threshold_n, 1e3, "above 0 N and at most 1000 N")?;
+        positive("contact_n", self.contact_n, 1e3, "above 0 N and at most 1000 N")?;
+        positive("proficiency.time_s", self.proficiency.time_s, LONGEST_S, "above 0 s and at most 1200 s")?;
+        if !(0.0..=LONGEST_S).contains(&self.penalty_s) {
+            let allowed = "from 0 s to 1200 s";
+            return Err(TaskError::Setting { key: "penalty_s", value: self.penalty_s, allowed });
+        }
+        let Criterion { consecutive, max_trials, .. } = self.proficiency;
+        positive("proficiency.consecutive", f64::from(consecutive), 1e3, "from 1 to 1000")?;
+        positive("proficiency.max_trials", f64::from(max_trials), 1e4, "from 1 to 10000")
+    }
+
+    /// The time limit, s, also for a task that was never checked: a trial is always bounded.
+    pub(crate) fn limit_s(&self) -> f64 {
+        if self.time_limit_s > 0.0 { self.time_limit_s.min(LONGEST_S) } else { time_limit_s() }
+    }
+}
+
+fn time_limit_s() -> f64 {
+    300.0
+}
+
+fn penalty_s() -> f64 {
+    10.0
+}
+
+fn reference_time_s() -> f64 {
+    48.0
+}
+
+fn force_threshold_n() -> f64 {
+    3.0
+}
+
+fn contact_n() -> f64 {
+    0.2
+}

@@ -1,0 +1,91 @@
+use std::{collections::BTreeSet, f64::consts::PI};
+
+use nalgebra::Vector3;
+
+use super::{task, trial};
+use crate::{Event, HandSample, MEASURES, Score, Side, TaskFile};
+
+#[test]
+fn there_are_at_least_thirty_measures_with_names_of_their_own() {
+    assert!(MEASURES.len() >= 30, "{}", MEASURES.len());
+    let ids: BTreeSet<&str> = MEASURES.iter().map(|definition| definition.id).collect();
+    assert_eq!(ids.len(), MEASURES.len());
+    for definition in &MEASURES {
+        assert!(definition.words.ends_with('.') && definition.definition.ends_with('.'), "{definition:?}");
+        assert!(definition.words.len() < 90, "short: {}", definition.words);
+        assert!(!definition.unit.is_empty() && !definition.source.is_empty(), "{definition:?}");
+    }
+    let keys: BTreeSet<String> = full("").measures().map(|measure| measure.key()).collect();
+    assert_eq!(keys.len(), MEASURES.iter().map(|definition| 1 + usize::from(definition.per_hand)).sum::<usize>());
+}
+
+#[test]
+fn the_score_like_that_of_fls_says_that_it_is_none() {
+    let definition = MEASURES.iter().find(|definition| definition.id == "fls_like_score").unwrap();
+    assert!(definition.words.starts_with("FLS-like, not an FLS score"));
+}
+
+#[test]
+fn the_page_lists_every_measure_with_unit_and_definition() {
+    let page = include_str!("../../../docs/score.md");
+    for definition in &MEASURES {
+        let per_hand = if definition.per_hand { "yes" } else { "-" };
+        let row = format!(
+            "| `{}` | {per_hand} | {} | {} {} | {} |",
+            definition.id, definition.unit, definition.words, definition.definition, definition.source
+        );
+        assert!(page.lines().any(|line| line == row), "docs/score.md lacks the row\n{row}");
+    }
+}
+
+#[test]
+fn the_task_file_of_the_page_holds_the_defaults() {
+    let page = include_str!("../../../docs/score.md");
+    let text = page.split("```toml").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let bare = TaskFile::from_toml("name = 'Six rings'\nkind = 'peg_transfer'").unwrap();
+    assert_eq!(TaskFile::from_toml(text).unwrap(), bare);
+}
+
+/// A trial in which everything happens.
+fn full(more: &str) -> Score {
+    let hands = |t_s: f64| {
+        [0.0, 1.0].map(|phase| {
+            let angle = 2.0 * PI * 0.5 * t_s + phase;
+            Some(HandSample {
+                tip_m: Vector3::new(angle.sin(), (2.0 * angle).sin(), (3.0 * angle).sin()) * 0.05,
+                jaw_rad: Some(angle.sin().abs()),
+                force_n: Vector3::new(angle.sin(), angle.cos(), (3.0 * angle).sin()) * 4.0,
+                rendered_n: Vector3::x(),
+                engaged: true,
+                in_view: true,
+            })
+        })
+    };
+    let events = Side::ALL.map(|side| {
+        let lump = Event::LumpMarked { side, lump: Some(side.index()) };
+        let grasp = Event::RingGrasped { ring: 0, side };
+        [(1.0_f64, grasp), (2.0, lump), (4.0, Event::RingPlaced { ring: 0, side, peg: 1 })]
+    });
+    let mut events = events.concat();
+    events.sort_by(|a, b| a.0.total_cmp(&b.0));
+    trial(&task(more), 6.0, hands, &events)
+}
+
+#[test]
+fn each_measure_is_measured_in_some_task() {
+    let scores = ["", "kind = 'palpation'\nlumps = 3", "kind = 'wire_loop'"].map(full);
+    for (k, measure) in scores[0].measures().enumerate() {
+        let values = scores.iter().filter_map(|score| score.measures().nth(k)?.value);
+        assert!(values.count() > 0, "{} is never measured", measure.key());
+    }
+}
+
+#[test]
+fn a_score_is_one_flat_object_in_json() {
+    let score = full("");
+    let json: serde_json::Value = serde_json::from_str(&serde_json::to_string(&score).unwrap()).unwrap();
+    let object = json.as_object().unwrap();
+    assert!(object.values().all(|value| value.is_number() || value.is_null()));
+    assert_eq!(object["path_length_m_right"].as_f64(), score.of("path_length_m", Side::Right));
+    assert!(object["lumps_found"].is_null() && object["completion_time_s"].as_f64() == Some(6.0));
+}

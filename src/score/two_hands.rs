@@ -1,0 +1,66 @@
+//! How the two hands work together.
+
+use crate::{
+    motion::{IDLE_M_PER_S, Motion},
+    signal::STEP_S,
+};
+
+/// Points in which both hands are known, below which nothing is said: 1 s.
+const LEAST_POINTS: usize = 100;
+/// A speed that varies less (standard deviation, m/s) has no correlation but that of its noise.
+const LEAST_SD_M_PER_S: f64 = 1e-4;
+
+/// Speeds of both hands on the grid of the trial.
+pub(crate) struct TwoHands {
+    speeds: Vec<[Option<f64>; 2]>,
+}
+
+impl TwoHands {
+    pub(crate) fn of(motions: &[Motion<'_>; 2]) -> Self {
+        let ends =
+            motions.iter().flat_map(|motion| &motion.stretches).map(|stretch| stretch.grid + stretch.speed.len());
+        let mut speeds = vec![[None; 2]; ends.max().unwrap_or(0)];
+        for (side, motion) in motions.iter().enumerate() {
+            for stretch in &motion.stretches {
+                for (both, speed) in speeds.iter_mut().skip(stretch.grid).zip(&stretch.speed) {
+                    both[side] = Some(*speed);
+                }
+            }
+        }
+        Self { speeds }
+    }
+
+    /// Time in which no hand that is known moves, s.
+    pub(crate) fn idle_s(&self) -> Option<f64> {
+        let known = self.speeds.iter().filter(|hands| hands.iter().flatten().next().is_some());
+        let idle = known.clone().filter(|hands| hands.iter().flatten().all(|speed| *speed < IDLE_M_PER_S));
+        (known.count() > 0).then_some(idle.count() as f64 * STEP_S)
+    }
+
+    /// Share of the time in which both move, of that in which both are known.
+    pub(crate) fn both_move(&self) -> Option<f64> {
+        let count = self.pairs().count();
+        let both = self.pairs().filter(|pair| pair.iter().all(|speed| *speed >= IDLE_M_PER_S)).count();
+        (count >= LEAST_POINTS).then(|| both as f64 / count as f64)
+    }
+
+    /// Pearson's correlation of the two speeds.
+    pub(crate) fn correlation(&self) -> Option<f64> {
+        let count = self.pairs().count();
+        if count < LEAST_POINTS {
+            return None;
+        }
+        let mean = |side: usize| self.pairs().map(|pair| pair[side]).sum::<f64>() / count as f64;
+        let means = [mean(0), mean(1)];
+        let moment = |a: usize, b: usize| {
+            self.pairs().map(|pair| (pair[a] - means[a]) * (pair[b] - means[b])).sum::<f64>() / count as f64
+        };
+        let sds = [moment(0, 0).sqrt(), moment(1, 1).sqrt()];
+        let varies = sds.iter().all(|sd| *sd >= LEAST_SD_M_PER_S);
+        varies.then(|| (moment(0, 1) / (sds[0] * sds[1])).clamp(-1.0, 1.0))
+    }
+
+    fn pairs(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.speeds.iter().filter_map(|[left, right]| Some([(*left)?, (*right)?]))
+    }
+}

@@ -138,7 +138,9 @@ impl Scorer {
         score.set("completion_time_s", completed_s);
         score.set("time_over_reference", completed_s.map(|time_s| time_s / self.task.reference_time_s));
         score.set_hands("engaged_share", self.each(|hand| hand.times.engaged_share()));
-        score.set_hands("out_of_view_share", self.each(|hand| hand.times.out_of_view_share()));
+        if self.task.kind != TaskKind::Free {
+            score.set_hands("out_of_view_share", self.each(|hand| hand.times.out_of_view_share()));
+        }
         let known_s = self.each(|hand| hand.times.known_s());
         score.set_hands("unknown_time_s", known_s.map(|known_s| known_s.map(|known_s| (end_s - known_s).max(0.0))));
         score.set("samples", Some(self.samples as f64));
@@ -156,6 +158,7 @@ impl Scorer {
     fn score_task(&self, score: &mut Score, end_s: f64) {
         let events = &self.events;
         match self.task.kind {
+            TaskKind::Free => {}
             TaskKind::PegTransfer => {
                 let drops = f64::from(events.dropped_in_view) + f64::from(events.dropped_out_of_view);
                 score.set("time_to_first_grasp_s", events.first_grasp_s);

@@ -11,6 +11,8 @@ const LONGEST_S: f64 = 1200.0;
 #[serde(rename_all = "snake_case")]
 #[expect(missing_docs, reason = "the names say it")]
 pub enum TaskKind {
+    /// Motion and force alone: no objects are known, and no picture.
+    Free,
     PegTransfer,
     Palpation,
     WireLoop,

@@ -19,6 +19,7 @@ pub mod solvers;
 pub mod stability;
 pub mod stability_map;
 pub mod tradeoff;
+pub mod trials;
 pub mod validation;
 
 use std::{error::Error, path::PathBuf};

@@ -18,6 +18,7 @@ mod pair;
 mod replay;
 mod report;
 mod run;
+mod score;
 mod sessions;
 mod setup;
 mod stretch;
@@ -61,6 +62,8 @@ enum Command {
     Sessions(sessions::Arguments),
     /// Write a page that tells what happened in recorded sessions, when, and what went wrong
     Report(report::Arguments),
+    /// Score recorded sessions: time, path, speed, smoothness, force of each hand; also as a table of trials
+    Score(score::Arguments),
     /// Identify impedance on a recording, sample by sample, from past data only
     Identify(identify::Arguments),
     /// Rigs of a department: certificates, which are shared, watch and record them from other machines
@@ -121,6 +124,7 @@ pub fn main() -> ExitCode {
         Command::Export(arguments) => export::run(&arguments),
         Command::Sessions(arguments) => sessions::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
+        Command::Score(arguments) => score::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Department(command) => department::run(&command),
         Command::Devices(arguments) => devices::run(&arguments),

@@ -15,6 +15,7 @@ mod stability;
 mod stability_map;
 mod timing;
 mod tradeoff;
+mod trials;
 mod validation;
 
 use std::{
@@ -95,6 +96,8 @@ studies! {
     StabilityMap(stability_map::StabilityMap),
     /// Measure computing time and accuracy for every setting of the identification
     Tradeoff(tradeoff::Arguments),
+    /// Compare the conditions of a user study, from a table of trials: tests, intervals, effect sizes, a mixed model
+    Trials(trials::Arguments),
     /// Measure the loop's timing beside its console, busy cores, a blocked window and heavy disk writing
     Timing(timing::Arguments),
     /// Repeat the paper's three validations on the simulated rig and compare the results

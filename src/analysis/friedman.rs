@@ -1,0 +1,92 @@
+//! Friedman's test: several conditions, each participant under each of them once.
+
+use crate::distribution::{chi_square_above, f_above};
+use crate::error::{AnalysisError, Result};
+use crate::{check, ranks::Ranks};
+use serde::Serialize;
+
+/// Result of Friedman's test, corrected for ties.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Friedman {
+    /// Mean rank of each condition; rank 1 is the least value.
+    pub mean_ranks: Vec<f64>,
+    /// Friedman's chi-square (Friedman, JASA 32, 1937; ties as in Conover, Practical Nonparametric Statistics, 1999, section 5.8).
+    pub chi_square: f64,
+    /// Its degrees of freedom, conditions - 1.
+    pub df: f64,
+    /// Its p-value; conservative with few participants.
+    pub p: f64,
+    /// The F of Iman & Davenport (Approximations of the critical region of the Friedman statistic, Communications in Statistics A9, 1980), which is
+    /// nearer to its level; nothing where all participants agree, because it is infinite there.
+    pub f: Option<f64>,
+    /// Degrees of freedom of its denominator, (conditions - 1)(participants - 1); that of its numerator is `df`.
+    pub f_df: f64,
+    /// Its p-value; where all participants agree, the probability that they do so by chance (Conover).
+    pub f_p: f64,
+    /// Kendall's coefficient of concordance W, 0 (none) to 1 (all participants agree), corrected for ties (Kendall & Babington Smith, Annals of
+    /// Mathematical Statistics 10, 1939).
+    pub w: f64,
+}
+
+/// Of one row per participant and one column per condition: at least two rows and two columns, and one row at least that is not all the same.
+///
+/// ```
+/// use nima_analysis::{friedman, AnalysisError};
+///
+/// // Workload of four participants without haptics, with delayed forces, and with matched ones.
+/// let test = friedman::test(&[[55.0, 40.0, 35.0], [60.0, 62.0, 45.0], [70.0, 50.0, 30.0], [48.0, 45.0, 44.0]])?;
+/// assert!((test.chi_square - 6.5).abs() < 1e-12 && (test.w - 0.8125).abs() < 1e-12);
+/// # Ok::<(), AnalysisError>(())
+/// ```
+pub fn test<Row: AsRef<[f64]>>(rows: &[Row]) -> Result<Friedman> {
+    check::enough("participants", rows.len(), 2)?;
+    let conditions = rows[0].as_ref().len();
+    check::enough("conditions", conditions, 2)?;
+    check::not_too_many("conditions", conditions, 100)?;
+    let mut doubled = vec![0; conditions];
+    let mut ties = 0.0;
+    let mut ranked = Vec::with_capacity(rows.len());
+    for (at, row) in rows.iter().enumerate() {
+        let (row, what) = (row.as_ref(), format!("the row of participant {}", at + 1));
+        check::as_many(&format!("the values in {what}"), row.len(), "the conditions", conditions)?;
+        check::finite(&what, row)?;
+        let ranks = Ranks::of(row);
+        doubled.iter_mut().zip(&ranks.doubled).for_each(|(sum, rank)| *sum += rank);
+        ties += ranks.ties;
+        ranked.push(ranks);
+    }
+    let (n, k) = (rows.len() as f64, conditions as f64);
+    let spread = n * k * (k + 1.0) - ties / (k - 1.0);
+    // Each row that is all the same takes k (k + 1) off: nothing is left where all of them are.
+    if spread < 0.5 {
+        return Err(AnalysisError::NoVariation { what: "the values of every participant" });
+    }
+    let deviation = |sum: &usize| (*sum as f64 / 2.0 - n * (k + 1.0) / 2.0).powi(2);
+    let chi_square = 12.0 * doubled.iter().map(deviation).sum::<f64>() / spread;
+    let df = k - 1.0;
+    let f_df = df * (n - 1.0);
+    let agree = ranked.iter().all(|ranks| ranks.doubled == ranked[0].doubled);
+    let f = (n - 1.0) * chi_square / (n * df - chi_square).max(0.0);
+    let (f, f_p) = if agree { (None, by_chance(&ranked[0].doubled, n)) } else { (Some(f), f_above(f, df, f_df)) };
+    let mean_ranks = doubled.iter().map(|sum| *sum as f64 / (2.0 * n)).collect();
+    Ok(Friedman {
+        mean_ranks,
+        chi_square,
+        df,
+        p: chi_square_above(chi_square, df),
+        f,
+        f_df,
+        f_p,
+        w: chi_square / (n * df),
+    })
+}
+
+/// Probability that `n` participants give the same ranks by chance: each but the first hits one of the k! orders, fewer with ties.
+fn by_chance(doubled: &[usize], n: f64) -> f64 {
+    let mut sorted = doubled.to_vec();
+    sorted.sort_unstable();
+    let factorial = |count: usize| (2..=count).map(|factor| factor as f64).product::<f64>();
+    let orders =
+        factorial(doubled.len()) / sorted.chunk_by(|a, b| a == b).map(|tie| factorial(tie.len())).product::<f64>();
+    orders.powf(1.0 - n)
+}

@@ -1,0 +1,76 @@
+//! The test of Mann, Whitney and Wilcoxon: two groups of different participants.
+//!
+//! Two-sided throughout. The exact p-value is that of the permutation distribution, also with ties.
+
+mod distribution;
+
+use crate::check;
+use crate::distribution::normal_two_sided;
+use crate::error::{AnalysisError, Result};
+use crate::interval;
+use crate::ranks::Ranks;
+use crate::signed_rank::{Distribution, Location, MOST_EXACT};
+use crate::summary;
+use serde::Serialize;
+
+/// More differences between the groups are refused: they would fill the memory.
+const MOST_DIFFERENCES: usize = 4_000_000;
+
+/// Result of the Mann-Whitney test.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MannWhitney {
+    /// Number of pairs of a value of the first group and one of the second in which the first is greater, ties counting half; R's W.
+    pub u: f64,
+    /// The same in which the second is greater.
+    pub other_u: f64,
+    /// Standardised statistic, corrected for ties and continuity, positive where the first group has the greater values.
+    pub z: f64,
+    /// Two-sided p-value.
+    pub p: f64,
+    /// Whether it is exact.
+    pub exact: bool,
+}
+
+/// Of two groups with a value each at least, not all of which are the same (Mann & Whitney, On a test of whether one of two random variables is
+/// stochastically larger than the other, Annals of Mathematical Statistics 18, 1947).
+///
+/// Exact where both groups have at most [`MOST_EXACT`] values, if nothing else is asked for. With ties the distribution is not symmetric, and
+/// the p-value counts what is at least as far from the mean, on either side (as R's `coin` and `SciPy`'s permutation do for a centred statistic).
+pub fn test(first: &[f64], second: &[f64], distribution: Distribution) -> Result<MannWhitney> {
+    check::values("values of the first group", first, 1)?;
+    check::values("values of the second group", second, 1)?;
+    let exact = distribution.is_exact("values of a group for an exact test", first.len().max(second.len()))?;
+    let ranks = Ranks::of(&[first, second].concat());
+    let (m, n, all) = (first.len() as f64, second.len() as f64, (first.len() + second.len()) as f64);
+    let variance = m * n / 12.0 * (all + 1.0 - ranks.ties / (all * (all - 1.0)));
+    if ranks.doubled.iter().all(|rank| *rank == ranks.doubled[0]) {
+        return Err(AnalysisError::NoVariation { what: "the values of both groups" });
+    }
+    let sum = ranks.doubled[..first.len()].iter().sum::<usize>();
+    let u = sum as f64 / 2.0 - m * (m + 1.0) / 2.0;
+    let above = u - m * n / 2.0;
+    let z = above.signum() * (above.abs() - 0.5).max(0.0) / variance.sqrt();
+    let p = if exact { distribution::two_sided(&ranks, first.len()) } else { normal_two_sided(z) };
+    Ok(MannWhitney { u, other_u: m * n - u, z, p, exact })
+}
+
+/// How much greater the first group is: the median of all differences between its values and those of the second (Hodges & Lehmann, 1963).
+///
+/// The interval inverts the test (Moses; Hollander & Wolfe, section 4.3): exact where both groups have at most [`MOST_EXACT`] values. With ties its
+/// confidence is at least what it tells, where R's `wilcox.test` turns to the normal approximation.
+pub fn shift(first: &[f64], second: &[f64], confidence: f64) -> Result<Location> {
+    check::values("values of the first group", first, 1)?;
+    check::values("values of the second group", second, 1)?;
+    check::share("the confidence", confidence)?;
+    check::not_too_many("differences between the groups", first.len().saturating_mul(second.len()), MOST_DIFFERENCES)?;
+    let differences = first.iter().flat_map(|a| second.iter().map(move |b| a - b));
+    let differences = summary::sorted(&differences.collect::<Vec<_>>());
+    let (m, n) = (first.len(), second.len());
+    let interval = if m.max(n) <= MOST_EXACT {
+        interval::exact(&differences, &distribution::masses(m, n), confidence)
+    } else {
+        let (m, n) = (m as f64, n as f64);
+        interval::approximate(&differences, m * n / 2.0, (m * n * (m + n + 1.0) / 12.0).sqrt(), confidence)
+    };
+    Ok(Location { estimate: summary::median_of_sorted(&differences), interval })
+}

@@ -1,0 +1,179 @@
+//! What a fitted model says.
+
+use super::Criterion;
+use super::design::Design;
+use super::likelihood::Profile;
+use super::satterthwaite::Precision;
+use crate::distribution::{f_above, t_critical, t_two_sided};
+use crate::error::{AnalysisError, Result};
+use crate::interval::Interval;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use serde::Serialize;
+
+/// A fitted mixed model.
+#[derive(Clone, Debug, Serialize)]
+pub struct Fit {
+    /// What was maximised.
+    pub criterion: Criterion,
+    /// Intercept (the reference, where covariates are zero), conditions in alphabetical order, covariates.
+    pub effects: Vec<Effect>,
+    /// Whether the conditions differ at all; nothing where there is only one.
+    pub conditions: Option<JointTest>,
+    /// Variance of the participants' intercepts, unit of the response squared. Zero at the edge of what is possible: the trials of one participant
+    /// are then no more alike than those of different ones, and the model is one without participants.
+    pub participant_variance: f64,
+    /// Variance within participants, unit of the response squared.
+    pub residual_variance: f64,
+    /// Intraclass correlation: share of the participants in the sum of both variances.
+    pub icc: f64,
+    /// Logarithm of the (restricted) likelihood. Of REML it compares only models with the same fixed effects.
+    pub log_likelihood: f64,
+    /// Best linear unbiased prediction of each participant's intercept, by name in alphabetical order.
+    pub intercepts: Vec<(String, f64)>,
+    /// What is left of each response, in the order of the trials: without fixed effects and the participant's intercept.
+    pub residuals: Vec<f64>,
+    #[serde(skip)]
+    solution: Solution,
+}
+
+/// One fixed effect, or a combination of some.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Effect {
+    /// The condition, the covariate, or `(intercept)`.
+    pub name: String,
+    /// In the unit of the response, of a covariate per its unit.
+    pub estimate: f64,
+    /// Of the estimate.
+    pub standard_error: f64,
+    /// Estimate over standard error.
+    pub t: f64,
+    /// Satterthwaite's degrees of freedom.
+    pub df: f64,
+    /// Two-sided p-value.
+    pub p: f64,
+    /// Interval of confidence of the estimate.
+    pub interval: Interval,
+}
+
+/// F test of several effects at once (Fai & Cornelius, Approximate F-tests, Journal of Statistical Computation and Simulation 54, 1996, as in lmerTest).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct JointTest {
+    /// F.
+    pub f: f64,
+    /// Degrees of freedom of the numerator: number of effects.
+    pub df: f64,
+    /// Degrees of freedom of the denominator, after Satterthwaite.
+    pub denominator_df: f64,
+    /// Its p-value.
+    pub p: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Solution {
+    beta: DVector<f64>,
+    precision: Precision,
+    confidence: f64,
+    reference: String,
+    condition_names: Vec<String>,
+}
+
+impl Fit {
+    pub(super) fn at(design: &Design, ratio: f64, criterion: Criterion, confidence: f64) -> Result<Self> {
+        let flat = AnalysisError::NotEstimable { why: "the effects cannot be told apart at the best variances" };
+        let profile = Profile::of(design, criterion);
+        let point = profile.at(ratio).ok_or(flat.clone())?;
+        let precision = Precision::of(design, &profile, &point)?;
+        let beta = design.r.solve_upper_triangular(&(&design.projected + &point.gamma)).ok_or(flat)?;
+        let condition_names = design.names[design.conditions.clone()].to_vec();
+        let solution = Solution { beta, precision, confidence, reference: design.reference.clone(), condition_names };
+        let effects =
+            (0..design.names.len()).map(|at| solution.effect(design.names[at].clone(), &solution.unit(at))).collect();
+        let intercepts = &point.z * ratio;
+        let fixed = &design.y - &design.q * &point.gamma;
+        let residuals = (0..design.rows()).map(|row| fixed[row] - intercepts[design.of_row[row]]).collect();
+        let residual_variance = profile.residual_variance(&point);
+        Ok(Self {
+            criterion,
+            effects,
+            conditions: solution.joint(design.conditions.clone())?,
+            participant_variance: ratio * residual_variance,
+            residual_variance,
+            icc: ratio / (1.0 + ratio),
+            log_likelihood: -profile.deviance(&point) / 2.0,
+            intercepts: design.participants.iter().cloned().zip(intercepts.iter().copied()).collect(),
+            residuals,
+            solution,
+        })
+    }
+
+    /// The fixed effect of that name.
+    pub fn effect(&self, name: &str) -> Option<&Effect> {
+        self.effects.iter().find(|effect| effect.name == name)
+    }
+
+    /// Difference between two conditions, `first` minus `second`; the reference may be one of them. Correct the p-values of several with
+    /// [`crate::correction::holm`].
+    pub fn between(&self, first: &str, second: &str) -> Result<Effect> {
+        let weights = self.solution.of_condition(first)? - self.solution.of_condition(second)?;
+        if first == second {
+            return Err(AnalysisError::NoVariation { what: "two names of conditions" });
+        }
+        Ok(self.solution.effect(format!("{first} - {second}"), &weights))
+    }
+}
+
+impl Solution {
+    fn unit(&self, at: usize) -> DVector<f64> {
+        DVector::from_fn(self.beta.len(), |row, _| f64::from(u8::from(row == at)))
+    }
+
+    /// Weights of the fixed effects that give the condition's difference from the reference.
+    fn of_condition(&self, name: &str) -> Result<DVector<f64>> {
+        if name == self.reference {
+            return Ok(DVector::zeros(self.beta.len()));
+        }
+        let at = self.condition_names.iter().position(|condition| condition == name);
+        at.map(|at| self.unit(at + 1)).ok_or_else(|| AnalysisError::UnknownCondition { name: name.to_owned() })
+    }
+
+    fn effect(&self, name: String, weights: &DVector<f64>) -> Effect {
+        let estimate = weights.dot(&self.beta);
+        let standard_error = self.precision.variance(weights).sqrt();
+        let (t, df) = (estimate / standard_error, self.precision.df(weights));
+        let interval = Interval::around(estimate, t_critical(self.confidence, df) * standard_error, self.confidence);
+        Effect { name, estimate, standard_error, t, df, p: t_two_sided(t, df), interval }
+    }
+
+    /// The effects are turned until they are uncorrelated; each then has its t and its degrees of freedom.
+    fn joint(&self, effects: std::ops::Range<usize>) -> Result<Option<JointTest>> {
+        if effects.is_empty() {
+            return Ok(None);
+        }
+        let (first, count) = (effects.start, effects.len());
+        let covariance: DMatrix<f64> = self.precision.covariance.view((first, first), (count, count)).into_owned();
+        let turned = SymmetricEigen::try_new(covariance, f64::EPSILON, 1000)
+            .ok_or(AnalysisError::NotEstimable { why: "the covariance of the conditions cannot be taken apart" })?;
+        let (mut squares, mut dfs) = (0.0, Vec::with_capacity(count));
+        for (variance, direction) in turned.eigenvalues.iter().zip(turned.eigenvectors.column_iter()) {
+            let mut weights = DVector::zeros(self.beta.len());
+            weights.rows_mut(first, count).copy_from(&direction);
+            squares += weights.dot(&self.beta).powi(2) / variance;
+            dfs.push(self.precision.df(&weights));
+        }
+        let (f, df, denominator_df) = (squares / count as f64, count as f64, together(&dfs));
+        Ok(Some(JointTest { f, df, denominator_df, p: f_above(f, df, denominator_df) }))
+    }
+}
+
+/// Degrees of freedom of the mean of squared t's: those of the F with the same expectation, 2 where that has none.
+fn together(dfs: &[f64]) -> f64 {
+    let alike = dfs.windows(2).all(|two| (two[0] - two[1]).abs() < 1e-8 * two[0].abs());
+    if alike {
+        return dfs.iter().sum::<f64>() / dfs.len() as f64;
+    }
+    if dfs.iter().any(|df| *df <= 2.0) {
+        return 2.0;
+    }
+    let expected: f64 = dfs.iter().map(|df| df / (df - 2.0)).sum();
+    2.0 * expected / (expected - dfs.len() as f64)
+}

@@ -1,0 +1,48 @@
+//! The ratio of the participants' variance to the residual one, where the likelihood is greatest.
+
+use super::Criterion;
+use super::design::Design;
+use super::likelihood::{Point, Profile};
+use crate::error::{AnalysisError, Result};
+
+/// Correlations within a participant at which the likelihood is looked at first: evenly, then ever nearer to 1.
+fn correlations() -> impl Iterator<Item = f64> {
+    (0..50).map(|step| f64::from(step) / 50.0).chain((2..=9).map(|digits| 1.0 - 0.1_f64.powi(digits)))
+}
+
+/// Found as the zero of the slope, which is sharper than the flat top of the likelihood.
+pub(super) fn ratio(design: &Design, criterion: Criterion) -> Result<f64> {
+    let profile = Profile::of(design, criterion);
+    let points: Vec<Point> = correlations().filter_map(|share| profile.at(share / (1.0 - share))).collect();
+    let deviances: Vec<f64> = points.iter().map(|point| profile.deviance(point)).collect();
+    let best = (0..points.len()).min_by(|&a, &b| deviances[a].total_cmp(&deviances[b])).ok_or(FLAT)?;
+    if best + 1 == points.len() {
+        return Err(AnalysisError::NotEstimable { why: "the trials of each participant differ by the effects alone" });
+    }
+    if best == 0 && profile.slope(&points[0]) >= 0.0 {
+        return Ok(0.0);
+    }
+    let (low, high) = (points[best.saturating_sub(1)].ratio, points[best + 1].ratio);
+    zero(low, high, |ratio| profile.at(ratio).map(|point| profile.slope(&point)))
+}
+
+const FLAT: AnalysisError = AnalysisError::NotEstimable { why: "the likelihood has no maximum that can be found" };
+
+/// By halving; the slope is negative below the ratio and positive above.
+fn zero(mut low: f64, mut high: f64, slope: impl Fn(f64) -> Option<f64>) -> Result<f64> {
+    if slope(low).ok_or(FLAT)? > 0.0 || slope(high).ok_or(FLAT)? < 0.0 {
+        return Err(FLAT);
+    }
+    for _ in 0..200 {
+        let middle = f64::midpoint(low, high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if slope(middle).ok_or(FLAT)? < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Ok(high)
+}

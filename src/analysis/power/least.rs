@@ -1,0 +1,63 @@
+//! The least number of participants that gives the wanted power.
+
+use super::Power;
+use crate::check;
+use crate::error::{AnalysisError, Result};
+use serde::Serialize;
+
+/// The least number of participants, with the power that it gives.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Least {
+    /// Number of participants.
+    pub participants: usize,
+    /// What they give.
+    pub power: Power,
+}
+
+impl Least {
+    /// The least number from `from` to `largest` at which `power_of` gives the share `wanted` (between 0 and 1): first doubled until it is reached, then
+    /// halved.
+    ///
+    /// The power of an exact test rises in small steps and may fall from one number to the next, and simulations scatter: one participant less
+    /// has less than what was wanted, but a still smaller number may by chance have it. [`AnalysisError::NotReached`] if `largest` has less.
+    ///
+    /// ```
+    /// use nima_analysis::{power::{Least, PairedTest, Population, Simulation}, AnalysisError};
+    ///
+    /// let (simulation, population) = (Simulation::default(), Population::Normal { sd: 1.0 });
+    /// let least = Least::of(0.8, 5, 100, |n| simulation.paired(&population, 1.0, n, PairedTest::T))?;
+    /// assert!((9..=11).contains(&least.participants)); // exactly: 10
+    /// # Ok::<(), AnalysisError>(())
+    /// ```
+    pub fn of(
+        wanted: f64,
+        from: usize,
+        largest: usize,
+        mut power_of: impl FnMut(usize) -> Result<Power>,
+    ) -> Result<Self> {
+        check::share("the wanted power", wanted)?;
+        check::enough("the most participants", largest, from)?;
+        let mut below = None;
+        let mut at = from;
+        let mut power = power_of(at)?;
+        while power.share < wanted {
+            if at >= largest {
+                return Err(AnalysisError::NotReached { wanted, power: power.share, largest });
+            }
+            below = Some(at);
+            at = at.saturating_mul(2).clamp(at + 1, largest);
+            power = power_of(at)?;
+        }
+        let mut least = Self { participants: at, power };
+        while let Some(low) = below.filter(|low| low + 1 < least.participants) {
+            let middle = usize::midpoint(low, least.participants);
+            let power = power_of(middle)?;
+            if power.share < wanted {
+                below = Some(middle);
+            } else {
+                least = Self { participants: middle, power };
+            }
+        }
+        Ok(least)
+    }
+}

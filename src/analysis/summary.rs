@@ -1,0 +1,103 @@
+//! What was measured: location and spread of one sample.
+
+use crate::check;
+use crate::error::{AnalysisError, Result};
+use serde::Serialize;
+
+/// Location and spread of one sample, all in its unit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// Number of values.
+    pub n: usize,
+    /// Arithmetic mean.
+    pub mean: f64,
+    /// Standard deviation with n - 1; nothing of a single value.
+    pub sd: Option<f64>,
+    /// Median.
+    pub median: f64,
+    /// First and third quartile ([`quantile`]).
+    pub quartiles: [f64; 2],
+    /// Least and greatest value.
+    pub extremes: [f64; 2],
+}
+
+impl Summary {
+    /// Of `sample`, at least one value.
+    pub fn of(sample: &[f64]) -> Result<Self> {
+        check::values("the sample", sample, 1)?;
+        let sorted = sorted(sample);
+        let at = |share| quantile_of_sorted(&sorted, share);
+        Ok(Self {
+            n: sample.len(),
+            mean: raw_mean(sample),
+            sd: (sample.len() > 1).then(|| raw_sd(sample)),
+            median: at(0.5),
+            quartiles: [at(0.25), at(0.75)],
+            extremes: [at(0.0), at(1.0)],
+        })
+    }
+}
+
+/// Arithmetic mean of at least one value.
+pub fn mean(sample: &[f64]) -> Result<f64> {
+    check::values("the sample", sample, 1)?;
+    Ok(raw_mean(sample))
+}
+
+/// Standard deviation with n - 1 in the denominator, of at least two values.
+pub fn sd(sample: &[f64]) -> Result<f64> {
+    check::values("the sample", sample, 2)?;
+    Ok(raw_sd(sample))
+}
+
+/// Median of at least one value.
+pub fn median(sample: &[f64]) -> Result<f64> {
+    quantile(sample, 0.5)
+}
+
+/// The quantile at `share` (0 to 1) of at least one value: type 7 of Hyndman & Fan (Sample quantiles in statistical packages, The American
+/// Statistician 50, 1996), linear between the order statistics, as R's `quantile` and `NumPy` take it by default.
+pub fn quantile(sample: &[f64], share: f64) -> Result<f64> {
+    check::values("the sample", sample, 1)?;
+    if !(0.0..=1.0).contains(&share) {
+        return Err(AnalysisError::OutOfRange { what: "the share of a quantile", range: "from 0 to 1", value: share });
+    }
+    Ok(quantile_of_sorted(&sorted(sample), share))
+}
+
+pub(crate) fn sorted(sample: &[f64]) -> Vec<f64> {
+    let mut sorted = sample.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted
+}
+
+/// Of at least one finite value, ascending.
+pub(crate) fn quantile_of_sorted(sorted: &[f64], share: f64) -> f64 {
+    let at = (sorted.len() - 1) as f64 * share;
+    let below = at as usize;
+    let above = (below + 1).min(sorted.len() - 1);
+    sorted[below] + (at - below as f64) * (sorted[above] - sorted[below])
+}
+
+pub(crate) fn median_of_sorted(sorted: &[f64]) -> f64 {
+    let half = sorted.len() / 2;
+    if sorted.len() % 2 == 1 { sorted[half] } else { f64::midpoint(sorted[half - 1], sorted[half]) }
+}
+
+/// Of at least one value.
+pub(crate) fn raw_mean(sample: &[f64]) -> f64 {
+    let mean = sample.iter().sum::<f64>() / sample.len() as f64;
+    // The second pass takes away what the sum was rounded by.
+    mean + sample.iter().map(|value| value - mean).sum::<f64>() / sample.len() as f64
+}
+
+/// Of at least two values.
+pub(crate) fn raw_sd(sample: &[f64]) -> f64 {
+    (squares(sample) / (sample.len() - 1) as f64).sqrt()
+}
+
+/// Sum of the squared deviations from the mean.
+pub(crate) fn squares(sample: &[f64]) -> f64 {
+    let mean = raw_mean(sample);
+    sample.iter().map(|value| (value - mean).powi(2)).sum()
+}

@@ -1,0 +1,42 @@
+//! Student's paired t-test: the parametric companion of [`crate::signed_rank`].
+
+use crate::distribution::{t_critical, t_two_sided};
+use crate::error::{AnalysisError, Result};
+use crate::interval::Interval;
+use crate::{check, summary};
+use serde::Serialize;
+
+/// Result of a paired t-test (Student, The probable error of a mean, Biometrika 6, 1908).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TTest {
+    /// Mean difference, in the unit of the differences.
+    pub mean: f64,
+    /// Its interval of confidence.
+    pub interval: Interval,
+    /// Mean over its standard error.
+    pub t: f64,
+    /// Degrees of freedom, n - 1.
+    pub df: f64,
+    /// Two-sided p-value.
+    pub p: f64,
+}
+
+/// Of `first - second`, pair by pair.
+pub fn paired(first: &[f64], second: &[f64], confidence: f64) -> Result<TTest> {
+    of_differences(&check::differences(first, second)?, confidence)
+}
+
+/// Of at least two differences that are not all the same, against zero.
+pub fn of_differences(differences: &[f64], confidence: f64) -> Result<TTest> {
+    check::values("differences", differences, 2)?;
+    check::share("the confidence", confidence)?;
+    let (n, mean, sd) = (differences.len() as f64, summary::raw_mean(differences), summary::raw_sd(differences));
+    let error = sd / n.sqrt();
+    let t = mean / error;
+    if !check::varies(differences) || !t.is_finite() {
+        return Err(AnalysisError::NoVariation { what: "the differences" });
+    }
+    let df = n - 1.0;
+    let interval = Interval::around(mean, t_critical(confidence, df) * error, confidence);
+    Ok(TTest { mean, interval, t, df, p: t_two_sided(t, df) })
+}

@@ -1,0 +1,231 @@
+//! The result in words, as a table, and as a script that repeats it in R.
+
+use std::fmt::Write as _;
+
+use nima_analysis::Interval;
+
+use super::{Design, Mixed, OfCondition, OfMeasure, Pair, Report};
+use crate::Findings;
+
+impl Findings for Report {
+    fn text(&self) -> String {
+        let Self { table, trials, participants, conditions, reference, confidence, measures } = self;
+        let mut text = format!(
+            "{table}: {trials} trials of {participants} participants; conditions: {}; compared with {reference}; intervals of {:.0} %\n",
+            conditions.join(", "),
+            100.0 * confidence
+        );
+        for measure in measures {
+            measure.write(&mut text);
+        }
+        text
+    }
+
+    fn files(&self) -> Vec<(String, String)> {
+        vec![(".md".to_owned(), self.text()), (".csv".to_owned(), self.csv()), (".R".to_owned(), self.script())]
+    }
+}
+
+/// A p-value as papers print it.
+fn p_words(p: f64) -> String {
+    if p < 0.001 { "< 0.001".to_owned() } else { format!("{p:.3}") }
+}
+
+/// Four significant digits.
+fn digits(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let places = (3 - value.abs().log10().floor() as i32).clamp(0, 9);
+    format!("{value:.*}", places as usize)
+}
+
+fn interval_words(interval: &Interval) -> String {
+    format!("{} to {}", digits(interval.lower), digits(interval.upper))
+}
+
+impl OfMeasure {
+    fn write(&self, text: &mut String) {
+        let Self { measure, missing, design, conditions, friedman, complete, pairs, mixed, notes } = self;
+        writeln!(text, "\n## {measure}\n").ok();
+        if *missing > 0 {
+            writeln!(text, "{missing} trials have no value.\n").ok();
+        }
+        writeln!(
+            text,
+            "| condition | participants | trials | median | interval | mean | sd |\n|---|---|---|---|---|---|---|"
+        )
+        .ok();
+        for OfCondition { condition, participants, trials, median, interval, mean, sd } in conditions {
+            let interval = interval.as_ref().map_or_else(|| "-".to_owned(), interval_words);
+            let sd = sd.map_or_else(|| "-".to_owned(), digits);
+            let (median, mean) = (digits(*median), digits(*mean));
+            writeln!(text, "| {condition} | {participants} | {trials} | {median} | {interval} | {mean} | {sd} |").ok();
+        }
+        if let Some(test) = friedman {
+            let (chi_square, df, w) = (digits(test.chi_square), test.df, digits(test.w));
+            let (p, f_p) = (p_words(test.p), p_words(test.f_p));
+            writeln!(text, "\nFriedman, {complete} participants under all conditions: chi-square({df}) = {chi_square}, p {p} (Iman-Davenport p {f_p}), Kendall's W {w}").ok();
+        }
+        if !pairs.is_empty() {
+            let (name, rank) = match design {
+                Design::Between => ("Mann-Whitney", "Cliff's delta"),
+                _ => ("Wilcoxon", "rank-biserial r"),
+            };
+            let needed = pairs.iter().any(|pair| pair.needed.is_some());
+            let [head, line] = if needed { [" participants needed |", "---|"] } else { [""; 2] };
+            writeln!(
+                text,
+                "\n| difference ({name}) | participants | Hodges-Lehmann | interval | p | p (Holm) | {rank} | Hedges' g |{head}\n|---|---|---|---|---|---|---|---|{line}"
+            )
+            .ok();
+            for pair in pairs {
+                pair.write(text, needed);
+            }
+        }
+        if let Some(Mixed { effects, conditions, icc }) = mixed {
+            let all = conditions.map_or_else(String::new, |test| {
+                format!(
+                    "; conditions: F({}, {:.1}) = {}, p {}",
+                    test.df,
+                    test.denominator_df,
+                    digits(test.f),
+                    p_words(test.p)
+                )
+            });
+            writeln!(
+                text,
+                "\nMixed model (REML, random intercept per participant, Satterthwaite), ICC {icc:.2}{all}\n"
+            )
+            .ok();
+            writeln!(text, "| effect | estimate | interval | standard error | df | p |\n|---|---|---|---|---|---|")
+                .ok();
+            for effect in effects {
+                writeln!(
+                    text,
+                    "| {} | {} | {} | {} | {:.1} | {} |",
+                    effect.name,
+                    digits(effect.estimate),
+                    interval_words(&effect.interval),
+                    digits(effect.standard_error),
+                    effect.df,
+                    p_words(effect.p)
+                )
+                .ok();
+            }
+        }
+        for note in notes {
+            writeln!(text, "\nNot computed: {note}").ok();
+        }
+    }
+}
+
+impl Pair {
+    fn write(&self, text: &mut String, needed: bool) {
+        let Self {
+            first,
+            second,
+            participants: [one, other],
+            difference,
+            p,
+            exact,
+            p_holm,
+            rank_effect,
+            g,
+            needed: least,
+        } = self;
+        let participants = if one == other { one.to_string() } else { format!("{one}, {other}") };
+        let exact = if *exact { "" } else { " (normal)" };
+        let g = g.map_or_else(|| "-".to_owned(), digits);
+        let (estimate, interval) = (digits(difference.estimate), interval_words(&difference.interval));
+        let (p, p_holm) = (p_words(*p), p_words(*p_holm));
+        write!(
+            text,
+            "| {first} - {second} | {participants} | {estimate} | {interval} | {p}{exact} | {p_holm} | {rank_effect:.2} | {g} |"
+        )
+        .ok();
+        if needed {
+            let least = least.map_or_else(|| "> 500".to_owned(), |least| least.to_string());
+            write!(text, " {least} |").ok();
+        }
+        text.push('\n');
+    }
+}
+
+impl Report {
+    /// A row per measure and pair.
+    fn csv(&self) -> String {
+        let mut text = "measure,first,second,participants_first,participants_second,difference,lower,upper,p,exact,p_holm,rank_effect,hedges_g\n".to_owned();
+        let cell = |word: &str| {
+            if word.contains([',', '"', '\n']) { format!("\"{}\"", word.replace('"', "\"\"")) } else { word.to_owned() }
+        };
+        for measure in &self.measures {
+            for pair in &measure.pairs {
+                let Pair {
+                    first,
+                    second,
+                    participants: [one, other],
+                    difference,
+                    p,
+                    exact,
+                    p_holm,
+                    rank_effect,
+                    g,
+                    ..
+                } = pair;
+                let (lower, upper, estimate) =
+                    (difference.interval.lower, difference.interval.upper, difference.estimate);
+                let g = g.map_or_else(String::new, |g| g.to_string());
+                let names = [&measure.measure, first, second].map(|name| cell(name)).join(",");
+                writeln!(
+                    text,
+                    "{names},{one},{other},{estimate},{lower},{upper},{p},{exact},{p_holm},{rank_effect},{g}"
+                )
+                .ok();
+            }
+        }
+        text
+    }
+
+    /// The same in R, to check it.
+    fn script(&self) -> String {
+        let quoted = |word: &str| format!("\"{}\"", word.replace('\\', "\\\\").replace('"', "\\\""));
+        let measures: Vec<String> = self.measures.iter().map(|measure| quoted(&measure.measure)).collect();
+        format!(
+            r#"# Repeats the analysis in R: Rscript analysis.R TRIALS.csv. Needs lmerTest for the mixed model.
+path <- commandArgs(trailingOnly = TRUE)
+trials <- read.csv(if (length(path)) path[1] else {table}, check.names = FALSE)
+trials$condition <- relevel(factor(trials$condition), ref = {reference})
+for (measure in c({measures})) {{
+  cat("\n##", measure, "\n")
+  data <- data.frame(participant = factor(trials$participant), condition = trials$condition, y = trials[[measure]])
+  if ("trial" %in% names(trials)) data$trial <- trials$trial
+  data <- data[!is.na(data$y), ]
+  wide <- tapply(data$y, list(data$participant, data$condition), mean)
+  print(apply(wide, 2, median, na.rm = TRUE))
+  complete <- wide[complete.cases(wide), , drop = FALSE]
+  if (ncol(complete) > 2 && nrow(complete) > 1) print(friedman.test(complete))
+  pairs <- combn(colnames(wide), 2)
+  p <- apply(pairs, 2, function(pair) {{
+    both <- wide[complete.cases(wide[, pair]), pair, drop = FALSE]
+    within <- nrow(both) > 0
+    a <- if (within) both[, 2] else na.omit(wide[, pair[2]])
+    b <- if (within) both[, 1] else na.omit(wide[, pair[1]])
+    test <- suppressWarnings(wilcox.test(a, b, paired = within, conf.int = TRUE, conf.level = {confidence}))
+    cat(pair[2], "-", pair[1], ": difference", test$estimate, "interval", test$conf.int, "p", test$p.value, "\n")
+    test$p.value
+  }})
+  print(p.adjust(p, "holm"))
+  if (requireNamespace("lmerTest", quietly = TRUE) && anyDuplicated(data$participant)) {{
+    formula <- if ("trial" %in% names(data)) y ~ condition + trial + (1 | participant) else y ~ condition + (1 | participant)
+    print(summary(lmerTest::lmer(formula, data)))
+  }}
+}}
+"#,
+            table = quoted(&self.table),
+            reference = quoted(&self.reference),
+            measures = measures.join(", "),
+            confidence = self.confidence,
+        )
+    }
+}

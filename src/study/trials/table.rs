@@ -1,0 +1,208 @@
+//! A table of trials.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    io,
+    path::Path,
+};
+
+use nima_files::{open_table, quoted};
+
+/// Columns that are no measures.
+const NO_MEASURES: [&str; 3] = [PARTICIPANT, CONDITION, TRIAL];
+const PARTICIPANT: &str = "participant";
+const CONDITION: &str = "condition";
+const TRIAL: &str = "trial";
+/// Most trials and most columns.
+const TRIALS_MAX: usize = 100_000;
+const COLUMNS_MAX: usize = 1000;
+
+/// Why a table of trials cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[error("{path}: {why}")]
+pub struct TableError {
+    path: String,
+    why: String,
+}
+
+/// One trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    /// Name of the participant.
+    pub participant: String,
+    /// Name of the condition.
+    pub condition: String,
+    /// Its number, if the table has it.
+    pub number: Option<f64>,
+    /// The measures, in the order of the table's; `None` where it has no value.
+    pub values: Vec<Option<f64>>,
+}
+
+/// A table of trials.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// Names of the measures.
+    pub measures: Vec<String>,
+    /// The trials, in the order of the file.
+    pub trials: Vec<Trial>,
+}
+
+impl Table {
+    /// Reads a CSV file with the columns `participant`, `condition`, if it likes `trial` (a number), and a column per measure: these ones, or
+    /// every other column that holds numbers alone. Empty cells and `NA` are missing values.
+    ///
+    /// # Errors
+    /// [`TableError`]: what is wrong, where, and what to do.
+    pub fn read(path: &Path, wanted: &[String]) -> Result<Self, TableError> {
+        let failed = |why: String| TableError { path: path.display().to_string(), why };
+        let input = open_table(path).map_err(|error| failed(error.to_string()))?;
+        Self::of(input, wanted).map_err(failed)
+    }
+
+    fn of(input: impl io::Read, wanted: &[String]) -> Result<Self, String> {
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(input);
+        let names: Vec<String> = reader.headers().map_err(|error| plain(&error))?.iter().map(str::to_owned).collect();
+        if names.len() > COLUMNS_MAX {
+            return Err(format!("{} columns are more than {COLUMNS_MAX}", names.len()));
+        }
+        if let Some(twice) = names.iter().enumerate().find(|(at, name)| names[..*at].contains(name)) {
+            return Err(format!("column \"{}\" is there twice", quoted(twice.1)));
+        }
+        let column = |name: &str| names.iter().position(|known| known == name);
+        let needed = |name: &str| column(name).ok_or_else(|| format!("there is no column \"{name}\""));
+        let (participant, condition, trial) = (needed(PARTICIPANT)?, needed(CONDITION)?, column(TRIAL));
+        for name in wanted {
+            column(name).ok_or_else(|| format!("there is no column \"{}\"", quoted(name)))?;
+        }
+        let mut rows: Vec<(u64, csv::StringRecord)> = Vec::new();
+        for record in reader.records() {
+            let record = record.map_err(|error| plain(&error))?;
+            rows.push((record.position().map_or(0, csv::Position::line), record));
+            if rows.len() > TRIALS_MAX {
+                return Err(format!("there are more than {TRIALS_MAX} trials"));
+            }
+        }
+        let is_number = |at: usize| rows.iter().all(|(_, row)| value(&row[at]).is_ok());
+        let measures: Vec<usize> = if wanted.is_empty() {
+            (0..names.len()).filter(|at| !NO_MEASURES.contains(&names[*at].as_str()) && is_number(*at)).collect()
+        } else {
+            wanted.iter().filter_map(|name| column(name)).collect()
+        };
+        if measures.is_empty() {
+            return Err("no column but participant, condition and trial holds numbers alone".to_owned());
+        }
+        let cell = |line: u64, row: &csv::StringRecord, at: usize| {
+            value(&row[at])
+                .map_err(|text| format!("line {line}: \"{}\" in column {} is no number", quoted(&text), names[at]))
+        };
+        let word = |line: u64, row: &csv::StringRecord, at: usize| match &row[at] {
+            "" => Err(format!("line {line}: {} is empty", names[at])),
+            word => Ok(word.to_owned()),
+        };
+        let trials = rows.iter().map(|(line, row)| {
+            Ok(Trial {
+                participant: word(*line, row, participant)?,
+                condition: word(*line, row, condition)?,
+                number: trial.map(|at| cell(*line, row, at)).transpose()?.flatten(),
+                values: measures.iter().map(|at| cell(*line, row, *at)).collect::<Result<_, String>>()?,
+            })
+        });
+        let trials = trials.collect::<Result<Vec<_>, String>>()?;
+        if trials.is_empty() {
+            return Err("it has no trials".to_owned());
+        }
+        Ok(Self { measures: measures.into_iter().map(|at| names[at].clone()).collect(), trials })
+    }
+
+    /// The conditions, in alphabetical order.
+    pub fn conditions(&self) -> Vec<String> {
+        let all: BTreeSet<&String> = self.trials.iter().map(|trial| &trial.condition).collect();
+        all.into_iter().cloned().collect()
+    }
+
+    /// How many participants there are.
+    pub fn participants(&self) -> usize {
+        self.trials.iter().map(|trial| &trial.participant).collect::<BTreeSet<_>>().len()
+    }
+
+    /// The trials that have a value of this measure, with it.
+    pub(super) fn measured(&self, measure: usize) -> impl Iterator<Item = (&Trial, f64)> {
+        self.trials.iter().filter_map(move |trial| Some((trial, trial.values.get(measure).copied()??)))
+    }
+
+    /// The mean of each participant under each condition, and the number of its trials.
+    pub(super) fn means(&self, measure: usize) -> BTreeMap<(&str, &str), (f64, usize)> {
+        let mut sums: BTreeMap<(&str, &str), (f64, usize)> = BTreeMap::new();
+        for (trial, value) in self.measured(measure) {
+            let sum = sums.entry((&trial.participant, &trial.condition)).or_default();
+            *sum = (sum.0 + value, sum.1 + 1);
+        }
+        for (sum, count) in sums.values_mut() {
+            *sum /= *count as f64;
+        }
+        sums
+    }
+}
+
+/// A cell: a finite number, or nothing.
+fn value(cell: &str) -> Result<Option<f64>, String> {
+    if cell.is_empty() || cell == "NA" {
+        return Ok(None);
+    }
+    match cell.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(Some(value)),
+        _ => Err(cell.to_owned()),
+    }
+}
+
+/// An error of the reader in few words.
+fn plain(error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+            let line = pos.as_ref().map_or(0, csv::Position::line);
+            format!("line {line} has {len} values where the first line has {expected_len} names")
+        }
+        csv::ErrorKind::Utf8 { .. } => "it is no text (UTF-8)".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str, wanted: &[&str]) -> Result<Table, String> {
+        let wanted: Vec<String> = wanted.iter().map(|name| (*name).to_owned()).collect();
+        Table::of(text.as_bytes(), &wanted)
+    }
+
+    #[test]
+    fn columns_of_numbers_are_measures_and_empty_cells_are_missing() {
+        let text = "participant,condition,trial,time_s,note,force_n\na,x,1,10.5,good,2\na,x,2,NA,bad,3\nb,y,1,9,,\n";
+        let table = of(text, &[]).unwrap();
+        assert_eq!(table.measures, ["time_s", "force_n"]);
+        assert_eq!((table.participants(), table.conditions()), (2, vec!["x".to_owned(), "y".to_owned()]));
+        assert_eq!(table.means(0)[&("a", "x")], (10.5, 1));
+        assert_eq!(table.means(1)[&("a", "x")], (2.5, 2));
+        assert_eq!(table.measured(1).count(), 2);
+        assert_eq!(of(text, &["force_n"]).unwrap().measures, ["force_n"]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_line() {
+        for (text, wanted, words) in [
+            ("a,b\n1,2\n", &[][..], "no column \"participant\""),
+            ("participant,condition\na,x\n", &[], "holds numbers alone"),
+            ("participant,condition,t\na,x,1\na,y,fast\n", &["t"], "line 3: \"fast\" in column t"),
+            ("participant,condition,t\na,x,inf\n", &["t"], "line 2"),
+            ("participant,condition,t\na,,1\n", &[], "line 2: condition is empty"),
+            ("participant,condition,t\na,x\n", &[], "line 2 has 2 values"),
+            ("participant,condition,t,t\na,x,1,2\n", &[], "\"t\" is there twice"),
+            ("participant,condition,t\n", &[], "no trials"),
+            ("participant,condition,t\na,x,1\n", &["u"], "no column \"u\""),
+        ] {
+            let told = of(text, wanted).unwrap_err();
+            assert!(told.contains(words), "{told}");
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! From recorded sessions to a table of trials, and from a table of trials to the answer.
+use std::{fmt::Write as _, path::Path};
+
+use serde_json::Value;
+
+use crate::every_command::{json, nima};
+
+fn refused(arguments: &[&str]) -> String {
+    let output = nima(arguments);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success(), "{arguments:?} succeeded");
+    assert_eq!(text.lines().count(), 1, "{text}");
+    text
+}
+
+#[test]
+fn sessions_are_scored_and_become_a_table_of_trials() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let sessions = [at("a.mcap"), at("b.mcap")];
+    for (session, mode) in sessions.iter().zip(["best", "dfr"]) {
+        let run = ["run", "--virtual", "--seconds", "10", "--scene", "bimanual", "--mode", mode, "--record", session];
+        assert!(nima(&run).status.success());
+    }
+    let score = json(&["score", &sessions[0], "--json"]);
+    let value = |key: &str| score[key].as_f64().unwrap_or_else(|| panic!("{key}: {score}"));
+    assert!((9.0..10.0).contains(&value("completion_time_s")), "{score}");
+    for side in ["left", "right"] {
+        assert!((0.05..2.0).contains(&value(&format!("path_length_m_{side}"))), "{score}");
+        assert!((0.5..4.5).contains(&value(&format!("peak_force_n_{side}"))), "{score}");
+    }
+    assert_eq!(score["drops_out_of_view"], Value::Null, "there was nothing to drop: {score}");
+    let part = json(&["score", &sessions[0], "--from", "2", "--to", "5", "--json"]);
+    assert!((part["completion_time_s"].as_f64().unwrap() - 3.0).abs() < 0.01, "{part}");
+
+    let out = at("trials.csv");
+    let told = nima(&["score", &sessions[0], &sessions[1], "--participant", "p1", "--out", &out]);
+    assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
+    let table = std::fs::read_to_string(&out).unwrap();
+    let lines: Vec<&str> = table.lines().collect();
+    assert!(lines[0].starts_with("participant,condition,trial,session,") && lines.len() == 3, "{table}");
+    assert!(lines[1].starts_with("p1,best 50 ms,1,") && lines[2].starts_with("p1,dfr 50 ms,2,"), "{table}");
+    assert!(nima(&["study", "trials", &out]).status.success(), "the table is one of trials");
+
+    assert!(refused(&["score", &at("absent.mcap")]).contains("absent.mcap"));
+    assert!(refused(&["score", &sessions[0], &sessions[1], "--from", "1"]).contains("one session"));
+    std::fs::write(at("task.toml"), "name = 'x'\nkind = 'palpation'\ntime_limit_s = -1.0").unwrap();
+    assert!(refused(&["score", &sessions[0], "--task", &at("task.toml")]).contains("time_limit_s"));
+    let idle = at("idle.mcap");
+    let run = ["run", "--virtual", "--seconds", "1", "--scene", "gravity", "--record", &idle];
+    nima(&run);
+    if Path::new(&idle).exists() {
+        assert!(refused(&["score", &idle]).contains("no trial"));
+    }
+}
+
+#[test]
+fn a_table_of_trials_gives_the_answer_with_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let mut table = "participant,condition,trial,time_s\n".to_owned();
+    for participant in 0..8 {
+        for (condition, time_s) in [("dfr", 60.0), ("matched", 51.0)] {
+            let skill_s = f64::from(participant * participant % 7);
+            writeln!(table, "p{participant},{condition},1,{}", time_s + skill_s + f64::from(participant) * 0.1)
+                .unwrap();
+        }
+    }
+    std::fs::write(at("trials.csv"), table).unwrap();
+    let told = json(&["study", "trials", &at("trials.csv"), "--reference", "dfr", "--json", "--out", &at("out")]);
+    let pair = &told["measures"][0]["pairs"][0];
+    assert_eq!((&pair["first"], &pair["second"]), (&Value::from("matched"), &Value::from("dfr")));
+    assert!((pair["difference"]["estimate"].as_f64().unwrap() + 9.0).abs() < 1e-6, "{pair}");
+    // All eight differ in the same direction: 2 of the 256 ways.
+    assert!((pair["p"].as_f64().unwrap() - 2.0 / 256.0).abs() < 1e-9, "{pair}");
+    for name in ["analysis.json", "analysis.md", "analysis.csv", "analysis.R"] {
+        assert!(folder.path().join("out").join(name).exists(), "{name}");
+    }
+    assert!(refused(&["study", "trials", &at("trials.csv"), "--reference", "none"]).contains("dfr, matched"));
+    assert!(refused(&["study", "trials", &at("trials.csv"), "--measure", "force_n"]).contains("force_n"));
+    assert!(refused(&["study", "trials", &at("absent.csv")]).contains("absent.csv"));
+}

@@ -16,7 +16,7 @@ use nima_devices::{
     Device, HandleReading, Stamped, Standing,
     force_dimension::{Driver, ForceAnswer, HandleEvent, Settings, open, status::ForceOffCause},
 };
-use nima_testing::real_time::judged;
+use nima_testing::real_time::{judged, too_busy};
 
 use super::*;
 use crate::emulators::Serving;
@@ -143,14 +143,24 @@ fn it_connects_and_reads_what_the_hand_does_without_a_gap() {
     });
 }
 
+/// A round this late leaves the handle little of the half period for which it waits.
+const LATE: Duration = Duration::from_micros(200);
+
 /// Readings that come in this many rounds of a loop, one in 1.2 ms, which is a fifth slower than the handle's own cycle.
 fn readings_in(driver: &mut Driver, rounds: u32, mut each: impl FnMut(&mut Driver)) -> u64 {
     driver.poll(now_s());
     let (before, begin) = (driver.health().readings, Instant::now());
+    let mut late = 0;
     for round in 1..=rounds {
-        std::thread::sleep((begin + Duration::from_micros(1200) * round).saturating_duration_since(Instant::now()));
+        let due = begin + Duration::from_micros(1200) * round;
+        std::thread::sleep(due.saturating_duration_since(Instant::now()));
+        late += u32::from(due.elapsed() > LATE);
         driver.poll(now_s());
         each(driver);
+    }
+    // A handle waits for a loop that comes half a period late, and no longer.
+    if late * 50 > rounds {
+        too_busy();
     }
     driver.health().readings - before
 }

@@ -136,9 +136,10 @@ impl Scorer {
         let completed_s = (outcome == Outcome::Completed).then_some(end_s);
         score.set("trial_time_s", self.begin_s.map(|_| end_s));
         score.set("completion_time_s", completed_s);
-        score.set("time_over_reference", completed_s.map(|time_s| time_s / self.task.reference_time_s));
         score.set_hands("engaged_share", self.each(|hand| hand.times.engaged_share()));
+        // Without a task there is neither a reference nor a picture.
         if self.task.kind != TaskKind::Free {
+            score.set("time_over_reference", completed_s.map(|time_s| time_s / self.task.reference_time_s));
             score.set_hands("out_of_view_share", self.each(|hand| hand.times.out_of_view_share()));
         }
         let known_s = self.each(|hand| hand.times.known_s());

@@ -110,7 +110,8 @@ impl Scored {
             });
             let values: Vec<String> = values.collect();
             if !values.is_empty() {
-                writeln!(text, "  {:<32} {} {}", definition.id, values.join(", "), definition.unit).ok();
+                let unit = if definition.unit == "1" { "" } else { definition.unit };
+                writeln!(text, "  {:<34} {} {unit}", definition.id, values.join(", ")).ok();
             }
         }
         text.trim_end().to_owned()

@@ -30,7 +30,8 @@ use zenoh::Wait as _;
 use super::*;
 use crate::keys;
 
-const PATIENCE: Duration = Duration::from_secs(20);
+/// Far longer than anything takes, also on a busy machine.
+const PATIENCE: Duration = Duration::from_mins(2);
 
 /// A department with a rig and a watcher.
 struct Department {
@@ -265,7 +266,7 @@ fn a_screen_that_is_too_slow_makes_nobody_wait() {
     let times = times.lock().unwrap();
     let took = times[59].duration_since(times[0]);
     // 59 bundles of 50 ms.
-    assert!(took < Duration::from_secs(6), "{took:?}");
+    assert!(took < Duration::from_secs(30), "{took:?}: as slow as the slow one");
     assert_eq!(share.dropped(), 0, "the recorder was never kept waiting");
     running.end();
     drop((of_slow, watching));

@@ -26,6 +26,11 @@ use std::{error::Error, path::PathBuf};
 
 use serde::Serialize;
 
+/// A cell of a CSV file, quoted where it needs that.
+pub fn csv_cell(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
+
 /// A measurement with its options.
 pub trait Experiment {
     /// Start of the names of its files: `release` gives `release.json` and `release.md`.

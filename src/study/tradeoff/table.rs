@@ -1,5 +1,6 @@
 //! The figures as CSV, one row per point.
 
+use crate::csv_cell;
 use std::fmt::Write as _;
 
 use super::{SourceFigures, Study};
@@ -31,8 +32,8 @@ impl SourceFigures {
         writeln!(
             text,
             "{},{},{},{},{},{},{},{},{},{},{:e},{:e},{:e},{:e},{:e},{:e},{:e},{},{},{}",
-            quoted(&self.source),
-            quoted(&self.unit),
+            csv_cell(&self.source),
+            csv_cell(&self.unit),
             choice.method.name(),
             choice.degree,
             choice.window_ms,
@@ -54,9 +55,4 @@ impl SourceFigures {
         )
         .ok();
     }
-}
-
-/// Quotes a field that contains commas or quotes.
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use nima_analysis::Interval;
 
 use super::{Design, Mixed, OfCondition, OfMeasure, Pair, Report};
-use crate::Findings;
+use crate::{Findings, csv_cell};
 
 impl Findings for Report {
     fn text(&self) -> String {
@@ -156,9 +156,6 @@ impl Report {
     /// A row per measure and pair.
     fn csv(&self) -> String {
         let mut text = "measure,first,second,participants_first,participants_second,difference,lower,upper,p,exact,p_holm,rank_effect,hedges_g\n".to_owned();
-        let cell = |word: &str| {
-            if word.contains([',', '"', '\n']) { format!("\"{}\"", word.replace('"', "\"\"")) } else { word.to_owned() }
-        };
         for measure in &self.measures {
             for pair in &measure.pairs {
                 let Pair {
@@ -176,7 +173,7 @@ impl Report {
                 let (lower, upper, estimate) =
                     (difference.interval.lower, difference.interval.upper, difference.estimate);
                 let g = g.map_or_else(String::new, |g| g.to_string());
-                let names = [&measure.measure, first, second].map(|name| cell(name)).join(",");
+                let names = [&measure.measure, first, second].map(|name| csv_cell(name)).join(",");
                 writeln!(
                     text,
                     "{names},{one},{other},{estimate},{lower},{upper},{p},{exact},{p_holm},{rank_effect},{g}"

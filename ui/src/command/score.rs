@@ -12,6 +12,7 @@ use nima_files::write_atomically;
 use nima_recording::session::Reader;
 use nima_score::{MEASURES, Measure, Score, TaskFile};
 use nima_session::{plotted, scored};
+use nima_study::csv_cell;
 use serde::Serialize;
 
 use super::{output, stretch::Stretch};
@@ -125,13 +126,6 @@ fn four_digits(value: f64) -> String {
 
 /// A row per session, a column per measure that any of them has.
 fn table(scored: &[Scored], participant: &str) -> String {
-    let cell = |word: &str| {
-        if word.contains([',', '"', '\n', '\r']) {
-            format!("\"{}\"", word.replace('"', "\"\""))
-        } else {
-            word.to_owned()
-        }
-    };
     let has =
         |place: &usize| scored.iter().any(|one| one.score.measures().nth(*place).is_some_and(|m| m.value.is_some()));
     let names: Vec<String> =
@@ -144,7 +138,7 @@ fn table(scored: &[Scored], participant: &str) -> String {
     text.push('\n');
     for (number, one) in scored.iter().enumerate() {
         let Scored { session, condition, score } = one;
-        write!(text, "{},{},{},{}", cell(participant), cell(condition), number + 1, cell(session)).ok();
+        write!(text, "{},{},{},{}", csv_cell(participant), csv_cell(condition), number + 1, csv_cell(session)).ok();
         let values: Vec<Option<f64>> = score.measures().map(|measure| measure.value).collect();
         for place in &columns {
             let value = values[*place].map_or_else(String::new, |value| value.to_string());

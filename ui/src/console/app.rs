@@ -17,7 +17,7 @@ use std::{
 };
 
 use eframe::glow;
-use egui::{Frame, Margin, Panel, Ui};
+use egui::{Frame, Id, Margin, Panel, Ui, UiBuilder};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Tick},
@@ -341,7 +341,8 @@ impl ConsoleApp {
         self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound);
         self.sessions.tell(&self.live.marks_s, &self.top_bar.alarms.log, loop_s);
         let room = ui.available_rect_before_wrap();
-        self.page_layout(ui);
+        // An identity of its own: an alarm that comes or goes above must take no slider out of a hand.
+        ui.scope_builder(UiBuilder::new().scope_id(Id::unique("page")), |ui| self.page_layout(ui));
         self.top_bar.alarms.list_ui(ui.ctx(), room);
         self.settings.now.toured |= self.help.ui(ui.ctx(), room, !self.list.is_open);
     }

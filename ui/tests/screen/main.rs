@@ -7,6 +7,7 @@ mod connecting;
 mod console;
 mod desk;
 mod drift;
+mod identity;
 mod instruments;
 mod monitor;
 mod past;

@@ -3,12 +3,10 @@
 //! The receiver measures how many datagrams are lost and how often two in a row, and tells the sender. The sender takes the least n at which
 //! a payload is lost with all its copies less often than [`LEFT_OVER`], as far as the datagram and the limit of the rate have room.
 
-use crate::wire::{AGE_MAX_S, COPIES_MAX, RECORD_LEN, Record};
+use crate::wire::{AGE_MAX_S, COPIES_MAX, Record};
 
 /// Share of payloads that may be lost with all their copies.
 pub const LEFT_OVER: f64 = 1e-4;
-/// Copies without any measured loss: one datagram can always be lost.
-pub const COPIES_MIN: usize = 2;
 /// A datagram counts as lost when this many later ones have come.
 const PATIENCE: u64 = 64;
 /// A run of this many lost ones is an outage, which no copies cure: it does not count for their number.
@@ -21,12 +19,14 @@ const PARTS: usize = 10;
 /// The last parts that alone can raise the loss: a link that becomes bad is answered within a second.
 const RECENT: usize = 2;
 
-/// Copies needed at this loss: `loss` is the share of datagrams lost, `again` that of those after a lost one.
+/// Copies needed at this loss: `loss` is the share of datagrams lost, `again` that of those after a lost one. What comes after a later one
+/// counts like what is lost: its payload may be due before.
 ///
 /// ```
 /// use nima_network::redundancy::copies_for;
 ///
-/// assert_eq!(copies_for(0.0, 0.0), 2);
+/// assert_eq!(copies_for(0.0, 0.0), 1, "each payload once");
+/// assert_eq!(copies_for(0.001, 0.001), 2);
 /// assert_eq!(copies_for(0.3, 0.3), 8, "0.3^8 = 7e-5");
 /// assert!(copies_for(0.05, 0.9) > 32, "bursts of ten");
 /// ```
@@ -34,7 +34,7 @@ pub fn copies_for(loss: f64, again: f64) -> usize {
     let again = again.clamp(0.0, 0.99);
     let mut left = loss.clamp(0.0, 1.0);
     let mut copies = 1;
-    while (left > LEFT_OVER || copies < COPIES_MIN) && copies < 4 * COPIES_MAX {
+    while left > LEFT_OVER && copies < 4 * COPIES_MAX {
         left *= again;
         copies += 1;
     }
@@ -82,8 +82,16 @@ impl History {
         self.sent.iter().take(known).map(|(len, _)| *len).max().unwrap_or(0)
     }
 
+    const fn index(&self, back: u64) -> usize {
+        ((self.count - 1 - back) % COPIES_MAX as u64) as usize
+    }
+
     fn len(&self, back: u64) -> usize {
-        self.sent[((self.count - 1 - back) % COPIES_MAX as u64) as usize].0
+        self.sent[self.index(back)].0
+    }
+
+    fn sent_s(&self, back: u64) -> f64 {
+        self.sent[self.index(back)].1
     }
 
     /// Writes the last payloads, newest first, at most this many and as far as there is room. The first `fresh` of them have not been sent
@@ -93,9 +101,10 @@ impl History {
         let mut written = Written::default();
         let count = (copies.min(COPIES_MAX) as u64).min(self.count);
         let total: usize = (0..count).map(|back| self.len(back)).sum();
-        let all_fit = total + RECORD_LEN * count as usize <= for_copies;
+        let all: usize = (0..count).map(|back| Record::length(self.len(back), now_s - self.sent_s(back))).sum();
+        let all_fit = all <= for_copies;
         for back in 0..count {
-            let index = ((self.count - 1 - back) % COPIES_MAX as u64) as usize;
+            let index = self.index(back);
             let (len, sent_s) = self.sent[index];
             let is_fresh = back < fresh as u64;
             let age_s = now_s - sent_s;
@@ -133,6 +142,8 @@ struct Part {
     lost: u32,
     /// Lost ones after a lost one.
     again: u32,
+    /// Those that came after a later one.
+    overtaken: u32,
 }
 
 /// Measures which datagrams are lost.
@@ -180,6 +191,7 @@ impl Losses {
             self.parts[self.part] = Part::default();
             self.part_begin_s = now_s;
         }
+        self.parts[self.part].overtaken += u32::from(number + 1 < self.end);
         if number < self.judged {
             return;
         }
@@ -251,6 +263,13 @@ impl Losses {
         // As if two had been lost alone at this share: one chance run is no burst.
         let again = if lost == 0.0 { loss } else { (again + 10.0 * loss) / (lost + 10.0) };
         (loss, again.max(loss).min(1.0))
+    }
+
+    /// Share of datagrams of the last 5 s that came after a later one.
+    pub fn overtaken(&self) -> f64 {
+        let (all, ..) = self.sum(PARTS);
+        let overtaken: u32 = self.parts.iter().map(|part| part.overtaken).sum();
+        if all < 100.0 { 0.0 } else { (f64::from(overtaken) / all).min(1.0) }
     }
 
     /// All datagrams that should have come, and those that did not.

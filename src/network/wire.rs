@@ -8,19 +8,21 @@
 //! Numbers are little-endian.
 
 /// Version of the protocol. Two machines of different versions refuse each other.
-pub const VERSION: u8 = 1;
+pub const VERSION: u8 = 2;
 /// Longest datagram, bytes: passes through every usual network in one piece.
 pub const DATAGRAM_MAX: usize = 1200;
 /// What stands before the encrypted part of a datagram of a session, bytes.
 pub const OUTER_LEN: usize = 10;
 /// What the encryption adds, bytes.
 pub const TAG_LEN: usize = 16;
-/// Length of a [`Head`], bytes.
-pub const HEAD_LEN: usize = 24;
-/// What stands before each payload, bytes.
-pub const RECORD_LEN: usize = 4;
+/// Length of the shortest [`Head`], bytes: without a report.
+pub const HEAD_MIN: usize = 8;
+/// Length of the longest, with report and echo, bytes.
+pub const HEAD_MAX: usize = 22;
+/// What stands before a payload at most, bytes.
+pub const RECORD_MAX: usize = 4;
 /// Longest payload, bytes.
-pub const PAYLOAD_MAX: usize = DATAGRAM_MAX - OUTER_LEN - TAG_LEN - HEAD_LEN - RECORD_LEN;
+pub const PAYLOAD_MAX: usize = DATAGRAM_MAX - OUTER_LEN - TAG_LEN - HEAD_MAX - RECORD_MAX;
 /// What IPv4 and UDP add to each datagram, bytes; it counts for the limit of the rate.
 pub const UDP_LEN: usize = 28;
 /// Most payloads in one datagram.
@@ -40,7 +42,7 @@ pub const HELLO_LEN: usize = 128;
 /// Longest datagram of a handshake, bytes.
 pub const HANDSHAKE_MAX: usize = 256;
 /// Unit of a payload's age, s.
-const AGE_UNIT_S: f64 = 1e-5;
+const AGE_UNIT_S: f64 = 2e-5;
 
 /// What a datagram is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,7 +99,7 @@ pub fn kind(datagram: &[u8]) -> Result<Kind, Unreadable> {
     let [version, kind, ..] = *datagram else { return Err(Unreadable::Malformed) };
     let kind = Kind::ALL.into_iter().find(|known| known.number() == kind);
     match kind {
-        Some(Kind::Data) if datagram.len() < OUTER_LEN + TAG_LEN + HEAD_LEN => Err(Unreadable::Malformed),
+        Some(Kind::Data) if datagram.len() < OUTER_LEN + TAG_LEN + HEAD_MIN => Err(Unreadable::Malformed),
         Some(Kind::Data) if version != VERSION => Err(Unreadable::ForeignData(version)),
         Some(Kind::Data) => Ok(Kind::Data),
         _ if datagram.get(2..TOKEN_AT) != Some(&MAGIC) || datagram.len() < HANDSHAKE_LEN => Err(Unreadable::Malformed),
@@ -148,67 +150,123 @@ pub const fn whole(near: u64, low: u32) -> u64 {
     near.saturating_add_signed(ahead as i64)
 }
 
+/// The same for numbers of which the lower 24 bits are sent.
+pub const fn whole24(near: u64, low: u32) -> u64 {
+    let ahead = (low.wrapping_sub(near as u32) << 8).cast_signed() >> 8;
+    near.saturating_add_signed(ahead as i64)
+}
+
 /// What stands before the payloads, encrypted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Head {
-    /// When the datagram was sent, by its sender's clock, µs (48 bits).
+    /// When the datagram was sent, by its sender's clock, µs: 48 bits with a report, else the lower 32.
     pub sent_us: u64,
+    /// What need not be told in every datagram.
+    pub report: Option<Report>,
+    /// Number of the newest payload, lower 24 bits.
+    pub newest: u32,
+    /// Number of payloads.
+    pub count: u8,
+}
+
+/// What every few datagrams tell: what the clocks are compared by, and the losses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Report {
     /// Lower half of `sent_us` of the last datagram that the sender received, and how long before `sent_us` it came, µs.
     pub echo: Option<(u32, u32)>,
     /// Share of the datagrams that its sender missed lately, in 255ths.
     pub loss: u8,
     /// Of the datagrams after a missed one, the share that was missed too, in 255ths.
     pub loss_again: u8,
+    /// Share of the datagrams that came after a later one, in 255ths.
+    pub overtaken: u8,
     /// Who holds the follower, and what is asked or answered: [`crate::control`].
     pub control: u8,
-    /// Number of the newest payload, lower half.
-    pub newest: u32,
-    /// Number of payloads.
-    pub count: u8,
 }
 
-/// In the flags of a head: the echo is there.
-const ECHOES: u8 = 1;
+/// In the first byte of a head, beside the number of payloads.
+const REPORTS: u8 = 0x80;
+const ECHOES: u8 = 0x40;
 
 impl Head {
-    /// Its bytes.
-    pub fn bytes(&self) -> [u8; HEAD_LEN] {
-        let mut bytes = [0; HEAD_LEN];
-        let (echo_us, held_us) = self.echo.unwrap_or_default();
-        bytes[..6].copy_from_slice(&self.sent_us.to_le_bytes()[..6]);
-        bytes[6..10].copy_from_slice(&echo_us.to_le_bytes());
-        bytes[10..14].copy_from_slice(&held_us.to_le_bytes());
-        bytes[14] = u8::from(self.echo.is_some()) * ECHOES;
-        bytes[15] = self.loss;
-        bytes[16] = self.loss_again;
-        bytes[17] = self.control;
-        bytes[18..22].copy_from_slice(&self.newest.to_le_bytes());
-        bytes[22] = self.count;
+    /// Its length, bytes.
+    pub fn length(&self) -> usize {
+        let echo = |report: &Report| if report.echo.is_some() { 8 } else { 0 };
+        HEAD_MIN + self.report.as_ref().map_or(0, |report| 6 + echo(report))
+    }
+
+    /// Its bytes; the first [`length`](Self::length) of these.
+    pub fn bytes(&self) -> [u8; HEAD_MAX] {
+        let mut bytes = [0; HEAD_MAX];
+        let mut end = 1;
+        let mut add = |more: &[u8]| {
+            bytes[end..end + more.len()].copy_from_slice(more);
+            end += more.len();
+        };
+        add(&self.sent_us.to_le_bytes()[..4]);
+        add(&self.newest.to_le_bytes()[..3]);
+        let mut first = self.count;
+        if let Some(Report { echo, loss, loss_again, overtaken, control }) = self.report {
+            first |= REPORTS;
+            add(&self.sent_us.to_le_bytes()[4..6]);
+            add(&[loss, loss_again, overtaken, control]);
+            if let Some((echo_us, held_us)) = echo {
+                first |= ECHOES;
+                add(&echo_us.to_le_bytes());
+                add(&held_us.to_le_bytes());
+            }
+        }
+        bytes[0] = first;
         bytes
     }
 
     /// From its bytes, with what follows them.
     pub fn from_bytes(bytes: &[u8]) -> Option<(Self, &[u8])> {
-        let (head, records) = bytes.split_first_chunk::<HEAD_LEN>()?;
-        let word = |at: usize| head.get(at..at + 4)?.try_into().ok().map(u32::from_le_bytes);
-        let mut sent = [0; 8];
-        sent[..6].copy_from_slice(&head[..6]);
-        let echo = if head[14] & ECHOES == 0 { None } else { Some((word(6)?, word(10)?)) };
-        let this = Self {
-            sent_us: u64::from_le_bytes(sent),
-            echo,
-            loss: head[15],
-            loss_again: head[16],
-            control: head[17],
-            newest: word(18)?,
-            count: head[22],
-        };
-        (usize::from(this.count) <= COPIES_MAX).then_some((this, records))
+        let ([first, sent0, sent1, sent2, sent3, newest @ ..], mut rest) = bytes.split_first_chunk::<HEAD_MIN>()?;
+        let mut sent_us = u64::from(u32::from_le_bytes([*sent0, *sent1, *sent2, *sent3]));
+        let mut report = None;
+        if first & REPORTS != 0 {
+            let ([high0, high1, loss, loss_again, overtaken, control], more) = rest.split_first_chunk::<6>()?;
+            (sent_us, rest) = (sent_us | u64::from(u16::from_le_bytes([*high0, *high1])) << 32, more);
+            let mut echo = None;
+            if first & ECHOES != 0 {
+                let (echo_us, more) = rest.split_first_chunk::<4>()?;
+                let (held_us, more) = more.split_first_chunk::<4>()?;
+                (echo, rest) = (Some((u32::from_le_bytes(*echo_us), u32::from_le_bytes(*held_us))), more);
+            }
+            report =
+                Some(Report { echo, loss: *loss, loss_again: *loss_again, overtaken: *overtaken, control: *control });
+        }
+        let count = first & !(REPORTS | ECHOES);
+        let newest = u32::from_le_bytes([newest[0], newest[1], newest[2], 0]);
+        (usize::from(count) <= COPIES_MAX).then_some((Self { sent_us, report, newest, count }, rest))
     }
 }
 
 /// Length of a payload that stands in a datagram by its place only.
-const LEFT_OUT: u16 = u16::MAX;
+const LEFT_OUT: u16 = 0x7fff;
+
+/// Length of a number below 2^15, bytes: below 128 one byte, else two, the first with its highest bit set.
+const fn number_len(number: u16) -> usize {
+    if number < 0x80 { 1 } else { 2 }
+}
+
+fn write_number(number: u16, room: &mut [u8]) {
+    match room {
+        [one] => *one = number as u8,
+        [high, low] => [*high, *low] = (number | 0x8000).to_be_bytes(),
+        _ => {}
+    }
+}
+
+fn number(bytes: &[u8]) -> Option<(u16, &[u8])> {
+    let (&first, rest) = bytes.split_first()?;
+    if first < 0x80 {
+        return Some((u16::from(first), rest));
+    }
+    let (&low, rest) = rest.split_first()?;
+    Some((u16::from_be_bytes([first & 0x7f, low]), rest))
+}
 
 /// One payload as it stands in a datagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -220,25 +278,37 @@ pub struct Record<'a> {
 }
 
 impl Record<'_> {
+    /// Length of a record with a payload of this length and age, bytes.
+    pub fn length(payload: usize, age_s: f64) -> usize {
+        let len = u16::try_from(payload).unwrap_or(LEFT_OUT);
+        number_len(len) + number_len(age(age_s)) + payload
+    }
+
     /// Writes it at the beginning of `room`; the number of bytes, or `None` if it does not fit.
     pub fn write(&self, room: &mut [u8]) -> Option<usize> {
         let bytes = self.bytes.unwrap_or(&[]);
-        let end = RECORD_LEN + bytes.len();
-        let room = room.get_mut(..end)?;
         let len = if self.bytes.is_some() { u16::try_from(bytes.len()).ok()? } else { LEFT_OUT };
-        let age = (self.age_s / AGE_UNIT_S).round().clamp(0.0, f64::from(u16::MAX)) as u16;
-        room[..2].copy_from_slice(&len.to_le_bytes());
-        room[2..RECORD_LEN].copy_from_slice(&age.to_le_bytes());
-        room[RECORD_LEN..].copy_from_slice(bytes);
+        let age = age(self.age_s);
+        let (first, second) = (number_len(len), number_len(age));
+        let end = first + second + bytes.len();
+        let (head, content) = room.get_mut(..end)?.split_at_mut(first + second);
+        let (one, other) = head.split_at_mut(first);
+        write_number(len, one);
+        write_number(age, other);
+        content.copy_from_slice(bytes);
         Some(end)
     }
 }
 
+fn age(age_s: f64) -> u16 {
+    (age_s / AGE_UNIT_S).round().clamp(0.0, f64::from(LEFT_OUT)) as u16
+}
+
 /// The first payload in these bytes, and what follows it.
 pub fn record(bytes: &[u8]) -> Option<(Record<'_>, &[u8])> {
-    let ([len0, len1, age0, age1], rest) = bytes.split_first_chunk::<RECORD_LEN>()?;
-    let age_s = f64::from(u16::from_le_bytes([*age0, *age1])) * AGE_UNIT_S;
-    let len = u16::from_le_bytes([*len0, *len1]);
+    let (len, rest) = number(bytes)?;
+    let (age, rest) = number(rest)?;
+    let age_s = f64::from(age) * AGE_UNIT_S;
     if len == LEFT_OUT {
         return Some((Record { age_s, bytes: None }, rest));
     }
@@ -252,30 +322,35 @@ mod tests {
 
     #[test]
     fn a_head_and_its_payloads_come_back_as_they_were() {
-        let head = Head {
-            sent_us: 0x1234_5678_9abc,
-            echo: Some((7, 9)),
-            loss: 3,
-            loss_again: 4,
-            control: 5,
-            newest: 6,
-            count: 2,
-        };
-        let mut bytes = [0; 200];
-        bytes[..HEAD_LEN].copy_from_slice(&head.bytes());
-        let mut end = HEAD_LEN;
-        for (age_s, content) in [(0.0, Some(&b"newest"[..])), (0.0, None), (0.00123, Some(b""))] {
-            end += Record { age_s, bytes: content }.write(&mut bytes[end..]).unwrap();
+        let report = Report { echo: Some((7, 9)), loss: 3, loss_again: 4, overtaken: 6, control: 5 };
+        for (sent_us, report, len) in [
+            (0x1234_5678_9abc, Some(report), HEAD_MAX),
+            (0x1234_5678_9abc, Some(Report { echo: None, ..report }), 14),
+            (0x5678_9abc, None, HEAD_MIN),
+        ] {
+            let head = Head { sent_us, report, newest: 0x12_3456, count: 2 };
+            let mut bytes = [0; 300];
+            let mut end = head.length();
+            assert_eq!(end, len);
+            bytes[..end].copy_from_slice(&head.bytes()[..end]);
+            let long = [8; 150];
+            let payloads = [(0.0, Some(&b"newest"[..])), (0.0, None), (0.00124, Some(b"")), (0.65, Some(&long))];
+            for (age_s, content) in payloads {
+                let len = Record { age_s, bytes: content }.write(&mut bytes[end..]).unwrap();
+                assert!(content.is_none_or(|content| Record::length(content.len(), age_s) == len));
+                end += len;
+            }
+            let (read, mut rest) = Head::from_bytes(&bytes[..end]).unwrap();
+            assert_eq!(read, head);
+            for (age_s, content) in payloads {
+                let (got, more) = record(rest).unwrap();
+                assert!((got.age_s - age_s).abs() < 1e-9 && got.bytes == content, "{got:?}");
+                rest = more;
+            }
+            assert!(rest.is_empty());
+            assert!(record(&bytes[len..len + 5]).is_none(), "cut");
+            assert!((0..len).all(|cut| Head::from_bytes(&bytes[..cut]).is_none()), "cut");
         }
-        let (read, rest) = Head::from_bytes(&bytes[..end]).unwrap();
-        assert_eq!(read, head);
-        let (first, rest) = record(rest).unwrap();
-        assert_eq!(first.bytes, Some(&b"newest"[..]));
-        let (left_out, rest) = record(rest).unwrap();
-        assert_eq!(left_out.bytes, None);
-        let (last, rest) = record(rest).unwrap();
-        assert!((last.age_s - 0.00123).abs() < 1e-9 && last.bytes == Some(&[]) && rest.is_empty());
-        assert!(record(&bytes[HEAD_LEN..HEAD_LEN + 5]).is_none(), "cut");
     }
 
     #[test]
@@ -284,6 +359,7 @@ mod tests {
             for ahead in [-1000_i64, -3, 0, 3, 1000, 100_000] {
                 let true_number = near.saturating_add_signed(ahead);
                 assert_eq!(whole(near, true_number as u32), true_number);
+                assert_eq!(whole24(near, true_number as u32 & 0xff_ffff), true_number);
             }
         }
     }

@@ -5,6 +5,7 @@ use nima_core::{impedance::Packed, kinematics::Hand, safety::ChainSettings};
 
 use super::{
     GONE_AFTER_S, MESSAGE_MAX, Wire,
+    far_hand::FarHand,
     follower_message::{FollowerMessage, FollowerSide},
     leader_message::{Intent, LeaderMessage, LeaderSide},
 };
@@ -45,9 +46,8 @@ pub struct FarLeader<R, W> {
     wire: W,
     rate_hz: f64,
     heard: Option<Heard>,
-    /// The hands as the loop here sees them, m: they move as the commands do, and only while these are to be followed, so that a new
-    /// beginning is no jump.
-    hands_m: [Vector3<f64>; SIDES],
+    /// The hands as the loop here sees them.
+    hands: [FarHand; SIDES],
     /// What this machine's pairs were last.
     states: [Option<LoopState>; SIDES],
     inputs: [Option<Inputs>; SIDES],
@@ -68,13 +68,13 @@ struct Heard {
 
 impl<R: Rig, W: Wire> FarLeader<R, W> {
     /// Joins the arms of `local` with the hands behind `wire`, for a loop of this rate (Hz) that is made of [`at_follower`].
-    pub const fn new(local: R, wire: W, rate_hz: f64) -> Self {
+    pub fn new(local: R, wire: W, rate_hz: f64) -> Self {
         Self {
             local,
             wire,
             rate_hz,
             heard: None,
-            hands_m: [Vector3::new(0.0, 0.0, 0.0); SIDES],
+            hands: [FarHand::default(); SIDES],
             states: [None; SIDES],
             inputs: [None; SIDES],
             commands: [None; COMMANDS_MAX],
@@ -133,12 +133,13 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
     }
 
     fn move_hands(&mut self, now: &LeaderMessage, before: Option<&LeaderMessage>) {
-        for side in Side::ALL.map(Side::index) {
-            let told = now.sides[side].zip(before.and_then(|before| before.sides[side]));
-            if let Some((now, before)) = told
-                && [now.intent, before.intent] == [Intent::Follow; 2]
-            {
-                self.hands_m[side] += now.tip_m - before.tip_m;
+        let over_s = before.map_or(0.0, |before| now.t_s - before.t_s);
+        for (side, hand) in self.hands.iter_mut().enumerate() {
+            match now.sides[side].zip(before.and_then(|before| before.sides[side])) {
+                Some((now, before)) if [now.intent, before.intent] == [Intent::Follow; 2] => {
+                    hand.told(&(now.tip_m - before.tip_m), over_s);
+                }
+                _ => hand.rest(),
             }
         }
     }
@@ -197,7 +198,9 @@ impl<R: Rig, W: Wire> Rig for FarLeader<R, W> {
         let mut inputs = [None; SIDES];
         for side in Side::ALL.map(Side::index) {
             let told = heard.and_then(|heard| heard.message.sides[side]);
-            inputs[side] = self.inputs[side].zip(told).map(|(here, told)| join(&here, &told, self.hands_m[side]));
+            self.hands[side].advance(1.0 / self.rate_hz);
+            let hand_m = self.hands[side].at_m();
+            inputs[side] = self.inputs[side].zip(told).map(|(here, told)| join(&here, &told, hand_m));
             if let (Some(inputs), Some(heard)) = (&mut inputs[side], heard) {
                 inputs.silent_s = now_s - heard.at_s;
             }

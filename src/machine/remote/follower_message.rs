@@ -8,7 +8,7 @@ use nima_core::{
 
 use super::{
     leader_message::{modes, number_of},
-    packing::{Packer, Unpacker},
+    packing::{PER_M, PER_N, Packer, Unpacker},
 };
 use crate::{
     messages::{FarStop, ForceSource},
@@ -84,7 +84,7 @@ fn set_of(bits: u16) -> ModeSet {
 impl FollowerMessage {
     pub(super) fn pack<'a>(&self, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
         let mut to = Packer::new(buffer);
-        to.double(self.t_s);
+        to.time(self.t_s);
         for side in Side::ALL {
             if let Some(told) = &self.sides[side.index()] {
                 told.pack(side, &mut to);
@@ -95,7 +95,7 @@ impl FollowerMessage {
 
     pub(super) fn unpack(message: &[u8]) -> Option<Self> {
         let mut from = Unpacker::new(message);
-        let mut told = Self { t_s: from.double()?, sides: [None; SIDES] };
+        let mut told = Self { t_s: from.time()?, sides: [None; SIDES] };
         while !from.is_empty() {
             let side = from.byte()?;
             let place = told.sides.get_mut(usize::from(side)).filter(|place| place.is_none())?;
@@ -120,12 +120,11 @@ impl FollowerSide {
         to.byte(side.index() as u8);
         to.byte(flags.iter().rev().fold(0, |bits, flag| bits << 1 | u8::from(*flag)));
         let stop = self.stop.and_then(|stop| FarStop::ALL.iter().position(|other| *other == stop));
-        to.byte(stop.map_or(0, |place| place as u8 + 1));
-        to.byte(number_of_source(self.source));
-        to.vector(&self.tip_m);
+        to.byte(stop.map_or(0, |place| place as u8 + 1) << 4 | number_of_source(self.source));
+        to.vector(&self.tip_m, PER_M);
         self.world_from_jaws.iter().for_each(|turn| to.turn(turn));
-        self.grip_n.iter().for_each(|grip_n| to.single(*grip_n as f32));
-        to.vector(&self.force_n);
+        self.grip_n.iter().for_each(|grip_n| to.scaled(*grip_n, PER_N));
+        to.vector(&self.force_n, PER_N);
         to.short(bits_of(self.modes));
         if let Some(packed) = &self.packed {
             to.byte(packed.slot);
@@ -138,21 +137,22 @@ impl FollowerSide {
     fn unpack(from: &mut Unpacker<'_>) -> Option<Self> {
         let flags = from.byte()?;
         let flag = |place: u8| flags >> place & 1 == 1;
-        let stop = match from.byte()?.checked_sub(1) {
+        let state = from.byte()?;
+        let stop = match (state >> 4).checked_sub(1) {
             None => None,
             Some(place) => Some(*FarStop::ALL.get(usize::from(place))?),
         };
         Some(Self {
             stop,
-            source: source_of(from.byte()?)?,
-            tip_m: from.vector()?,
+            source: source_of(state & 15)?,
+            tip_m: from.vector(PER_M)?,
             world_from_jaws: if flag(0) { Some(from.turn()?) } else { None },
-            grip_n: if flag(1) { Some(f64::from(from.single()?)) } else { None },
+            grip_n: if flag(1) { Some(from.scaled(PER_N)?) } else { None },
             powered: flag(2),
             is_obstructed: flag(3),
             fresh: flag(4),
             resting: flag(5),
-            force_n: from.vector()?,
+            force_n: from.vector(PER_N)?,
             modes: set_of(from.short()?),
             packed: if flag(6) { Some(packed_of(from)?) } else { None },
             errors_n: if flag(7) { Some(errors_of(from)?) } else { None },
@@ -185,6 +185,7 @@ mod tests {
 
     #[test]
     fn every_source_and_every_set_has_a_number() {
+        assert!(FarStop::ALL.len() < 16, "both fit into one byte");
         let doubts = UNSURE.into_iter().flat_map(|unsure| {
             [Fallback::WristForce, Fallback::HoldAndFade].map(|fallback| ForceSource::InDoubt { unsure, fallback })
         });

@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::impedance::Mode;
 
-use super::packing::{Packer, Unpacker};
+use super::packing::{PER_M, PER_RAD, Packer, Unpacker};
 use crate::rig::{SIDES, Side};
 
 /// What the operator's pair wants of the follower.
@@ -61,7 +61,7 @@ pub(super) fn number_of(mode: Mode) -> u8 {
 impl LeaderMessage {
     pub(super) fn pack<'a>(&self, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
         let mut to = Packer::new(buffer);
-        to.double(self.t_s);
+        to.time(self.t_s);
         to.short(self.delay_ticks);
         to.byte(number_of(self.mode) | u8::from(self.compares) << 7);
         for side in Side::ALL {
@@ -72,16 +72,16 @@ impl LeaderMessage {
             to.byte(side.index() as u8 | intent << 2 | turned | gripped);
             to.byte(told.engagements);
             to.byte(told.releases);
-            to.vector(&told.tip_m);
+            to.vector(&told.tip_m, PER_M);
             told.world_from_jaws.iter().for_each(|turn| to.turn(turn));
-            told.gripper_rad.iter().for_each(|rad| to.single(*rad as f32));
+            told.gripper_rad.iter().for_each(|rad| to.scaled(*rad, PER_RAD));
         }
         to.done()
     }
 
     pub(super) fn unpack(message: &[u8]) -> Option<Self> {
         let mut from = Unpacker::new(message);
-        let (t_s, delay_ticks, first) = (from.double()?, from.short()?, from.byte()?);
+        let (t_s, delay_ticks, first) = (from.time()?, from.short()?, from.byte()?);
         let mode = modes().nth(usize::from(first & 0x7f))?;
         let mut told = Self { t_s, delay_ticks, mode, compares: first >> 7 == 1, sides: [None; SIDES] };
         while !from.is_empty() {
@@ -91,9 +91,9 @@ impl LeaderMessage {
                 intent: Intent::ALL[usize::from(first >> 2 & 3)],
                 engagements: from.byte()?,
                 releases: from.byte()?,
-                tip_m: from.vector()?,
+                tip_m: from.vector(PER_M)?,
                 world_from_jaws: if first >> 4 & 1 == 1 { Some(from.turn()?) } else { None },
-                gripper_rad: if first >> 5 & 1 == 1 { Some(f64::from(from.single()?)) } else { None },
+                gripper_rad: if first >> 5 & 1 == 1 { Some(from.scaled(PER_RAD)?) } else { None },
             });
         }
         Some(told)

@@ -11,6 +11,7 @@
 //! A [`Wire`] carries the messages; that of the crate `nima-network` is encrypted and evens out delay and loss.
 
 mod far_follower;
+mod far_hand;
 mod far_leader;
 mod follower_message;
 mod leader_message;

@@ -1,6 +1,19 @@
 //! Numbers as bytes and back, least significant byte first, into and from buffers of fixed size.
+//!
+//! A message goes a thousand times a second: what is measured or commanded is written as whole numbers of a unit far below its noise.
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
+
+/// Unit of a time, s: 48 bits reach for 325 days.
+const TIME_PER_S: f64 = 1e7;
+/// Units of what is written in 24 bits: of a length, up to 4.2 m; of a force, up to 168 N; of an angle, up to 4.2 rad.
+pub(super) const PER_M: f64 = 2e6;
+pub(super) const PER_N: f64 = 5e4;
+pub(super) const PER_RAD: f64 = 2e6;
+/// Steps of a component of a quaternion that is not its largest, from 0 to 1 / sqrt(2): 20 bits with its sign.
+const TURN_STEPS: f64 = 524_287.0;
 
 /// Writes a message. What does not fit is left out, and the message is then no message ([`Packer::done`]).
 pub(super) struct Packer<'a> {
@@ -36,18 +49,36 @@ impl<'a> Packer<'a> {
         self.bytes(&number.to_le_bytes());
     }
 
-    pub(super) fn double(&mut self, number: f64) {
-        self.bytes(&number.to_le_bytes());
+    /// A time that is not negative, s.
+    pub(super) fn time(&mut self, time_s: f64) {
+        let units = (time_s * TIME_PER_S).round();
+        self.fits &= (0.0..281_474_976_710_656.0).contains(&units);
+        self.bytes(&(units as u64).to_le_bytes()[..6]);
     }
 
-    pub(super) fn vector(&mut self, vector: &Vector3<f64>) {
-        vector.iter().for_each(|x| self.single(*x as f32));
+    /// A number in 24 bits, with so many steps per unit. One that is beyond them is in no message.
+    pub(super) fn scaled(&mut self, number: f64, per_unit: f64) {
+        let steps = (number * per_unit).round();
+        self.fits &= (-8_388_608.0..8_388_608.0).contains(&steps);
+        self.bytes(&(steps as i32).to_le_bytes()[..3]);
     }
 
-    /// The three imaginary parts; the real one is made positive and follows from them.
+    pub(super) fn vector(&mut self, vector: &Vector3<f64>, per_unit: f64) {
+        vector.iter().for_each(|x| self.scaled(*x, per_unit));
+    }
+
+    /// The three smaller components of the quaternion whose largest is positive, and which that is: to 3e-6 rad.
     pub(super) fn turn(&mut self, turn: &UnitQuaternion<f64>) {
-        let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
-        self.vector(&(turn.imag() * sign));
+        let coords = turn.coords;
+        let largest = coords.iamax();
+        let sign = if coords[largest] < 0.0 { -1.0 } else { 1.0 };
+        let mut bits = largest as u64;
+        for at in (0..4).filter(|at| *at != largest) {
+            let steps = (sign * coords[at] / FRAC_1_SQRT_2 * TURN_STEPS).round();
+            self.fits &= steps.abs() <= TURN_STEPS;
+            bits = bits << 20 | (steps as i64 & 0xf_ffff) as u64;
+        }
+        self.bytes(&bits.to_le_bytes());
     }
 
     /// The message, if all of it fitted.
@@ -90,19 +121,34 @@ impl<'a> Unpacker<'a> {
         self.take().map(f32::from_le_bytes).filter(|number| number.is_finite())
     }
 
-    pub(super) fn double(&mut self) -> Option<f64> {
-        self.take().map(f64::from_le_bytes).filter(|number| number.is_finite())
+    pub(super) fn time(&mut self) -> Option<f64> {
+        let [b0, b1, b2, b3, b4, b5] = self.take()?;
+        Some(u64::from_le_bytes([b0, b1, b2, b3, b4, b5, 0, 0]) as f64 / TIME_PER_S)
     }
 
-    pub(super) fn vector(&mut self) -> Option<Vector3<f64>> {
-        let mut one = || self.single().map(f64::from);
-        Some(Vector3::new(one()?, one()?, one()?))
+    pub(super) fn scaled(&mut self, per_unit: f64) -> Option<f64> {
+        let [b0, b1, b2] = self.take()?;
+        Some(f64::from(i32::from_le_bytes([0, b0, b1, b2]) >> 8) / per_unit)
+    }
+
+    pub(super) fn vector(&mut self, per_unit: f64) -> Option<Vector3<f64>> {
+        Some(Vector3::new(self.scaled(per_unit)?, self.scaled(per_unit)?, self.scaled(per_unit)?))
     }
 
     pub(super) fn turn(&mut self) -> Option<UnitQuaternion<f64>> {
-        let imaginary = self.vector()?;
-        let real = (1.0 - imaginary.norm_squared()).max(0.0).sqrt();
-        let turn = Quaternion::from_parts(real, imaginary);
-        (imaginary.norm_squared() <= 1.0 + 1e-5).then(|| UnitQuaternion::new_normalize(turn))
+        let bits = u64::from_le_bytes(self.take()?);
+        let largest = (bits >> 60) as usize;
+        let (mut coords, mut squares) = (Vector4::zeros(), 0.0);
+        if largest >= coords.len() {
+            return None;
+        }
+        for (place, at) in (0..4).filter(|at| *at != largest).enumerate() {
+            let steps = (bits << (4 + 20 * place)).cast_signed() >> 44;
+            coords[at] = steps as f64 / TURN_STEPS * FRAC_1_SQRT_2;
+            squares += coords[at] * coords[at];
+        }
+        coords[largest] = f64::max(1.0 - squares, 0.0).sqrt();
+        // Of three components that are no larger than the fourth, the squares add up to three quarters.
+        (squares <= 0.751).then(|| UnitQuaternion::new_normalize(Quaternion::from(coords)))
     }
 }

@@ -64,11 +64,15 @@ impl Endpoint {
         session.heard_s = self.now_s;
         session.at = arrival.from;
         if self.is_follower {
-            session.from_console = FromConsole::from_byte(accepted.control);
+            if let Some(control) = accepted.control {
+                session.from_console = FromConsole::from_byte(control);
+            }
             self.heard_console(at);
         } else {
             let before = session.from_follower.standing;
-            session.from_follower = FromFollower::from_byte(accepted.control);
+            if let Some(control) = accepted.control {
+                session.from_follower = FromFollower::from_byte(control);
+            }
             session.is_confirmed = true;
             if matches!(before, Standing::Waits | Standing::Free) && session.from_follower.standing == Standing::Holds {
                 session.stream.begin();

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
-use nima_core::impedance::Mode;
+use nima_core::impedance::{Mode, OwnMotion};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Tick},
@@ -122,9 +122,15 @@ pub(super) struct Seen {
 
 impl Bench {
     /// The line has been open for `known_s` when the loops start.
-    pub(super) fn new(condition: Condition, mode: Mode, known_s: f64) -> Result<Self, NetworkError> {
+    pub(super) fn new(
+        condition: Condition,
+        mode: Mode,
+        own_motion: OwnMotion,
+        known_s: f64,
+    ) -> Result<Self, NetworkError> {
         let mut rig = RigConfig::load("simulated")?;
         (rig.mode, rig.delay_s) = (mode, 0.0);
+        rig.identification.own_motion = own_motion;
         let scene = Scene::load("peg_transfer")?;
         let (one, other) = Stream::pair(&StreamSettings::of_arms(1))?;
         let [there, back] = condition.lines();

@@ -1,7 +1,7 @@
 //! One cell: a run of both machines over one line in one mode, and what was seen in it.
 
 use nalgebra::Vector3;
-use nima_core::impedance::Mode;
+use nima_core::impedance::{Mode, OwnMotion};
 use nima_machine::messages::LoopState;
 use nima_network::playout::Counts;
 
@@ -13,10 +13,9 @@ use super::{
 };
 use crate::gates::{Breaches, Watch};
 
-/// Parts of a run, s.
+/// How every cell is run: its parts, s, and what the console makes the force from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::struct_field_names, reason = "the unit is in the name")]
-pub(super) struct Lengths {
+pub(super) struct Runs {
     /// The line is open and measured, the loops do not run yet; with jitter, and without.
     pub(super) known_s: [f64; 2],
     /// Nobody is engaged.
@@ -25,6 +24,7 @@ pub(super) struct Lengths {
     pub(super) learn_s: f64,
     /// Judged.
     pub(super) task_s: f64,
+    pub(super) own_motion: OwnMotion,
 }
 
 /// A machine that has been stopped for so long holds still, s; after an engagement its tip is watched for so long, s.
@@ -89,10 +89,10 @@ impl Counting {
 }
 
 /// Runs a cell.
-pub(super) fn measured(condition: Condition, mode: Mode, lengths: Lengths) -> Result<Row, NetworkError> {
-    let Lengths { known_s, settle_s, learn_s, task_s } = lengths;
+pub(super) fn measured(condition: Condition, mode: Mode, runs: Runs) -> Result<Row, NetworkError> {
+    let Runs { known_s, settle_s, learn_s, task_s, own_motion } = runs;
     let known_s = known_s[usize::from(condition.jitter == Jitter::None)];
-    let mut bench = Bench::new(condition, mode, known_s)?;
+    let mut bench = Bench::new(condition, mode, own_motion, known_s)?;
     let mut operator = Operator::new(bench.now_s() + settle_s);
     let ticks = ((settle_s + learn_s + task_s) * RATE_HZ) as u32;
     let mut counting = Counting {

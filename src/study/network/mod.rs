@@ -21,7 +21,7 @@ use std::{
     thread::{available_parallelism, scope},
 };
 
-use nima_core::impedance::{Mode, SettingsError};
+use nima_core::impedance::{Mode, OwnMotion, SettingsError};
 use nima_machine::config::ConfigError;
 use nima_network::keys::KeyError;
 use serde::Serialize;
@@ -32,8 +32,8 @@ pub use self::{
     plan::{BASE_MS, Extent, Options},
 };
 use self::{
-    cell::{Lengths, measured},
-    plan::{judged_line, lengths, plan},
+    cell::{Runs, measured},
+    plan::{judged_line, plan, runs},
 };
 
 /// Why the study could not be made.
@@ -126,6 +126,8 @@ pub struct Report {
     pub extent: Extent,
     /// Mode that is judged.
     pub judged: Mode,
+    /// Motion from which the console makes the force.
+    pub own_motion: OwnMotion,
     /// For how long a line has been open before the run, s: one with jitter, and one without.
     pub known_s: [f64; 2],
     /// Length of a run, and of its judged part, s.
@@ -143,11 +145,11 @@ pub struct Report {
 /// # Errors
 /// [`NetworkError`] if rig or scene cannot be used.
 pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, NetworkError> {
-    let (plan, lengths) = (plan(options), lengths(options.extent));
+    let (plan, runs) = (plan(options), runs(options));
     let mut rows = Vec::with_capacity(plan.len());
     for cells in plan.chunks(available_parallelism().map_or(1, NonZero::get)) {
         progress(rows.len(), plan.len(), cells[0].1.name());
-        rows.extend(side_by_side(cells, lengths)?);
+        rows.extend(side_by_side(cells, runs)?);
     }
     compare(&mut rows);
     let judged = options.judged();
@@ -155,26 +157,27 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
     {
         let playout_ms = row.under_way_ms.iter().sum::<f64>() / 2.0;
         // Play-out adds a margin and what is left of a tick.
-        let as_long = measured(Condition::clean(playout_ms.round() - 1.0), judged, lengths)?;
+        let as_long = measured(Condition::clean(playout_ms.round() - 1.0), judged, runs)?;
         row.over_same_playout = Some(row.error_n / as_long.error_n);
     }
     progress(plan.len(), plan.len(), "done");
     Ok(Report {
         extent: options.extent,
         judged,
-        known_s: lengths.known_s,
-        run_s: lengths.settle_s + lengths.learn_s + lengths.task_s,
-        judged_s: lengths.task_s,
+        own_motion: options.own_motion,
+        known_s: runs.known_s,
+        run_s: runs.settle_s + runs.learn_s + runs.task_s,
+        judged_s: runs.task_s,
         aims: aims::aims(&rows, judged),
         rows,
     })
 }
 
 /// Runs these cells at the same time.
-fn side_by_side(cells: &[(Condition, Mode)], lengths: Lengths) -> Result<Vec<Row>, NetworkError> {
+fn side_by_side(cells: &[(Condition, Mode)], runs: Runs) -> Result<Vec<Row>, NetworkError> {
     scope(|scope| {
         let running: Vec<_> =
-            cells.iter().map(|&(condition, mode)| scope.spawn(move || measured(condition, mode, lengths))).collect();
+            cells.iter().map(|&(condition, mode)| scope.spawn(move || measured(condition, mode, runs))).collect();
         running.into_iter().map(|run| run.join().unwrap_or_else(|panic| panic::resume_unwind(panic))).collect()
     })
 }

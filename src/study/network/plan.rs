@@ -1,9 +1,9 @@
 //! Which cells are run.
 
-use nima_core::impedance::Mode;
+use nima_core::impedance::{Mode, OwnMotion};
 use serde::Serialize;
 
-use super::{BURSTS_MS, Condition, DELAYS_MS, Happening, JITTERS, Jitter, LOSSES_PERCENT, cell::Lengths};
+use super::{BURSTS_MS, Condition, DELAYS_MS, Happening, JITTERS, Jitter, LOSSES_PERCENT, cell::Runs};
 
 /// Delay of the point around which each factor is varied alone, ms.
 pub const BASE_MS: f64 = 36.0;
@@ -35,6 +35,8 @@ pub struct Options {
     /// In these modes, the first of which is judged; if none is given, in all, and the default one is judged. Delayed reflection is
     /// always among them: the others are compared with it.
     pub modes: Vec<Mode>,
+    /// Motion from which the console makes the force.
+    pub own_motion: OwnMotion,
 }
 
 impl Options {
@@ -55,10 +57,11 @@ impl Options {
     }
 }
 
-pub(super) const fn lengths(extent: Extent) -> Lengths {
-    match extent {
-        Extent::Quick => Lengths { known_s: [20.0, 5.0], settle_s: 1.0, learn_s: 4.0, task_s: 10.0 },
-        _ => Lengths { known_s: [60.0, 5.0], settle_s: 5.0, learn_s: 5.0, task_s: 20.0 },
+pub(super) const fn runs(options: &Options) -> Runs {
+    let own_motion = options.own_motion;
+    match options.extent {
+        Extent::Quick => Runs { known_s: [20.0, 5.0], settle_s: 1.0, learn_s: 4.0, task_s: 10.0, own_motion },
+        _ => Runs { known_s: [60.0, 5.0], settle_s: 5.0, learn_s: 5.0, task_s: 20.0, own_motion },
     }
 }
 
@@ -125,7 +128,7 @@ mod tests {
     use super::*;
 
     fn planned(extent: Extent, modes: &[Mode]) -> Vec<(Condition, Mode)> {
-        plan(&Options { extent, modes: modes.to_vec() })
+        plan(&Options { extent, modes: modes.to_vec(), own_motion: OwnMotion::default() })
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
-use nima_core::impedance::Mode;
+use nima_core::impedance::{Mode, OwnMotion};
 
 use super::{
     BASE_MS, Condition, DELAYS_MS, Extent, Happening, JITTERS, Jitter, LOSSES_PERCENT, NetworkError, Options, Report,
@@ -196,8 +196,9 @@ impl Report {
     fn aims_table(&self, text: &mut String) {
         writeln!(
             text,
-            "Judged mode: {}.\n\n| aim | at most | worst | in | cells | result |\n|---|---|---|---|---|---|",
-            self.judged
+            "Judged mode: {}{}.\n\n| aim | at most | worst | in | cells | result |\n|---|---|---|---|---|---|",
+            self.judged,
+            if self.own_motion == OwnMotion::Handle { ", on the motion of the handle" } else { "" },
         )
         .ok();
         for aim in &self.aims {

@@ -2,14 +2,19 @@ use super::*;
 use crate::Findings as _;
 
 fn quick(condition: Condition, mode: Mode) -> Row {
-    measured(condition, mode, lengths(Extent::Quick)).unwrap()
+    quick_from(OwnMotion::Follower, condition, mode)
+}
+
+fn quick_from(own_motion: OwnMotion, condition: Condition, mode: Mode) -> Row {
+    measured(condition, mode, runs(&Options { extent: Extent::Quick, modes: vec![], own_motion })).unwrap()
 }
 
 #[test]
 fn a_cell_is_the_same_every_time() {
     let condition = plan::judged_line(BASE_MS);
-    let lengths = Lengths { known_s: [1.0; 2], settle_s: 1.0, learn_s: 1.0, task_s: 2.0 };
-    let [one, other] = [(); 2].map(|()| format!("{:?}", measured(condition, Mode::Best, lengths).unwrap()));
+    let own_motion = OwnMotion::Follower;
+    let runs = Runs { known_s: [1.0; 2], settle_s: 1.0, learn_s: 1.0, task_s: 2.0, own_motion };
+    let [one, other] = [(); 2].map(|()| format!("{:?}", measured(condition, Mode::Best, runs).unwrap()));
     assert_eq!(one, other);
 }
 
@@ -23,6 +28,15 @@ fn over_a_perfect_line_the_default_mode_is_far_better_than_reflection() {
         // The line, and half a millisecond of margin.
         assert!(row.under_way_ms.iter().all(|ms| (36.0..38.1).contains(ms)), "{row:?}");
         assert!((72.0..76.1).contains(&row.round_trip_ms), "{row:?}");
+    }
+}
+
+#[test]
+fn matched_on_the_motion_of_the_handle_gives_the_hand_no_energy() {
+    let base = Condition::clean(36.0);
+    for condition in [base, Condition { happening: Happening::Flap, ..base }] {
+        let row = quick_from(OwnMotion::Handle, condition, Mode::Matched);
+        assert!(row.injected_mj < row.tissue_injected_mj + 1.0 && row.engaged > 0.9, "{row:?}");
     }
 }
 
@@ -54,8 +68,16 @@ fn a_step_of_the_followers_clock_is_named_and_stops() {
 fn every_file_is_whole() {
     let rows = vec![quick(Condition::clean(36.0), Mode::Dfr)];
     let aims = aims::aims(&rows, Mode::Dfr);
-    let mut report =
-        Report { extent: Extent::Quick, judged: Mode::Dfr, known_s: [0.0; 2], run_s: 15.0, judged_s: 10.0, aims, rows };
+    let mut report = Report {
+        extent: Extent::Quick,
+        judged: Mode::Dfr,
+        own_motion: OwnMotion::Follower,
+        known_s: [0.0; 2],
+        run_s: 15.0,
+        judged_s: 10.0,
+        aims,
+        rows,
+    };
     let csv = report.csv();
     let columns: Vec<_> = csv.lines().map(|line| line.split(',').count()).collect();
     assert_eq!(columns, [columns[0]; 2], "{csv}");

@@ -29,7 +29,7 @@ impl<'a> Console<'a> {
             .spawn()
             .unwrap();
         let console = Self { x, folder, process };
-        wait_until("the window", 30, || x.window_is_open());
+        wait_until("the window", || x.window_is_open());
         thread::sleep(Duration::from_millis(1500));
         // No window manager gives the keyboard to the window.
         console.tool(&["search", "--name", "NIMA Console", "windowfocus"]);

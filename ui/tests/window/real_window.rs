@@ -19,7 +19,7 @@ fn the_window_opens_shows_changing_frames_and_closes() {
         .stdout(Stdio::null())
         .spawn()
         .unwrap();
-    wait_until("the window", 30, || x.window_is_open());
+    wait_until("the window", || x.window_is_open());
     thread::sleep(Duration::from_secs(4));
     let root = folder.path().join("root.png");
     assert!(x.command("import").args(["-window", "root"]).arg(&root).status().unwrap().success());
@@ -51,13 +51,13 @@ fn a_window_that_is_asked_to_end_writes_its_figures_and_closes() {
             .stdout(Stdio::null())
             .spawn()
             .unwrap();
-        wait_until("the window", 30, || x.window_is_open());
+        wait_until("the window", || x.window_is_open());
         thread::sleep(Duration::from_secs(1));
         assert!(x.command("kill").args([signal, &nima.id().to_string()]).status().unwrap().success());
         assert!(nima.wait().unwrap().success(), "{signal}");
         let figures: serde_json::Value = serde_json::from_slice(&std::fs::read(&figures).unwrap()).unwrap();
         assert!(figures["final_state"].is_string() && figures["ticks"].as_u64() > Some(0), "{signal}: {figures}");
-        wait_until("no window", 30, || !x.window_is_open());
+        wait_until("no window", || !x.window_is_open());
     }
 }
 

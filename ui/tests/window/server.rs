@@ -57,10 +57,13 @@ fn which(tool: &str) -> bool {
     std::env::var_os("PATH").is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join(tool).is_file()))
 }
 
-pub(crate) fn wait_until(what: &str, seconds: u64, good: impl Fn() -> bool) {
-    let end = Instant::now() + Duration::from_secs(seconds);
+/// Far longer than anything takes, also on a busy machine.
+const TIMEOUT: Duration = Duration::from_mins(3);
+
+pub(crate) fn wait_until(what: &str, good: impl Fn() -> bool) {
+    let began = Instant::now();
     while !good() {
-        assert!(Instant::now() < end, "{what} did not happen within {seconds} s");
+        assert!(began.elapsed() < TIMEOUT, "{what} did not happen within {} s", TIMEOUT.as_secs());
         thread::sleep(Duration::from_millis(100));
     }
 }

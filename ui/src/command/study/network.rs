@@ -1,7 +1,7 @@
 //! Arguments of `nima study network`.
 
 use clap::Args;
-use nima_core::impedance::Mode;
+use nima_core::impedance::{Mode, OwnMotion};
 use nima_study::network::{Extent, Options};
 
 use super::Asked;
@@ -18,6 +18,9 @@ pub(in crate::command) struct Network {
     /// is judged)
     #[arg(long, value_name = "M")]
     mode: Vec<Mode>,
+    /// Make the force from the motion of the handle, as the rig key `own_motion = "handle"` does
+    #[arg(long)]
+    own_motion_handle: bool,
 }
 
 impl Asked for Network {
@@ -29,6 +32,7 @@ impl Asked for Network {
             (_, true) => Extent::Full,
             _ => Extent::Usual,
         };
-        Ok(Options { extent, modes: self.mode.clone() })
+        let own_motion = if self.own_motion_handle { OwnMotion::Handle } else { OwnMotion::Follower };
+        Ok(Options { extent, modes: self.mode.clone(), own_motion })
     }
 }

@@ -1,0 +1,92 @@
+//! The hand at the other end as the loop here sees it.
+
+use nalgebra::Vector3;
+
+/// What is behind after a gap is made up for at this speed at most, m/s, or at that of the hand itself if it is faster: so a tip is never
+/// led faster than a hand moves.
+const CATCH_UP_M_S: f64 = 0.18;
+
+/// Moves as the commands do, and only while they are to be followed, so that a new beginning is no jump.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct FarHand {
+    at_m: Vector3<f64>,
+    /// What it was told to move and has not moved yet, m.
+    behind_m: Vector3<f64>,
+    speed_m_s: f64,
+}
+
+impl FarHand {
+    /// Where it is, m.
+    pub(super) const fn at_m(&self) -> Vector3<f64> {
+        self.at_m
+    }
+
+    /// It moved by so much over this time.
+    pub(super) fn told(&mut self, moved_m: &Vector3<f64>, over_s: f64) {
+        self.behind_m += moved_m;
+        self.speed_m_s = if over_s > 0.0 { moved_m.norm() / over_s } else { 0.0 };
+    }
+
+    /// Nobody is to follow it.
+    pub(super) fn rest(&mut self) {
+        self.behind_m = Vector3::zeros();
+    }
+
+    /// One period of the loop.
+    pub(super) fn advance(&mut self, period_s: f64) {
+        // A little more than the hand itself: the times of two messages are rounded.
+        let most_m = CATCH_UP_M_S.max(1.001 * self.speed_m_s) * period_s;
+        let behind_m = self.behind_m.norm();
+        let share = if behind_m > most_m { most_m / behind_m } else { 1.0 };
+        let step_m = self.behind_m * share;
+        self.at_m += step_m;
+        self.behind_m -= step_m;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PERIOD_S: f64 = 1e-3;
+
+    #[test]
+    fn a_hand_that_is_told_of_in_every_tick_is_where_it_is_told_to_be() {
+        let mut hand = FarHand::default();
+        for tick in 1..500 {
+            hand.told(&Vector3::new(0.8e-3, 0.0, 0.0), PERIOD_S);
+            hand.advance(PERIOD_S);
+            assert!((hand.at_m().x - 0.8e-3 * f64::from(tick)).abs() < 1e-12, "0.8 m/s is no gap");
+        }
+    }
+
+    #[test]
+    fn what_was_missed_in_a_gap_is_made_up_for_without_a_step() {
+        let mut hand = FarHand::default();
+        let (mut told_m, mut before_m) = (0.0, 0.0);
+        for tick in 0..400 {
+            // 120 mm/s, and 50 ms of silence.
+            if !(100..150).contains(&tick) {
+                let ticks = if tick == 150 { 51.0 } else { 1.0 };
+                hand.told(&Vector3::new(0.12e-3 * ticks, 0.0, 0.0), ticks * PERIOD_S);
+                told_m += 0.12e-3 * ticks;
+            }
+            hand.advance(PERIOD_S);
+            let at_m = hand.at_m().x;
+            assert!((0.0..0.19e-3).contains(&(at_m - before_m)), "{tick}: {}", at_m - before_m);
+            before_m = at_m;
+            assert!(tick < 260 || (at_m - told_m).abs() < 1e-9, "{tick}: {at_m} of {told_m}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_followed_any_more_is_forgotten() {
+        let mut hand = FarHand::default();
+        hand.told(&Vector3::new(0.01, 0.0, 0.0), 0.05);
+        hand.advance(PERIOD_S);
+        let at_m = hand.at_m();
+        hand.rest();
+        hand.advance(PERIOD_S);
+        assert_eq!(hand.at_m(), at_m);
+    }
+}

@@ -12,6 +12,8 @@ const CARRY_HEIGHT_M: f64 = 0.015;
 /// Frequencies of physiological tremor, Hz.
 const TREMOR_HZ: [f64; 3] = [8.3, 9.7, 11.6];
 
+/// Fastest that fingers open or close a gripper, rad/s.
+const GRIP_RAD_S: f64 = 4.0;
 /// Maximum speed of a handle that is led from the screen, m/s.
 const GUIDE_M_S: f64 = 0.15;
 /// A handle that nobody holds: its mass, kg, what its bearings brake, N s/m (an omega.7's, as the gates assume them), and where its
@@ -30,6 +32,14 @@ pub(super) struct Move {
     pub(super) seconds: f64,
 }
 
+/// One part of a hand's task.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    pub(super) way: Move,
+    /// How far the gripper is open at its beginning and at its end, rad.
+    pub(super) grip_rad: [f64; 2],
+}
+
 impl Move {
     /// Intended position (m) and velocity (m/s) after `t_s` of the move (Flash and Hogan 1985).
     pub(super) fn at(&self, t_s: f64) -> (Vector3<f64>, Vector3<f64>) {
@@ -44,11 +54,20 @@ impl Move {
     }
 }
 
+impl Part {
+    /// Opening of the gripper after `t_s`, rad.
+    fn grip_rad_at(&self, t_s: f64) -> f64 {
+        let [from_rad, to_rad] = self.grip_rad;
+        let share = if self.way.seconds > 0.0 { (t_s / self.way.seconds).clamp(0.0, 1.0) } else { 1.0 };
+        from_rad + (to_rad - from_rad) * share
+    }
+}
+
 /// Hand and handle as one mass, connected by a spring and damper to the intended position.
 #[derive(Clone, Debug)]
 pub struct Hand {
     config: HandConfig,
-    moves: Vec<Move>,
+    task: Vec<Part>,
     current: usize,
     in_move_s: f64,
     time_s: f64,
@@ -56,6 +75,9 @@ pub struct Hand {
     position_m: Vector3<f64>,
     velocity_m_s: Vector3<f64>,
     guide_m: Option<Vector3<f64>>,
+    /// Opening of the gripper, rad, and the one at which the screen holds it.
+    grip_rad: f64,
+    held_open_rad: Option<f64>,
     /// Position at which it waits, while the task is paused.
     waits_m: Option<Vector3<f64>>,
     /// Intended position while the hand is led, and on its way back to the task.
@@ -67,13 +89,17 @@ pub struct Hand {
 impl Hand {
     /// The hand of `scene`, at rest above its first target.
     pub fn new(scene: &Scene) -> Self {
+        Self::with_task(scene, task(&scene.hand, &scene.targets_m))
+    }
+
+    /// The hand of `scene` with this task, which it repeats.
+    pub(super) fn with_task(scene: &Scene, task: Vec<Part>) -> Self {
         let mut noise = Noise::new(scene.seed);
         let tremor_phase = std::array::from_fn(|_| std::array::from_fn(|_| TAU * noise.uniform()));
-        let moves = task(&scene.hand, &scene.targets_m);
-        let position_m = moves.first().map_or_else(Vector3::zeros, |first| first.from_m);
+        let position_m = task.first().map_or_else(Vector3::zeros, |first| first.way.from_m);
         Self {
             config: scene.hand,
-            moves,
+            task,
             current: 0,
             in_move_s: 0.0,
             time_s: 0.0,
@@ -81,6 +107,8 @@ impl Hand {
             position_m,
             velocity_m_s: Vector3::zeros(),
             guide_m: None,
+            grip_rad: 0.0,
+            held_open_rad: None,
             waits_m: None,
             led_m: None,
             open: false,
@@ -104,6 +132,16 @@ impl Hand {
         }
     }
 
+    /// Holds the gripper this far open, rad, instead of as the task has it; `None`: as the task has it, or as it is while the hand is led.
+    pub(super) fn hold_open(&mut self, grip_rad: Option<f64>) {
+        self.held_open_rad = grip_rad.filter(|rad| rad.is_finite());
+    }
+
+    /// Opening of the gripper, rad.
+    pub(super) const fn grip_rad(&self) -> f64 {
+        self.grip_rad
+    }
+
     /// Lets the hand wait at this position instead of its task; `None` resumes the task. The intended position is
     /// continuous in both cases.
     pub(super) fn wait(&mut self, waits_m: Option<Vector3<f64>>) {
@@ -120,7 +158,7 @@ impl Hand {
 
     /// Intended position, m, and velocity, m/s: of the task, or while led.
     fn intended(&mut self, dt_s: f64) -> (Vector3<f64>, Vector3<f64>) {
-        let (task_m, task_m_s) = self.moves[self.current].at(self.in_move_s);
+        let (task_m, task_m_s) = self.task[self.current].way.at(self.in_move_s);
         let aside_m = self.aside_m();
         let Some(led_m) = &mut self.led_m else { return (task_m + self.tremor_m(), task_m_s) };
         let way_m = aside_m.unwrap_or(task_m) - *led_m;
@@ -148,10 +186,14 @@ impl Hand {
         if self.aside_m().is_none() {
             self.in_move_s += dt_s;
         }
-        if self.in_move_s >= self.moves[self.current].seconds {
+        if self.in_move_s >= self.task[self.current].way.seconds {
             self.in_move_s = 0.0;
-            self.current = (self.current + 1) % self.moves.len();
+            self.current = (self.current + 1) % self.task.len();
         }
+        let task_rad =
+            if self.led_m.is_some() { self.grip_rad } else { self.task[self.current].grip_rad_at(self.in_move_s) };
+        let step_rad = GRIP_RAD_S * dt_s;
+        self.grip_rad += (self.held_open_rad.unwrap_or(task_rad) - self.grip_rad).clamp(-step_rad, step_rad);
         let (intended_m, intended_m_s) = self.intended(dt_s);
         let HandConfig { mass_kg, grip_stiffness_n_m, grip_damping_n_s_m, .. } = self.config;
         let grip_n = (intended_m - self.position_m) * grip_stiffness_n_m
@@ -186,23 +228,24 @@ impl Hand {
 }
 
 /// The repeated task: above each target move down, press, drag a little, hold, lift, and move on to the next.
-fn task(hand: &HandConfig, targets_m: &[Vector3<f64>]) -> Vec<Move> {
+fn task(hand: &HandConfig, targets_m: &[Vector3<f64>]) -> Vec<Part> {
     let lift = Vector3::new(0.0, 0.0, CARRY_HEIGHT_M);
     let press = Vector3::new(0.0, 0.0, -hand.press_depth_m);
     let drag = Vector3::new(hand.drag_m, -0.5 * hand.drag_m, 0.0);
-    let mut moves = Vec::with_capacity(targets_m.len() * 5);
+    let mut parts = Vec::with_capacity(targets_m.len() * 5);
     for (i, &target) in targets_m.iter().enumerate() {
         let next = targets_m[(i + 1) % targets_m.len()];
         let stations =
             [target + lift, target + press, target + press + drag, target + press + drag, target + lift, next + lift];
         let seconds = [hand.press_s, hand.hold_s, hand.hold_s, hand.press_s, hand.reach_s];
-        moves.extend(stations.windows(2).zip(seconds).map(|(pair, seconds)| Move {
-            from_m: pair[0],
-            to_m: pair[1],
-            seconds,
-        }));
+        parts.extend(
+            stations.windows(2).zip(seconds).map(|(pair, seconds)| Part {
+                way: Move { from_m: pair[0], to_m: pair[1], seconds },
+                grip_rad: [0.0; 2],
+            }),
+        );
     }
-    moves
+    parts
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 //! rig file to such worlds. Values that are not finite are ignored.
 #![warn(missing_docs)]
 
+mod carrying;
 #[cfg(unix)]
 mod desk;
 pub mod emulated;
@@ -12,12 +13,14 @@ pub mod emulators;
 mod hand;
 mod person;
 mod plan;
+mod playing;
 pub mod scene;
 #[cfg(test)]
 #[cfg(unix)]
 mod simulated_arm_tests;
 mod tissue;
 mod trocar;
+mod watched;
 mod world;
 mod worlds;
 mod wrist;
@@ -25,8 +28,9 @@ mod wrist;
 #[cfg(unix)]
 pub use desk::Desk;
 pub use hand::Hand;
-pub use plan::{Plan, run_virtual, start, start_on, start_simulated};
+pub use plan::{Plan, run_virtual, start, start_on, start_simulated, start_watched};
 pub use tissue::Tissue;
 pub use trocar::Trocar;
+pub use watched::{Moment, RINGS_MAX, Watched};
 pub use world::World;
 pub use worlds::Worlds;

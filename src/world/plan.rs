@@ -11,7 +11,10 @@ use nima_machine::{
 
 #[cfg(unix)]
 use crate::Desk;
-use crate::{Worlds, scene::Scene};
+use crate::{Watched, Worlds, scene::Scene};
+
+/// Where a simulated rig tells of the objects of its scene, if there are any.
+type Objects = Option<Watched>;
 
 /// Description of a run.
 #[derive(Clone, Debug)]
@@ -70,8 +73,25 @@ impl Plan {
     /// # Errors
     /// [`StartError`] if settings or devices are invalid.
     pub fn assembly(&self) -> Result<Assembly, StartError> {
-        let (rig, roster) = self.rig()?;
-        Ok(self.on(rig, roster)?)
+        Ok(self.watched_assembly()?.0)
+    }
+
+    /// The same, and where a simulated rig tells of the objects of its scene, if there are any.
+    ///
+    /// # Errors
+    /// As [`assembly`](Self::assembly).
+    pub fn watched_assembly(&self) -> Result<(Assembly, Option<Watched>), StartError> {
+        let (rig, roster, watched) = self.rig()?;
+        Ok((self.on(rig, roster)?, watched))
+    }
+
+    /// The same on the simulated world of this plan, and where that tells of the objects of its scene, if there are any.
+    ///
+    /// # Errors
+    /// As [`simulated`](Self::simulated).
+    pub fn watched(&self) -> Result<(Assembly, Option<Watched>), SettingsError> {
+        let (worlds, watched) = Worlds::watched(&self.scene, self.rig.rate_hz);
+        Ok((self.on(Box::new(worlds), Roster::new())?, watched))
     }
 
     /// The same with the simulated world of this plan in place of its devices.
@@ -83,16 +103,21 @@ impl Plan {
     }
 
     /// Creates the rig and the list of its devices.
-    fn rig(&self) -> Result<(Box<dyn Rig>, Roster), RigError> {
+    fn rig(&self) -> Result<(Box<dyn Rig>, Roster, Objects), RigError> {
+        let worlds = || Worlds::watched(&self.scene, self.rig.rate_hz);
         #[cfg(unix)]
         if let Some(desk) = &self.rig.desk {
-            let (desk, roster) = Desk::start(desk, self.worlds())?;
-            return Ok((Box::new(desk), roster));
+            let (worlds, watched) = worlds();
+            let (desk, roster) = Desk::start(desk, worlds)?;
+            return Ok((Box::new(desk), roster, watched));
         }
-        let Some(devices) = &self.rig.devices else { return Ok((Box::new(self.worlds()), Roster::new())) };
+        let Some(devices) = &self.rig.devices else {
+            let (worlds, watched) = worlds();
+            return Ok((Box::new(worlds), Roster::new(), watched));
+        };
         let at_wrist = Side::ALL.map(|side| self.is_at_wrist(side));
         let (rig, roster) = DeviceRig::start(devices, 1.0 / self.rig.rate_hz, at_wrist)?;
-        Ok((Box::new(rig), roster))
+        Ok((Box::new(rig), roster, None))
     }
 
     fn worlds(&self) -> Worlds {
@@ -129,9 +154,18 @@ pub fn start_on(plan: &Plan, rig: Box<dyn Rig>, roster: Roster) -> Result<Handle
 /// # Errors
 /// As [`start`].
 pub fn start_simulated(plan: &Plan, speed: f64) -> Result<Handle, StartError> {
-    let assembly = plan.simulated()?;
+    Ok(start_watched(plan, speed)?.0)
+}
+
+/// The same, and where it tells of the objects of the scene, if there are any.
+///
+/// # Errors
+/// As [`start`].
+pub fn start_watched(plan: &Plan, speed: f64) -> Result<(Handle, Option<Watched>), StartError> {
+    let (assembly, watched) = plan.watched()?;
     let scheduling = SchedulingClass::Ordinary;
-    runtime::start(Assembly { clock: Clock::Simulated { speed }, scheduling, ..assembly })
+    let handle = runtime::start(Assembly { clock: Clock::Simulated { speed }, scheduling, ..assembly })?;
+    Ok((handle, watched))
 }
 
 /// Runs the simulated world of this plan for `seconds` of loop time. `each` is called with every tick of every side; it

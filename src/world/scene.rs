@@ -2,6 +2,7 @@
 
 mod ground;
 mod mounted;
+mod objects;
 mod wrist;
 
 use std::path::Path;
@@ -51,6 +52,10 @@ pub struct Scene {
     /// Walls.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub walls: Vec<Wall>,
+    /// Rings and pegs, and jaws that hold them. The hands then carry rings in place of pressing at the targets.
+    pub objects: Option<nima_physics::Setting>,
+    /// What is scored.
+    pub task: Option<nima_score::TaskFile>,
     /// The leader device.
     pub leader: Option<Leader>,
     /// Tracking lag of the follower; without it the tip is at its commanded position.
@@ -127,9 +132,10 @@ pub struct Sensor {
     pub noise_n: f64,
 }
 
-const SCENES: [(&str, &str); 9] = [
+const SCENES: [(&str, &str); 10] = [
     ("peg_transfer", include_str!("../../config/scenes/peg_transfer.toml")),
     ("bimanual", include_str!("../../config/scenes/bimanual.toml")),
+    ("rings", include_str!("../../config/scenes/rings.toml")),
     ("free_motion", include_str!("../../config/scenes/free_motion.toml")),
     ("lumps", include_str!("../../config/scenes/lumps.toml")),
     ("palpation", include_str!("../../config/scenes/palpation.toml")),
@@ -212,6 +218,8 @@ impl Scene {
             relaxation: _,
             membrane: _,
             walls: _,
+            objects: _,
+            task,
             leader: _,
             follower: _,
             sensor: _,
@@ -222,6 +230,9 @@ impl Scene {
         } = &mut self;
         ANONYMOUS.clone_into(name);
         description.clear();
+        if let Some(task) = task {
+            ANONYMOUS.clone_into(&mut task.name);
+        }
         self
     }
 
@@ -261,6 +272,7 @@ impl Scene {
         ranges.positive("hand.grip_stiffness_n_m", hand.grip_stiffness_n_m)?;
         ranges.not_negative("hand.grip_damping_n_s_m", hand.grip_damping_n_s_m)?;
         self.validate_ground(&ranges)?;
+        self.validate_objects(&ranges)?;
         if let Some(leader) = &self.leader {
             ranges.positive("leader.resolution_m", leader.resolution_m)?;
             ranges.positive("leader.force_max_n", leader.force_max_n)?;

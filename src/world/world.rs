@@ -7,9 +7,11 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{calibration::frames::FrameSample, kinematics, noise::Noise};
 use nima_machine::rig::{Inputs, Outputs, Prompt, Sensed};
+use nima_physics::Instrument;
 
 use crate::{
     Hand, Tissue, Trocar,
+    hand::Part,
     person::Person,
     scene::{Follower, Leader, Scene, Wall},
     trocar,
@@ -43,6 +45,8 @@ pub struct World {
     touch: Touch,
     /// Body wall and tissue are out of the way.
     aside: bool,
+    /// What acts on the jaws; `None` for an instrument without jaws.
+    jaws: Option<nima_physics::Loads>,
 }
 
 /// Forces of a person's hands, N (`world`).
@@ -87,8 +91,34 @@ impl World {
             carried: None,
             touch: Touch::default(),
             aside: false,
+            jaws: None,
             hand,
         }
+    }
+
+    /// The same with jaws, and with this task of the hand.
+    pub(super) fn carrying(scene: &Scene, rate_hz: f64, task: Vec<Part>) -> Self {
+        let mut world = Self { jaws: Some(nima_physics::Loads::default()), ..Self::new(scene, rate_hz) };
+        if !task.is_empty() {
+            world.hand = Hand::with_task(scene, task);
+            (world.tip_m, world.command_m) = (world.hand.position_m(), world.hand.position_m());
+        }
+        world
+    }
+
+    /// Where the instrument is. Its wrist holds the jaws upright.
+    pub(super) fn instrument(&self) -> Instrument {
+        Instrument {
+            tip_m: self.tip_m,
+            world_from_jaws: UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI),
+            trocar_m: self.trocar_m,
+            opening_rad: self.hand.grip_rad(),
+        }
+    }
+
+    /// What now acts on the jaws.
+    pub(super) fn feel(&mut self, loads: &nima_physics::Loads) {
+        self.jaws = Some(*loads);
     }
 
     /// The simulated hand, for tests and displays.
@@ -138,19 +168,28 @@ impl World {
 
     /// The same, but the hand waits only if [`World::wait`] says so.
     pub fn advance_to(&mut self, now_s: f64, outputs: &Outputs) -> Inputs {
-        self.accept(outputs);
-        let behind = ((now_s - self.time_s) / self.period_s).round();
-        if behind > f64::from(CATCH_UP_PERIODS_MAX) {
-            self.time_s = now_s - f64::from(CATCH_UP_PERIODS_MAX) * self.period_s;
-        }
-        let steps = (behind.max(0.0) as u32).min(CATCH_UP_PERIODS_MAX);
-        for _ in 0..steps {
-            self.advance(self.period_s);
+        for _ in 0..self.accept(now_s, outputs) {
+            self.step();
         }
         self.measure()
     }
 
-    fn accept(&mut self, outputs: &Outputs) {
+    /// Takes the loop's outputs; how many steps are due at loop time `now_s`.
+    pub(super) fn accept(&mut self, now_s: f64, outputs: &Outputs) -> u32 {
+        self.take(outputs);
+        let behind = ((now_s - self.time_s) / self.period_s).round();
+        if behind > f64::from(CATCH_UP_PERIODS_MAX) {
+            self.time_s = now_s - f64::from(CATCH_UP_PERIODS_MAX) * self.period_s;
+        }
+        (behind.max(0.0) as u32).min(CATCH_UP_PERIODS_MAX)
+    }
+
+    /// One period.
+    pub(super) fn step(&mut self) {
+        self.advance(self.period_s);
+    }
+
+    fn take(&mut self, outputs: &Outputs) {
         // The force is limited by the leader's motors.
         let most_n = self.leader.map_or(f64::INFINITY, |leader| leader.force_max_n);
         let asked = outputs.hand_force_n;
@@ -168,6 +207,7 @@ impl World {
         };
         self.hand.guide(outputs.guide_m);
         self.hand.let_go(outputs.lets_go);
+        self.hand.hold_open(outputs.grip_rad);
         self.prompt = if outputs.prompt.is_finite() { outputs.prompt } else { Prompt::Rest };
     }
 
@@ -217,7 +257,7 @@ impl World {
         };
         let wall_n = |wall: &Wall| wall.contact_n(&self.tip_m, &self.tip_velocity_m_s);
         let walls_n: Vector3<f64> = self.walls.iter().filter(|_| !self.aside).map(wall_n).sum();
-        tissue_n + walls_n + self.hands().tip
+        tissue_n + walls_n + self.hands().tip + self.jaws.map_or_else(Vector3::zeros, |loads| loads.tip_n)
     }
 
     fn world_from_s1(&self) -> UnitQuaternion<f64> {
@@ -235,9 +275,10 @@ impl World {
         let Touch { tool, stand, .. } = self.hands();
         if let Some(wrist) = &mut self.wrist {
             let trocar = self.trocar.as_ref().filter(|_| !self.aside);
+            let twist_nm = self.jaws.map_or_else(Vector3::zeros, |loads| loads.torque_nm);
             let wall = trocar.map(|trocar| (trocar.force_n(), trocar.shaft(&self.tip_m).1));
             return Sensed::AtWrist(
-                wrist.measure(&world_from_s1, &Loads { tip_n, wall, touch_n: tool, stand_n: stand }),
+                wrist.measure(&world_from_s1, &Loads { tip_n, twist_nm, wall, touch_n: tool, stand_n: stand }),
             );
         }
         let noise_n = match &mut self.sensor_noise_n {
@@ -247,7 +288,8 @@ impl World {
         Sensed::AtTip(tip_n + noise_n)
     }
 
-    fn measure(&mut self) -> Inputs {
+    /// What a rig would measure now; once per step.
+    pub(super) fn measure(&mut self) -> Inputs {
         let sensed = self.sense();
         // This world has no arm of joints, and its tracker tells no places.
         let wrench = sensed.wrist().map(|sample| sample.raw);
@@ -257,6 +299,8 @@ impl World {
             .map_or(hand_m, |Leader { resolution_m, .. }| hand_m.map(|x| (x / resolution_m).round() * resolution_m));
         Inputs {
             hand: kinematics::Hand::at(leader_m),
+            gripper_rad: self.jaws.map(|_| self.hand.grip_rad()),
+            grip_n: self.jaws.map(|loads| loads.opening_n),
             tip_m: self.tip_m,
             sensed,
             frames: FrameSample { wrench, ..FrameSample::from(leader_m) },

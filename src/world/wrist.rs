@@ -13,6 +13,8 @@ use crate::scene::{TissueSensor, Wrist as WristConfig};
 pub(super) struct Loads {
     /// Tissue on the tip.
     pub(super) tip_n: Vector3<f64>,
+    /// Torque of what the jaws hold, about the tip, N m.
+    pub(super) twist_nm: Vector3<f64>,
     /// Body wall on the shaft, and the depth of the tip beyond the wall, m.
     pub(super) wall: Option<(Vector3<f64>, f64)>,
     /// A person's hand, at the tool's centre of mass.
@@ -65,6 +67,7 @@ impl Wrist {
         let force_n = at_com_n + tip_n + wall_n;
         let torque_nm = self.config.com_m.cross(&at_com_n)
             + along(self.config.shaft_m).cross(&tip_n)
+            + s1_from_world * loads.twist_nm
             + along(self.config.shaft_m - depth_m).cross(&wall_n);
         let WristConfig { gain, force_bias_n, torque_bias_nm, force_noise_n, torque_noise_nm, .. } = self.config;
         Wrench {

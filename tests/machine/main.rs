@@ -6,6 +6,7 @@ mod davinci;
 mod letting_go;
 mod over_a_network;
 mod ready_check;
+mod rings;
 mod simulated_calibration;
 mod simulated_experiments;
 mod tip_force_loop;

@@ -48,6 +48,9 @@ pub enum Command {
     /// Lead the handle from the screen to this position, m (workspace), at most [`crate::teleop::GUIDE_MAX_M`] from the
     /// middle on each axis; `None` ends this. A stop and a fault end it too.
     Guide(Option<Vector3<f64>>),
+    /// Hold the gripper of the handle open from the screen, this far, rad, at most [`crate::rig::GRIP_MAX_RAD`]; `None` ends this. A
+    /// stop and a fault end it too. On a simulated rig only.
+    Grip(Option<f64>),
     /// The simulated hand lets go of its handle (true) or takes it again (false). On a simulated rig only.
     LetGo(bool),
     /// Leave the governor out (false) or let it watch again (true). On a simulated rig only, where nobody holds the handle.
@@ -78,7 +81,7 @@ impl Command {
     pub fn concerns(self, side: Side) -> bool {
         match self {
             Self::EngageOne(of) | Self::Prompt(of, _) => of == side,
-            Self::Guide(_) | Self::LetGo(_) | Self::SetGovernor(_) => side == Side::Right,
+            Self::Guide(_) | Self::Grip(_) | Self::LetGo(_) | Self::SetGovernor(_) => side == Side::Right,
             _ => true,
         }
     }

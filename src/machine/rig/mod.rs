@@ -173,6 +173,8 @@ impl Inputs {
 /// Largest distance from the middle of the workspace to which the screen may lead a handle ([`Outputs::guide_m`]), on
 /// each axis, m.
 pub const GUIDE_MAX_M: f64 = 0.1;
+/// Furthest the screen may hold a gripper open ([`Outputs::grip_rad`]), rad.
+pub const GRIP_MAX_RAD: f64 = 1.2;
 
 /// Commands of the loop to an arm pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -191,6 +193,8 @@ pub struct Outputs {
     pub prompt: Prompt,
     /// Position to which the person at the screen leads the handle with mouse or keyboard, m; `None` if nobody does.
     pub guide_m: Option<Vector3<f64>>,
+    /// How far the person at the screen holds the gripper open, rad; `None` if nobody does.
+    pub grip_rad: Option<f64>,
     /// The simulated hand has let go of the handle.
     pub lets_go: bool,
 }
@@ -205,6 +209,7 @@ impl Outputs {
         gripper_n: 0.0,
         prompt: Prompt::Rest,
         guide_m: None,
+        grip_rad: None,
         lets_go: false,
     };
 }

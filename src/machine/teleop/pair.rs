@@ -84,6 +84,7 @@ pub struct Pair<L: Link = ProgrammedLink> {
     force: ForceReport,
     prompt: Prompt,
     guide_m: Option<Vector3<f64>>,
+    grip_rad: Option<f64>,
     /// Whether the simulated hand has let go of the handle; `None` where the handle is a device, which a person may hold.
     lets_go: Option<bool>,
     link: L,
@@ -154,6 +155,7 @@ impl<L: Link> Pair<L> {
             force: NO_FORCE_YET,
             prompt: Prompt::Rest,
             guide_m: None,
+            grip_rad: None,
             lets_go: rig.devices.is_none().then_some(false),
             link,
             far: Far::none(),
@@ -337,6 +339,7 @@ impl<L: Link> Pair<L> {
             gripper_n,
             prompt: self.prompt,
             guide_m: self.guide_m,
+            grip_rad: self.grip_rad,
             lets_go: self.lets_go.unwrap_or(false),
         };
         self.hand_force_n = outputs.hand_force_n;

@@ -43,6 +43,7 @@ choice!(Command {
     17 => TestWatchdog { 0: watchdog: Watchdog },
     18 => Checked { 0: passed: bool },
     19 => Shutdown {},
+    20 => Grip { 0: grip_rad: Option<f64> },
 });
 
 choice!(Side { 0 => Right {}, 1 => Left {} });

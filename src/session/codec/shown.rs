@@ -24,6 +24,7 @@ record!(put Outputs {
     gripper_n: f64,
     prompt: Prompt,
     guide_m: Option<Vector3<f64>>,
+    grip_rad: Option<f64>,
     lets_go: bool,
 });
 

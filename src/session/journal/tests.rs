@@ -217,6 +217,7 @@ fn command() -> BoxedStrategy<Command> {
         (0..of_bool.len(), any::<bool>()).prop_map(move |(i, value)| of_bool[i](value)),
         (side(), prompt()).prop_map(|(side, prompt)| Command::Prompt(side, prompt)),
         maybe(vector()).prop_map(Command::Guide),
+        maybe(number()).prop_map(Command::Grip),
         side().prop_map(Command::EngageOne),
         proptest::sample::select(Watchdog::ALL.to_vec()).prop_map(Command::TestWatchdog),
     ]

@@ -101,7 +101,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut sessions = Sessions::of_user(folder, arguments.second_place.as_deref(), servers);
     let network = arguments.network.clone();
     let far = line.as_ref().map(|line| (line.door(), Reopen::new(move |rig, scene| network.open(rig, scene))));
-    let handle = start_recorded(&plan, &mut sessions, line)?;
+    let started = start_recorded(&plan, &mut sessions, line)?;
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),
@@ -119,7 +119,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(folder) = &arguments.pictures {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
     }
-    console::run(Begun { choice, emulators, handle, rig, scene, sessions, far }, options)?;
+    console::run(Begun { choice, emulators, started, rig, scene, sessions, far }, options)?;
     if leave.is_asked() {
         tell("nima: ended as asked: force and drives are off");
     }

@@ -2,6 +2,7 @@
 
 mod engaging;
 mod record;
+mod scoring;
 mod status;
 mod words;
 
@@ -21,6 +22,7 @@ use nima_machine::{
     runtime::{self, Assembly, Summary, Tap},
 };
 use nima_recording::store::WristId;
+use nima_score::Score;
 use nima_session::outlet::Destination;
 use nima_world::{Plan, emulated::TipError, scene::Scene};
 use serde::Serialize;
@@ -28,6 +30,7 @@ use serde::Serialize;
 use self::{
     engaging::Engaging,
     record::{Recorded, Recording},
+    scoring::Scoring,
     status::{StatusLine, Troubles},
     words::in_words,
 };
@@ -160,6 +163,7 @@ pub(super) fn run_with(
         comparison: Comparison::default(),
         lacking: None,
         link: LinkNews::default(),
+        scoring: None,
     };
     if !plan.may_engage() {
         bail!(
@@ -175,7 +179,9 @@ pub(super) fn run_with(
     };
     let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock, arguments.seconds)?;
     let mut summary = if arguments.virtual_clock {
-        runtime::run_virtual(Assembly { tap, ..plan.simulated()? }, arguments.seconds.unwrap_or(60.0), |tick| {
+        let (assembly, watched) = plan.watched()?;
+        start.scoring = plan.scene.task.as_ref().map(|task| Scoring::new(task, watched));
+        runtime::run_virtual(Assembly { tap, ..assembly }, arguments.seconds.unwrap_or(60.0), |tick| {
             let command = start.watch(tick);
             if leave.is_asked() || recording.is_over() { Some(Command::Shutdown) } else { command }
         })
@@ -187,6 +193,7 @@ pub(super) fn run_with(
     let tip_error = start.comparison.figures();
     summary.explain(|fault| [fault.cause(), fault.cure()]);
     let drift = start.in_force.drift();
+    let score = start.scoring.take().and_then(Scoring::end);
     if arguments.json {
         if let Some(drift @ Drift::Moved { .. }) = drift {
             tell(format_args!("warning: the bias of the wrist sensor has {}", drift_in_words(drift)));
@@ -196,6 +203,7 @@ pub(super) fn run_with(
             tip_error,
             recorded: recorded.as_ref().ok().and_then(Option::as_ref),
             link: start.link.newest().map(LinkFigures::from),
+            score: score.as_ref(),
         })?;
     } else {
         let bias =
@@ -228,6 +236,8 @@ struct Told<'a> {
     recorded: Option<&'a Recorded>,
     #[serde(skip_serializing_if = "Option::is_none")]
     link: Option<LinkFigures>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    score: Option<&'a Score>,
 }
 
 /// Engages after the bias of the wrist sensor has been checked, whatever the result.
@@ -240,10 +250,13 @@ struct Start {
     /// What was told to be missing.
     lacking: Option<String>,
     link: LinkNews,
+    /// In a scene with a task.
+    scoring: Option<Scoring>,
 }
 
 impl Start {
     fn watch(&mut self, tick: &Tick) -> Option<Command> {
+        self.scoring.iter_mut().for_each(|scoring| scoring.tick(tick));
         self.in_force.watch(tick);
         self.reasons.watch(tick);
         let known = !self.in_force.is_waiting() && self.in_force.uncalibrated().is_none();
@@ -286,7 +299,9 @@ fn on_the_real_clock(
     leave: &Leave,
     arguments: &Arguments,
 ) -> anyhow::Result<Summary> {
-    let assembly = Assembly { tap, ..plan.assembly()? };
+    let (assembly, watched) = plan.watched_assembly()?;
+    start.scoring = plan.scene.task.as_ref().map(|task| Scoring::new(task, watched));
+    let assembly = Assembly { tap, ..assembly };
     let door = line.as_ref().map(Line::door);
     let handle = runtime::start(match line {
         Some(line) => line.join(assembly),

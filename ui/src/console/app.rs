@@ -24,7 +24,7 @@ use nima_machine::{
     rig::Side,
     runtime::{self, Assembly, Handle, StartError},
 };
-use nima_world::{Plan, emulated::Screen, scene::Scene};
+use nima_world::{Moment, Plan, Watched, emulated::Screen, scene::Scene};
 
 use super::{
     Options,
@@ -80,6 +80,8 @@ pub struct ConsoleApp {
     simulated_speed: Option<f64>,
     /// Opens the line to the machine with the arm, if it is at another one.
     reopen: Option<Reopen>,
+    /// Where a simulated rig tells of the objects of its scene.
+    objects: Option<Watched>,
     /// The program that starts emulators; this one, except in a test.
     program: Option<PathBuf>,
     /// Used to wake the window from another thread.
@@ -121,13 +123,18 @@ pub struct ConsoleApp {
 }
 
 /// Starts the loop of a plan, recorded if sessions are.
-pub(crate) fn start_recorded(plan: &Plan, sessions: &mut Sessions, line: Option<Line>) -> Result<Handle, StartError> {
-    let assembly = Assembly { tap: sessions.begin(plan), ..plan.assembly()? };
-    runtime::start(match line {
+pub(crate) fn start_recorded(plan: &Plan, sessions: &mut Sessions, line: Option<Line>) -> Result<Started, StartError> {
+    let (assembly, watched) = plan.watched_assembly()?;
+    let assembly = Assembly { tap: sessions.begin(plan), ..assembly };
+    let handle = runtime::start(match line {
         Some(line) => line.join(assembly),
         None => assembly,
-    })
+    })?;
+    Ok((handle, watched))
 }
+
+/// A loop that was started, and where a simulated rig tells of the objects of its scene.
+pub(crate) type Started = (Handle, Option<Watched>);
 
 impl ConsoleApp {
     /// Creates the console for a running loop. Sets fonts and style of the context; draws in 3-D if OpenGL is
@@ -153,6 +160,7 @@ impl ConsoleApp {
             start: StartPage::new(Choice::default()),
             simulated_speed: None,
             reopen: None,
+            objects: None,
             program: None,
             ctx: cc.egui_ctx.clone(),
             in_force,
@@ -198,6 +206,11 @@ impl ConsoleApp {
         self.live.first_tick()
     }
 
+    /// What the simulation told last of the objects of its scene.
+    pub const fn moment(&self) -> Option<&Moment> {
+        self.live.moment.as_ref()
+    }
+
     /// The rig that the loop is running on.
     pub fn rig(&self) -> &RigConfig {
         &self.live.rig
@@ -225,6 +238,9 @@ impl ConsoleApp {
 
     /// Reads everything that the loop has sent.
     fn take_in(&mut self) {
+        if let Some(moment) = self.objects.as_ref().and_then(Watched::newest) {
+            self.live.moment = Some(moment);
+        }
         let Some(door) = &self.door else { return };
         self.taken = Instant::now();
         let rate_hz = self.live.rig.rate_hz;
@@ -277,7 +293,7 @@ impl ConsoleApp {
         let rig = self.in_force.with_checked(rig);
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
         let started = match self.simulated_speed {
-            Some(speed) => nima_world::start_simulated(&plan, speed),
+            Some(speed) => nima_world::start_watched(&plan, speed),
             None => start_recorded(&plan, &mut self.sessions, line),
         };
         let started = started.map_err(|error| text::calibrations::not_started_again(&error));
@@ -289,7 +305,9 @@ impl ConsoleApp {
         self.panels.devices.begin_anew();
         self.checking.forget();
         self.outbox = Outbox::default();
-        self.door = Some(door_of(started?, &self.ctx));
+        let (handle, watched) = started?;
+        self.door = Some(door_of(handle, &self.ctx));
+        self.objects = watched;
         self.leave_when_asked();
         Ok(())
     }

@@ -21,7 +21,7 @@ use nima_machine::{
     messages::{Command, Fault, LoopState, Refusal, Scheduling, Tick, attention},
     rig::{DEVICES_MAX, Gauges, Healths, Roster, SIDES, Side},
 };
-use nima_world::scene::Scene;
+use nima_world::{Moment, scene::Scene};
 
 use crate::{
     line::{LineDoor, LineReport},
@@ -106,6 +106,8 @@ pub struct Live {
     pub scene: Scene,
     /// What it is the state of.
     pub of: Of,
+    /// What the simulation told last of the objects of the scene.
+    pub moment: Option<Moment>,
     /// Newest tick of each side.
     pub ticks: [Option<Tick>; SIDES],
     /// Forces over time, of each side.
@@ -184,6 +186,7 @@ impl Live {
             rig,
             scene,
             of: Of::Now,
+            moment: None,
             ticks: [None; SIDES],
             history: Default::default(),
             clouds: Default::default(),

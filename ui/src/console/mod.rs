@@ -1,6 +1,6 @@
 //! The operator's window on one running loop.
 //!
-//! Receives ticks and events through a [`Handle`] and sends commands through it. Panels never change the loop directly;
+//! Receives ticks and events through a [`Handle`](nima_machine::runtime::Handle) and sends commands through it. Panels never change the loop directly;
 //! they show what the ticks report and put the operator's commands into an outbox. All panels are plain functions of
 //! [`live::Live`], so they can be tested without a screen. Only `scene3d/gl.rs` uses the GPU.
 
@@ -44,7 +44,8 @@ pub mod wizards;
 
 use std::{path::PathBuf, time::Duration};
 
-use nima_machine::{config::RigConfig, runtime::Handle};
+use app::Started;
+use nima_machine::config::RigConfig;
 use nima_world::scene::Scene;
 use sessions::Sessions;
 use settings::Kept;
@@ -87,7 +88,7 @@ pub struct Options {
 pub(crate) struct Begun {
     pub(crate) choice: Choice,
     pub(crate) emulators: Option<Emulators>,
-    pub(crate) handle: Handle,
+    pub(crate) started: Started,
     pub(crate) rig: RigConfig,
     pub(crate) scene: Scene,
     pub(crate) sessions: Sessions,
@@ -123,10 +124,10 @@ pub(crate) fn open_window(title: &str, create: eframe::AppCreator<'_>) -> anyhow
 
 /// The console with the user's settings; screenshots use the defaults and do not change the settings.
 fn console(cc: &eframe::CreationContext<'_>, begun: Begun, options: Options) -> ConsoleApp {
-    let Begun { choice, emulators, handle, rig, scene, sessions, far } = begun;
+    let Begun { choice, emulators, started: (handle, objects), rig, scene, sessions, far } = begun;
     let settings = if options.pictures.is_some() { Kept::default() } else { Kept::of_user() };
-    let app =
-        ConsoleApp::new(cc, handle, rig, scene).with_choice(choice, emulators).with_sessions(sessions).with_line(far);
+    let app = ConsoleApp::new(cc, handle, rig, scene).with_objects(objects);
+    let app = app.with_choice(choice, emulators).with_sessions(sessions).with_line(far);
     app.with_settings(settings).with_options(options)
 }
 

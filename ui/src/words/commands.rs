@@ -40,6 +40,8 @@ pub(crate) fn command(command: Command) -> String {
             format!("lead the handle to {x:.0}, {y:.0}, {z:.0} mm")
         }
         Command::Guide(None) => "lead the handle no longer".to_owned(),
+        Command::Grip(Some(rad)) => format!("hold the gripper open by {:.0} degrees", rad.to_degrees()),
+        Command::Grip(None) => "leave the gripper to the hand".to_owned(),
         Command::LetGo(true) => "the simulated hand lets go".to_owned(),
         Command::LetGo(false) => "the simulated hand takes hold".to_owned(),
         Command::SetGovernor(true) => "governor on".to_owned(),

@@ -146,6 +146,8 @@ fn commands() -> impl Iterator<Item = Command> {
         Command::SetScale(0.0),
         Command::Guide(Some(Vector3::zeros())),
         Command::Guide(None),
+        Command::Grip(Some(0.0)),
+        Command::Grip(None),
         Command::Engage,
         Command::Rest,
         Command::Stop,

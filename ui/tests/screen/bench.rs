@@ -10,7 +10,7 @@ use egui_kittest::{
 use nima_console::console::ConsoleApp;
 use nima_machine::messages::Tick;
 use nima_tests::plan;
-use nima_world::{Plan, start_simulated};
+use nima_world::{Plan, start_watched};
 
 /// Far longer than anything takes, also on a busy machine.
 pub(crate) const TIMEOUT: Duration = Duration::from_mins(3);
@@ -41,12 +41,11 @@ pub(crate) fn shown_at(
     size: [f32; 2],
     prepare: impl FnOnce(ConsoleApp) -> ConsoleApp + 'static,
 ) -> Console {
-    let handle = start_simulated(plan, speed).unwrap();
+    let (handle, objects) = start_watched(plan, speed).unwrap();
     let (rig, scene) = (plan.rig.clone(), plan.scene.clone());
-    Harness::builder()
-        .with_size(size)
-        .with_step_dt(1.0 / 30.0)
-        .build_eframe(move |cc| prepare(ConsoleApp::new(cc, handle, rig, scene).with_simulated_time(speed)))
+    Harness::builder().with_size(size).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
+        prepare(ConsoleApp::new(cc, handle, rig, scene).with_objects(objects).with_simulated_time(speed))
+    })
 }
 
 /// As a window that draws fifty times a second: drawing all the time would only slow down what it waits for.

@@ -14,11 +14,14 @@ use nima_core::{
     impedance::{Baseline, Mode},
     safety::Gate,
 };
-use nima_machine::messages::{LoopState, Tick};
+use nima_machine::{
+    messages::{LoopState, Tick},
+    rig::Side,
+};
 use nima_tests::plan;
 use nima_world::Plan;
 
-use crate::bench::{press, shown, until};
+use crate::bench::{press, shown, until, wait};
 
 fn console_of(scene: &str, size: [f32; 2], engage: bool) -> Harness<'static, ConsoleApp> {
     shown(&Plan { engage, ..plan(scene) }, size, |app| app)
@@ -249,6 +252,32 @@ fn the_instrument_is_led_by_mouse_and_keys_and_a_stop_lets_it_go() {
     until(&mut harness, "led again", |tick| tick.guide_m.is_some_and(|at_m| at_m != aim_m));
     press(&mut harness, "Stop");
     until(&mut harness, "stopped and let go", |tick| tick.state == LoopState::Stopped && tick.guide_m.is_none());
+}
+
+#[test]
+fn the_jaws_are_opened_and_closed_by_a_key_while_the_instrument_is_led() {
+    let mut plan = plan("rings");
+    plan.rig.mode = Mode::Matched;
+    let mut harness = shown(&plan, [1600.0, 1000.0], |app| app);
+    until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
+    let opening = |harness: &Harness<'_, ConsoleApp>| {
+        harness.state().moment().map(|moment| moment.opening_rad[Side::Right.index()])
+    };
+    let opens = |harness: &mut Harness<'_, ConsoleApp>, open: bool| {
+        wait(harness, "jaws", |harness| opening(harness).is_some_and(|rad| (rad > 0.4) == open));
+    };
+    harness.key_press(Key::G);
+    harness.run_steps(5);
+    assert!(opening(&harness).is_none_or(|rad| rad < 0.1), "only while it is led");
+    press(&mut harness, "Drive by mouse (M)");
+    until(&mut harness, "led", |tick| tick.guide_m.is_some());
+    for open in [true, false, true] {
+        harness.key_press(Key::G);
+        harness.step();
+        opens(&mut harness, open);
+    }
+    let rings = harness.state().moment().map_or(0, |moment| moment.rings.iter().flatten().count());
+    assert_eq!(rings, 6);
 }
 
 #[test]

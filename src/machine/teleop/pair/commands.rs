@@ -10,7 +10,7 @@ use nima_core::{
 use super::Pair;
 use crate::{
     messages::{Command, Event, Fault, LoopState, Refusal},
-    rig::{GUIDE_MAX_M, Prompt, View},
+    rig::{GRIP_MAX_RAD, GUIDE_MAX_M, Prompt, View},
     teleop::Link,
 };
 
@@ -54,13 +54,20 @@ impl<L: Link> Pair<L> {
             {
                 self.guide_m = guide_m;
             }
-            Command::LetGo(_) | Command::SetGovernor(_) if self.lets_go.is_none() => {
+            Command::LetGo(_) | Command::SetGovernor(_) | Command::Grip(_) if self.lets_go.is_none() => {
                 return Err(Refusal::SimulatedOnly);
             }
             Command::LetGo(lets_go) => self.lets_go = Some(lets_go),
             Command::SetGovernor(on) => self.chain.set_governor(on),
             Command::Prompt(_, prompt) if prompt.is_finite() => return Err(Refusal::State(self.state())),
-            Command::Guide(_) if self.state().is_latched() => return Err(Refusal::State(self.state())),
+            Command::Grip(grip_rad)
+                if !self.state().is_latched() && grip_rad.is_none_or(|rad| (0.0..=GRIP_MAX_RAD).contains(&rad)) =>
+            {
+                self.grip_rad = grip_rad;
+            }
+            Command::Guide(_) | Command::Grip(_) if self.state().is_latched() => {
+                return Err(Refusal::State(self.state()));
+            }
             Command::Engage | Command::EngageOne(_) => {
                 self.may_engage()?;
                 return self.ask(Wish::Engage, t_s);
@@ -146,7 +153,7 @@ impl<L: Link> Pair<L> {
             self.prompt = Prompt::Rest;
         }
         if to.is_latched() {
-            (self.guide_m, self.lets_go) = (None, self.lets_go.map(|_| false));
+            (self.guide_m, self.grip_rad, self.lets_go) = (None, None, self.lets_go.map(|_| false));
         }
         if let (LoopState::Engaged, Some(seen)) = (to, self.last_inputs) {
             // Only here: if the endoscope turns while engaged, the mapping must not turn the motion under the

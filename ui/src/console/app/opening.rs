@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use nima_world::Watched;
+
 use super::{ConsoleApp, WARM_UP};
 use crate::{
     console::{
@@ -63,6 +65,13 @@ impl ConsoleApp {
     #[must_use]
     pub(crate) fn with_sessions(mut self, sessions: Sessions) -> Self {
         self.sessions = sessions;
+        self
+    }
+
+    /// The simulated rig tells here of the objects of its scene.
+    #[must_use]
+    pub fn with_objects(mut self, objects: Option<Watched>) -> Self {
+        self.objects = objects;
         self
     }
 

@@ -12,6 +12,8 @@ use crate::console::{text, theme};
 
 /// Motion per press of an arrow key, m.
 const STEP_M: f32 = 0.001;
+/// How far the key opens the jaws, rad.
+const OPEN_RAD: f64 = 0.6;
 /// Change of height per point of the wheel, m.
 const WHEEL_M: f32 = 0.0001;
 /// Space in which the instrument may be led: half width, half depth, lowest and highest, m.
@@ -22,6 +24,8 @@ const HEIGHT_M: std::ops::RangeInclusive<f32> = -0.02..=0.06;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Lead {
     at_m: Option<Vector3<f32>>,
+    /// The jaws are held open; not known before the first press of the key.
+    open: Option<bool>,
 }
 
 impl Lead {
@@ -34,6 +38,23 @@ impl Lead {
     pub(super) fn let_go(&mut self, outbox: &mut Outbox) {
         if self.at_m.take().is_some() {
             outbox.push(Command::Guide(None));
+        }
+        self.leave_jaws(outbox);
+    }
+
+    fn leave_jaws(&mut self, outbox: &mut Outbox) {
+        if self.open.take().is_some() {
+            outbox.push(Command::Grip(None));
+        }
+    }
+
+    /// Opens and closes the jaws by a key.
+    fn jaws(&mut self, ui: &Ui, live: &Live, outbox: &mut Outbox) {
+        let pressed = !ui.ctx().text_edit_focused() && ui.input(|input| input.key_pressed(Key::G));
+        if pressed && live.scene.objects.is_some() {
+            let open = !self.open.unwrap_or(false);
+            self.open = Some(open);
+            outbox.push(Command::Grip(Some(if open { OPEN_RAD } else { 0.0 })));
         }
     }
 
@@ -50,7 +71,7 @@ impl Lead {
         let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged) && !live.is_shown_only();
         if self.is_on() && !runs {
             // The loop has ended the leading already.
-            self.at_m = None;
+            (self.at_m, self.open) = (None, None);
         }
         let place = Rect::from_min_size(rect.right_bottom() - vec2(250.0, 46.0), vec2(150.0, 34.0));
         let text = if self.is_on() { text::field::LEAD_END } else { text::field::LEAD };
@@ -64,6 +85,12 @@ impl Lead {
                 None => live.first_tick().map(|tick| tick.leader_m.cast()),
             };
             outbox.push(Command::Guide(self.at_m.map(Vector3::cast)));
+            if self.at_m.is_none() {
+                self.leave_jaws(outbox);
+            }
+        }
+        if self.at_m.is_some() {
+            self.jaws(ui, live, outbox);
         }
         let Some(at_m) = &mut self.at_m else { return false };
         let before_m = *at_m;

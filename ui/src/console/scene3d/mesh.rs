@@ -1,7 +1,7 @@
 //! Triangle meshes: tubes, spheres, rings and surfaces with smooth normals. Independent of the GPU.
 
 use egui::Color32;
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 /// Shading of a surface; the fragment shader selects it by this number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,6 +149,21 @@ impl Mesh {
         self.sheet(first, AROUND, ACROSS);
     }
 
+    /// A torus about its own z, turned: from its middle to the middle of its tube, and the radius of the tube.
+    pub fn torus(&mut self, centre: Vector3<f32>, turn: &UnitQuaternion<f32>, [major, tube]: [f32; 2], paint: Paint) {
+        const AROUND: u32 = 28;
+        const ACROSS: u32 = 12;
+        let first = self.vertices.len() as u32;
+        for step in 0..=AROUND {
+            let out = around(&Vector3::x(), &Vector3::y(), step, AROUND);
+            for side in 0..=ACROSS {
+                let normal = around(&out, &Vector3::z(), side, ACROSS);
+                self.vertex(centre + turn * (out * major + normal * tube), turn * normal, paint);
+            }
+        }
+        self.sheet(first, AROUND, ACROSS);
+    }
+
     /// A box from its lowest to its highest corner.
     pub fn cuboid(&mut self, low: Vector3<f32>, high: Vector3<f32>, paint: Paint) {
         let centre = (low + high) * 0.5;
@@ -230,6 +245,7 @@ mod tests {
         mesh.tube([Vector3::zeros(), Vector3::new(0.0, 0.1, 0.3)], [0.01, 0.0], 12, PAINT);
         mesh.sphere(Vector3::x(), 0.5, 8, PAINT);
         mesh.ring(Vector3::zeros(), [0.01, 0.001], |x, y| x * y, PAINT);
+        mesh.torus(Vector3::x(), &UnitQuaternion::from_euler_angles(1.0, 0.3, 0.0), [0.01, 0.002], PAINT);
         mesh.cuboid(-Vector3::repeat(1.0), Vector3::repeat(2.0), PAINT);
         mesh.ribbon(&[Vector3::zeros(), Vector3::x(), Vector3::x()], &Vector3::z(), |_| 0.01, PAINT);
         sound(&mesh);

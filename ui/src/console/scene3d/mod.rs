@@ -6,6 +6,7 @@ pub mod extras;
 pub mod gl;
 mod lead;
 pub mod mesh;
+mod objects;
 mod pick;
 pub mod stage;
 
@@ -23,6 +24,7 @@ use self::{
     extras::Extras,
     gl::Renderer,
     lead::Lead,
+    objects::Shown,
     stage::{Arm, Pose},
 };
 use super::{live::Live, outbox::Outbox, panels::gauge, theme, widgets::force_sign};
@@ -67,6 +69,7 @@ struct Drawn {
     camera: Camera,
     smooth: bool,
     arms: Vec<Arm>,
+    shown: Option<Shown>,
 }
 
 impl Default for SceneView {
@@ -209,13 +212,14 @@ fn arm(live: &Live, side: Side) -> Option<Arm> {
 fn triangles(rect: Rect, live: &Live, view: &mut SceneView, arms: &[Arm]) -> Option<egui::PaintCallback> {
     let renderer = view.renderer.clone()?;
     let camera = view.camera(&live.scene);
-    let wanted = Drawn { rect, scene: live.scene.name.clone(), camera, smooth: view.smooth, arms: arms.to_vec() };
+    let (scene, shown) = (live.scene.name.clone(), Shown::of(live));
+    let wanted = Drawn { rect, scene, camera, smooth: view.smooth, arms: arms.to_vec(), shown };
     if let Some((_, callback)) = view.drawn.as_ref().filter(|(drawn, _)| *drawn == wanted) {
         return Some(callback.clone());
     }
     let (eye_m, right) = (camera.eye_m(), camera.right());
     let frame = gl::Frame {
-        mesh: stage::build(&live.scene, arms, &eye_m, &right, view.smooth),
+        mesh: stage::build(&live.scene, arms, wanted.shown.as_ref(), &eye_m, &right, view.smooth),
         clip_from_workspace: camera.clip_from_workspace(rect.aspect_ratio()),
         eye_m,
         shafts_m: arms.iter().map(|arm| [arm.pose.tip_m, arm.trocar_m]).collect(),

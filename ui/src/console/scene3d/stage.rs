@@ -5,7 +5,10 @@ use nalgebra::Vector3;
 use nima_machine::rig::{SIDES, Side};
 use nima_world::scene::Scene;
 
-use super::mesh::{Material, Mesh, Paint};
+use super::{
+    mesh::{Material, Mesh, Paint},
+    objects::{self, Shown},
+};
 use crate::console::theme;
 
 /// Length of a force arrow, m per N.
@@ -113,7 +116,14 @@ pub struct Arm {
 }
 
 /// Builds the scene as seen from `eye_m`, with `right` to the right of the screen; `fine` selects more triangles.
-pub fn build(scene: &Scene, arms: &[Arm], eye_m: &Vector3<f32>, right: &Vector3<f32>, fine: bool) -> Mesh {
+pub fn build(
+    scene: &Scene,
+    arms: &[Arm],
+    shown: Option<&Shown>,
+    eye_m: &Vector3<f32>,
+    right: &Vector3<f32>,
+    fine: bool,
+) -> Mesh {
     let mut mesh = Mesh { vertices: Vec::with_capacity(12_000), indices: Vec::with_capacity(60_000) };
     let mut dents = Dents([Dent::NONE; SIDES]);
     // Front objects first, so that hidden pixels are not shaded.
@@ -121,14 +131,23 @@ pub fn build(scene: &Scene, arms: &[Arm], eye_m: &Vector3<f32>, right: &Vector3<
         let [measured, rendered] = arrow_bases_m(pose, trocar_m, right);
         measured_arrow(&mut mesh, measured, &pose.measured_n);
         rendered_arrow(&mut mesh, rendered, &pose.rendered_n);
-        instrument(&mut mesh, trocar_m, &pose.tip_m);
+        match shown {
+            Some(shown) => {
+                let hinge_m = objects::jaws(&mut mesh, scene, shown, *side, &pose.tip_m);
+                shaft(&mut mesh, trocar_m, &hinge_m);
+            }
+            None => instrument(&mut mesh, trocar_m, &pose.tip_m),
+        }
         dents.0[side.index()] = Dent::new(scene, &pose.tip_m);
     }
     for Arm { targets_m, trail_m, .. } in arms {
-        for target_m in targets_m {
+        for target_m in targets_m.iter().filter(|_| shown.is_none()) {
             mesh.ring(*target_m, [0.0055, 0.0008], |x, y| dents.lift_m(x, y), TARGET);
         }
         mesh.ribbon(trail_m, eye_m, |i| 0.0011 * (i as f32 / trail_m.len() as f32), TRAIL);
+    }
+    if let Some(shown) = shown {
+        objects::ground(&mut mesh, scene, shown);
     }
     tissue(&mut mesh, scene, &dents, if fine { CELLS } else { CELLS_COARSE });
     mesh
@@ -182,10 +201,15 @@ fn mottled(x: f32, y: f32) -> Color32 {
 
 /// Shaft through the trocar, with a blunt tip; its lowest point is the tip position.
 fn instrument(mesh: &mut Mesh, trocar_m: &Vector3<f32>, tip_m: &Vector3<f32>) {
-    let Some(axis) = (trocar_m - tip_m).try_normalize(1e-4) else { return };
     let knob = tip_m + Vector3::z() * SHAFT_RADIUS_M;
     mesh.sphere(knob, SHAFT_RADIUS_M, 12, STEEL);
-    mesh.tube([knob, knob + axis * 0.012], [SHAFT_RADIUS_M * 0.8; 2], 20, STEEL);
+    shaft(mesh, trocar_m, &knob);
+}
+
+/// From the end of the instrument through its trocar.
+fn shaft(mesh: &mut Mesh, trocar_m: &Vector3<f32>, knob: &Vector3<f32>) {
+    let Some(axis) = (trocar_m - knob).try_normalize(1e-4) else { return };
+    mesh.tube([*knob, knob + axis * 0.012], [SHAFT_RADIUS_M * 0.8; 2], 20, STEEL);
     mesh.tube([knob + axis * 0.011, knob + axis * 0.014], [SHAFT_RADIUS_M, SHAFT_RADIUS_M * 1.15], 20, STEEL);
     mesh.tube([knob + axis * 0.014, trocar_m + axis * 0.12], [SHAFT_RADIUS_M * 1.15; 2], 20, SHAFT);
     mesh.tube([trocar_m - axis * 0.012, trocar_m + axis * 0.012], [SHAFT_RADIUS_M * 2.0; 2], 24, SLEEVE);
@@ -273,7 +297,7 @@ mod tests {
         let one = arm(pose(0.01, Vector3::z()));
         let other = Arm { side: Side::Left, ..one.clone() };
         let corners =
-            |arms: &[Arm]| build(&scene, arms, &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), true).vertices.len();
+            |arms: &[Arm]| build(&scene, arms, None, &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), true).vertices.len();
         assert_eq!(corners(&[one.clone(), other]), 2 * corners(&[one]));
     }
 
@@ -294,12 +318,20 @@ mod tests {
         let full = Scene::load("peg_transfer").unwrap();
         let bare = Scene::load("free_motion").unwrap();
         let size = |scene: &Scene, force_n| {
-            build(scene, &[arm(pose(0.01, force_n))], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), true).vertices.len()
+            build(scene, &[arm(pose(0.01, force_n))], None, &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), true)
+                .vertices
+                .len()
         };
         assert!(size(&full, Vector3::zeros()) > size(&bare, Vector3::zeros()) + 4000);
         assert!(size(&bare, Vector3::z()) > size(&bare, Vector3::z() * 0.01));
-        let coarse =
-            build(&full, &[arm(pose(0.01, Vector3::zeros()))], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), false);
+        let coarse = build(
+            &full,
+            &[arm(pose(0.01, Vector3::zeros()))],
+            None,
+            &Vector3::new(0.0, -0.3, 0.2),
+            &Vector3::x(),
+            false,
+        );
         assert!(2 * coarse.vertices.len() < 2 * 1000 + size(&full, Vector3::zeros()));
     }
 
@@ -307,7 +339,7 @@ mod tests {
     fn what_is_not_finite_reaches_no_arrow() {
         let scene = Scene::load("free_motion").unwrap();
         let nowhere = arm(pose(0.01, Vector3::repeat(f32::NAN)));
-        let mesh = build(&scene, &[nowhere], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), true);
+        let mesh = build(&scene, &[nowhere], None, &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), true);
         assert!(mesh.vertices.iter().all(|v| v.position.iter().all(|x| x.is_finite())));
     }
 }

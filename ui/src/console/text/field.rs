@@ -19,8 +19,7 @@ pub(in crate::console) const ARROW_MEASURED: &str = "Measured force";
 pub(in crate::console) const ARROW_RENDERED: &str = "Rendered force";
 pub(in crate::console) const RESET_VIEW: &str = "Endoscope view";
 pub(in crate::console) const VIEW_HOVER: &str = "Drag to turn, wheel to zoom, double-click to reset";
-pub(in crate::console) const LEAD_HOVER: &str =
-    "Drag to move the instrument, wheel or Page Up and Page Down to change its height, arrow keys for small steps";
+pub(in crate::console) const LEAD_HOVER: &str = "Drag to move the instrument, wheel or Page Up and Page Down to change its height, arrow keys for small steps; G opens and closes jaws";
 
 /// The view cannot be drawn.
 pub(in crate::console) fn not_drawn(problem: &str) -> String {

@@ -1,0 +1,135 @@
+//! The law of one place where two things touch: a spring and a damper that never pull, and Coulomb friction through a spring that sticks until
+//! the limit (Cundall and Strack, Géotechnique 29, 1979).
+
+use nalgebra::Vector3;
+
+/// Largest force of one place, N: an arm that was driven into a peg or through it gets no more.
+const FORCE_MOST_N: f64 = 30.0;
+/// The spring of friction, in terms of that of the normal: 2/3 for rubber (Mindlin, J. Appl. Mech. 16, 1949).
+const TANGENTIAL: f64 = 2.0 / 3.0;
+/// Damping of the torsion, s times its stiffness: a ring between two fingers turns at some 40 Hz, this ends it in a few turns.
+const TORSION_S: f64 = 3e-3;
+
+/// Stiffness, damping and friction of a kind of contact.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Law {
+    pub stiffness_n_m: f64,
+    pub damping_n_s_m: f64,
+    pub friction: f64,
+    /// Effective radius of the patch for torsion, m; 0 for none.
+    pub patch_radius_m: f64,
+}
+
+/// What a place remembers as long as it touches.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Memory {
+    /// How far friction's spring is stretched, m.
+    stretched_m: Vector3<f64>,
+    twisted_rad: f64,
+}
+
+/// How two things touch. The normal points from the other thing to this one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch {
+    pub depth_m: f64,
+    pub normal: Vector3<f64>,
+    /// Velocity of this thing relative to the other, m/s.
+    pub velocity_m_s: Vector3<f64>,
+    /// Turning relative to the other about the normal, rad/s.
+    pub spin_rad_s: f64,
+}
+
+/// What the other thing does to this one.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Push {
+    pub force_n: Vector3<f64>,
+    /// About the normal, as a vector, N m.
+    pub torque_nm: Vector3<f64>,
+    /// The part along the normal, N.
+    pub normal_n: f64,
+}
+
+impl Law {
+    /// The forces at the end of a step of `step_s`.
+    pub(crate) fn push(&self, memory: &mut Memory, touch: &Touch, step_s: f64) -> Push {
+        let approach_m_s = touch.normal.dot(&touch.velocity_m_s);
+        let normal_n =
+            (self.stiffness_n_m * touch.depth_m - self.damping_n_s_m * approach_m_s).clamp(0.0, FORCE_MOST_N);
+        let tangent = |vector: &Vector3<f64>| vector - touch.normal * touch.normal.dot(vector);
+        let slide_m_s = tangent(&touch.velocity_m_s);
+        let stiffness_n_m = self.stiffness_n_m * TANGENTIAL;
+        let stretched_m = tangent(&memory.stretched_m) + slide_m_s * step_s;
+        let limit_n = self.friction * normal_n;
+        let asked_n = -stretched_m * stiffness_n_m - slide_m_s * (self.damping_n_s_m * TANGENTIAL);
+        let size_n = asked_n.norm();
+        let friction_n = if size_n > limit_n {
+            let sliding_n = asked_n * (limit_n / size_n);
+            memory.stretched_m = -sliding_n / stiffness_n_m;
+            sliding_n
+        } else {
+            memory.stretched_m = stretched_m;
+            asked_n
+        };
+        let torque_nm = self.torsion_nm(memory, touch.spin_rad_s, limit_n, step_s);
+        Push { force_n: touch.normal * normal_n + friction_n, torque_nm: touch.normal * torque_nm, normal_n }
+    }
+
+    fn torsion_nm(&self, memory: &mut Memory, spin_rad_s: f64, limit_n: f64, step_s: f64) -> f64 {
+        if self.patch_radius_m <= 0.0 {
+            return 0.0;
+        }
+        let stiffness = self.stiffness_n_m * TANGENTIAL * self.patch_radius_m * self.patch_radius_m;
+        let limit_nm = limit_n * self.patch_radius_m;
+        memory.twisted_rad += spin_rad_s * step_s;
+        let asked_nm = -stiffness * (memory.twisted_rad + TORSION_S * spin_rad_s);
+        if asked_nm.abs() <= limit_nm {
+            return asked_nm;
+        }
+        let sliding_nm = limit_nm.copysign(asked_nm);
+        memory.twisted_rad = -sliding_nm / stiffness;
+        sliding_nm
+    }
+}
+
+/// Up to two places where a ring touches one capsule, told apart by where they are on the ring.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pair {
+    places: [Option<(Vector3<f64>, Memory)>; 2],
+}
+
+/// Farther than this on the ring it is another place, m.
+const MOVED_M: f64 = 3e-3;
+
+impl Pair {
+    /// The memories of these places (in the frame of the ring), in their order; what is not among them is forgotten.
+    pub(crate) fn of(&mut self, at_m: [Option<Vector3<f64>>; 2]) -> [Memory; 2] {
+        let mut left = self.places;
+        at_m.map(|at_m| {
+            let Some(at_m) = at_m else { return Memory::default() };
+            let distance_m = |place: &Option<(Vector3<f64>, Memory)>| {
+                place.map_or(f64::INFINITY, |(before_m, _)| (before_m - at_m).norm())
+            };
+            let nearer = usize::from(distance_m(&left[1]) < distance_m(&left[0]));
+            if distance_m(&left[nearer]) < MOVED_M {
+                left[nearer].take().map_or_else(Memory::default, |(_, memory)| memory)
+            } else {
+                Memory::default()
+            }
+        })
+    }
+
+    pub(crate) const fn keep(&mut self, place: usize, at_m: Vector3<f64>, memory: Memory) {
+        self.places[place] = Some((at_m, memory));
+    }
+
+    pub(crate) const fn forget(&mut self) {
+        self.places = [None; 2];
+    }
+}
+
+impl Push {
+    /// What this thing does to the other.
+    pub(crate) fn reverse(&self) -> Self {
+        Self { force_n: -self.force_n, torque_nm: -self.torque_nm, normal_n: self.normal_n }
+    }
+}

@@ -1,0 +1,54 @@
+//! The instruments: what they are told, and what they feel.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// Widest that jaws open, rad; graspers open to about 70 degrees.
+pub const OPENING_MOST_RAD: f64 = 1.4;
+/// Farther from the origin an instrument counts as absent, m.
+const FARTHEST_M: f64 = 10.0;
+
+/// Where an instrument is. Workspace frame, z up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instrument {
+    /// End of the closed fingers, m.
+    pub tip_m: Vector3<f64>,
+    /// Orientation of the jaws: z along the closed fingers towards their end, y the axis about which they open.
+    pub world_from_jaws: UnitQuaternion<f64>,
+    /// Where the shaft enters, m. It is straight from there to the hinge of the fingers.
+    pub trocar_m: Vector3<f64>,
+    /// Commanded angle between the fingers, rad; 0 is closed.
+    pub opening_rad: f64,
+}
+
+impl Instrument {
+    /// Whether all of it are numbers, and it is somewhere near.
+    pub(crate) fn is_sane(&self) -> bool {
+        let near = |at_m: &Vector3<f64>| at_m.iter().all(|x| x.abs() <= FARTHEST_M);
+        let turned = (self.world_from_jaws.norm_squared() - 1.0).abs() < 1e-3;
+        near(&self.tip_m) && near(&self.trocar_m) && turned && self.opening_rad.is_finite()
+    }
+}
+
+/// What acts on an instrument, as a mean over the last step. Workspace frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Loads {
+    /// Force of all contacts, N.
+    pub tip_n: Vector3<f64>,
+    /// Torque of all contacts about the tip, N m.
+    pub torque_nm: Vector3<f64>,
+    /// Force that opens the jaws, N at the end of a finger; negative if it closes them.
+    pub opening_n: f64,
+    /// What it touches.
+    pub touching: Touching,
+}
+
+/// What an instrument touches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a thing that can be touched, in any combination")]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Touching {
+    pub ring: bool,
+    pub peg: bool,
+    pub board: bool,
+    pub other_instrument: bool,
+}

@@ -1,4 +1,4 @@
-//! Who holds a follower, and its hand-over by consent: one byte in every datagram.
+//! Who holds a follower, and its hand-over by consent: one byte in every report, and in the next datagram when it changes.
 //!
 //! The byte says what is, not what has happened, so that a lost datagram changes nothing: a console asks for as long as it wants, the
 //! follower passes the question on for as long as it is open, and the holder's answer carries the question's number.

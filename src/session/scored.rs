@@ -67,14 +67,19 @@ fn engaged(
     Ok(extent)
 }
 
+/// A side as the score has it.
+pub const fn side_of(arm: Side) -> nima_score::Side {
+    match arm {
+        Side::Left => nima_score::Side::Left,
+        Side::Right => nima_score::Side::Right,
+    }
+}
+
 /// Both hands, tick by tick.
 fn samples(reader: &Reader, path: &Path, times_ns: Range<u64>, arms: &[Side]) -> Result<Vec<Sample>, PlottedError> {
     let mut samples: BTreeMap<u64, Sample> = BTreeMap::new();
     for arm in arms {
-        let place = match arm {
-            Side::Left => nima_score::Side::Left,
-            Side::Right => nima_score::Side::Right,
-        };
+        let place = side_of(*arm);
         plotted::each_tick(reader, path, *arm, times_ns.clone(), |tick| {
             let PlottedTick { time_ns, t_s, tip_m, measured_n, rendered_n, state, .. } = tick;
             let engaged = state == LoopState::Engaged.word();

@@ -9,9 +9,9 @@ use std::{fmt::Write as _, hint::black_box, time::Instant};
 use nalgebra::Vector3;
 use nima_machine::{
     config::ConfigError,
-    rig::{Outputs, Sensed, Side},
+    rig::{Inputs, Outputs, Rig as _, SIDES, Sensed, Side},
 };
-use nima_world::{World, scene::Scene};
+use nima_world::{World, Worlds, scene::Scene};
 use serde::Serialize;
 
 use crate::{Experiment, Findings};
@@ -67,7 +67,7 @@ pub struct Report {
 /// An effect: its name, whether a scene has it, and the scene without it.
 type Part = (&'static str, fn(&Scene) -> bool, fn(&mut Scene));
 
-const PARTS: [Part; 13] = [
+const PARTS: [Part; 14] = [
     ("tissue", |scene| scene.tissue.is_some(), without_tissue),
     (
         "friction of the tissue",
@@ -91,6 +91,7 @@ const PARTS: [Part; 13] = [
     ("lumps", |scene| scene.lumps.is_some(), |scene| scene.lumps = None),
     ("relaxation", |scene| scene.relaxation.is_some(), |scene| scene.relaxation = None),
     ("membrane", |scene| scene.membrane.is_some(), |scene| scene.membrane = None),
+    ("rings, pegs and jaws", |scene| scene.objects.is_some(), |scene| scene.objects = None),
     ("walls", |scene| !scene.walls.is_empty(), |scene| scene.walls.clear()),
     ("lag of the arm", |scene| scene.follower.is_some(), |scene| scene.follower = None),
     ("noise of the sensor", |scene| scene.sensor.is_some(), |scene| scene.sensor = None),
@@ -117,13 +118,31 @@ fn force_n(sensed: &Sensed) -> Vector3<f64> {
     }
 }
 
+/// The simulation of one hand: its answer to what it is told at a time.
+type Simulated = Box<dyn FnMut(f64, &Outputs) -> Option<Inputs>>;
+
+/// Of this scene; with its objects, which all instruments share, where it has any.
+fn simulated(scene: &Scene) -> Simulated {
+    if scene.objects.is_none() {
+        let mut world = World::new(scene, RATE_HZ);
+        return Box::new(move |now_s, outputs| world.exchange(now_s, outputs));
+    }
+    let (mut worlds, right) = (Worlds::new(scene, RATE_HZ), Side::Right.index());
+    Box::new(move |now_s, outputs| {
+        let mut both = [Outputs::SAFE; SIDES];
+        both[right] = *outputs;
+        worlds.write(now_s, &both);
+        worlds.read(now_s)[right]
+    })
+}
+
 /// The commands of the hand of this scene, tick by tick.
 fn commands(scene: &Scene, ticks: usize) -> Vec<Vector3<f64>> {
-    let mut world = World::new(scene, RATE_HZ);
+    let mut world = simulated(scene);
     let mut outputs = Outputs::SAFE;
     let mut commands = Vec::with_capacity(ticks);
     for tick in 0..ticks {
-        let Some(inputs) = world.exchange(tick as f64 / RATE_HZ, &outputs) else { continue };
+        let Some(inputs) = world(tick as f64 / RATE_HZ, &outputs) else { continue };
         outputs.tip_command_m = Some(inputs.hand.position_m);
         commands.push(inputs.hand.position_m);
     }
@@ -132,10 +151,10 @@ fn commands(scene: &Scene, ticks: usize) -> Vec<Vector3<f64>> {
 
 /// The measured forces of this scene along these commands.
 fn forces(scene: &Scene, commands: &[Vector3<f64>], mut each: impl FnMut(Vector3<f64>)) {
-    let mut world = World::new(scene, RATE_HZ);
+    let mut world = simulated(scene);
     for (tick, command_m) in commands.iter().enumerate() {
         let outputs = Outputs { tip_command_m: Some(*command_m), ..Outputs::SAFE };
-        if let Some(inputs) = world.exchange(tick as f64 / RATE_HZ, &outputs) {
+        if let Some(inputs) = world(tick as f64 / RATE_HZ, &outputs) {
             each(force_n(&inputs.sensed));
         }
     }

@@ -16,11 +16,11 @@ const OPENS_S: f64 = 0.3;
 const CARRIES_M_S: f64 = 0.10;
 const NEARS_M_S: f64 = 0.05;
 const LEAVES_M_S: f64 = 0.15;
-/// Heights of an empty hand above a ring, and of a ring that is carried, above the pegs' foot, m.
+/// Height of an empty hand above a ring, and of a ring that is carried above the tops of the pegs, m.
 const ABOVE_RING_M: f64 = 0.03;
-const CARRIED_M: f64 = 0.045;
-/// A ring is let go at this height above the foot of its peg, m.
-const LET_GO_M: f64 = 0.016;
+const OVER_PEGS_M: f64 = 0.02;
+/// A ring is let go at this share of the height of its peg.
+const LET_GO: f64 = 0.64;
 /// Jaws reach so far below the middle of a ring, m.
 const DEEPER_M: f64 = 0.001;
 /// Where rings change hands, m, and where a hand waits beside it.
@@ -31,7 +31,10 @@ const REST_S: f64 = 0.3;
 
 /// The parts of both hands' tasks, which are as long as each other.
 struct Task {
+    /// From the middle of a ring to the middle of its tube, and the height of a ring that lies on the board, m.
     rim_m: f64,
+    lies_m: f64,
+    peg_m: f64,
     parts: [Vec<Part>; SIDES],
     at_m: [Vector3<f64>; SIDES],
     grip_rad: [f64; SIDES],
@@ -40,8 +43,8 @@ struct Task {
 /// The task of each hand; of the right one alone if there is no other. Empty without a ring on a peg that has one opposite.
 pub(super) fn ways(setting: &Setting, two_hands: bool) -> [Vec<Part>; SIDES] {
     let waits = [Side::Right, Side::Left].map(|side| outwards(side, ASIDE_M));
-    let rim_m = setting.ring.major_radius_m;
-    let mut task = Task { rim_m, parts: [vec![], vec![]], at_m: waits, grip_rad: [0.0; SIDES] };
+    let (rim_m, lies_m, peg_m) = (setting.ring.major_radius_m, setting.ring.tube_radius_m, setting.pegs.height_m);
+    let mut task = Task { rim_m, lies_m, peg_m, parts: [vec![], vec![]], at_m: waits, grip_rad: [0.0; SIDES] };
     let pegs = &setting.pegs.at_m;
     let foot_m = |peg: usize| pegs.get(peg).map(|[x, y]| Vector3::new(*x, *y, setting.board.z_m));
     // The pegs of the right side stand in the order of those of the left one.
@@ -113,12 +116,13 @@ impl Task {
 
     fn lift(&mut self, side: Side) {
         let at_m = self.at_m[side.index()];
-        self.go(side, at_m + Vector3::z() * CARRIED_M, CARRIES_M_S);
+        self.go(side, at_m + Vector3::z() * (self.peg_m + OVER_PEGS_M), CARRIES_M_S);
     }
 
     fn place(&mut self, side: Side, foot_m: Vector3<f64>) {
         let over = |height_m: f64| foot_m + Vector3::z() * height_m;
-        let [above_m, on_m] = [over(CARRIED_M), over(LET_GO_M)].map(|middle_m| self.rim_m(side, middle_m));
+        let [above_m, on_m] =
+            [over(self.peg_m + OVER_PEGS_M), over(LET_GO * self.peg_m)].map(|middle_m| self.rim_m(side, middle_m));
         self.go(side, above_m, CARRIES_M_S);
         self.go(side, on_m, NEARS_M_S);
         self.jaws(side, OPEN_RAD);
@@ -127,7 +131,7 @@ impl Task {
 
     fn hand_over(&mut self, giver: Side, from_m: Vector3<f64>, to_m: Vector3<f64>) {
         let taker = giver.other();
-        self.grasp(giver, from_m + Vector3::z() * REST_HEIGHT_M);
+        self.grasp(giver, from_m + Vector3::z() * self.lies_m);
         self.lift(giver);
         let held_m = self.rim_m(giver, MIDDLE_M);
         self.go(giver, held_m, CARRIES_M_S);
@@ -140,11 +144,8 @@ impl Task {
     }
 
     fn carry(&mut self, side: Side, from_m: Vector3<f64>, to_m: Vector3<f64>) {
-        self.grasp(side, from_m + Vector3::z() * REST_HEIGHT_M);
+        self.grasp(side, from_m + Vector3::z() * self.lies_m);
         self.lift(side);
         self.place(side, to_m);
     }
 }
-
-/// Middle of a ring that lies on the board, above it, m.
-const REST_HEIGHT_M: f64 = 0.002;

@@ -16,8 +16,6 @@ pub(super) struct Playing {
     watch: Watch,
     task: PegTransfer,
     is_done: bool,
-    period_s: f64,
-    steps: u64,
     told_s: f64,
     teller: Teller,
 }
@@ -34,11 +32,11 @@ impl Playing {
     pub(super) fn new(setting: &Setting, period_s: f64, teller: Teller) -> Self {
         let objects = Objects::new(setting, period_s);
         let (watch, task) = (Watch::new(&objects), PegTransfer::new(setting));
-        Self { objects, watch, task, is_done: false, period_s, steps: 0, told_s: f64::NEG_INFINITY, teller }
+        Self { objects, watch, task, is_done: false, told_s: f64::NEG_INFINITY, teller }
     }
 
-    /// One period, at whose end the instruments are here.
-    pub(super) fn step(&mut self, instruments: &[Option<Instrument>; SIDES]) -> [Loads; SIDES] {
+    /// One period, at whose end it is `t_s` by the loop's clock and the instruments are here.
+    pub(super) fn step(&mut self, t_s: f64, instruments: &[Option<Instrument>; SIDES]) -> [Loads; SIDES] {
         let mut placed = [None; SIDES];
         for side in Side::ALL {
             placed[place(side)] = instruments[side.index()];
@@ -48,8 +46,6 @@ impl Playing {
         for side in Side::ALL {
             loads[side.index()] = felt[place(side)];
         }
-        self.steps += 1;
-        let t_s = self.steps as f64 * self.period_s;
         self.watch.look(&self.objects);
         while let Some(event) = self.watch.next_event() {
             self.teller.happening(Happening { t_s, event });

@@ -14,7 +14,7 @@ const HAPPENINGS: usize = 1024;
 /// The objects of a scene at one time. Sides are indexed as everywhere.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
-    /// Time of the simulation, s.
+    /// Time of the loop, s.
     pub t_s: f64,
     /// The rings; none beyond their number, and none that is out of view.
     pub rings: [Option<RingState>; RINGS_MAX],

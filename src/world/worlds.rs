@@ -17,6 +17,7 @@ use crate::{
 pub struct Worlds {
     arms: [Option<World>; SIDES],
     playing: Option<Playing>,
+    period_s: f64,
     /// Applied until the next write.
     outputs: [Outputs; SIDES],
 }
@@ -31,7 +32,15 @@ impl Worlds {
     pub fn watched(scene: &Scene, rate_hz: f64) -> (Self, Option<Watched>) {
         let Some(setting) = &scene.objects else {
             let world = |side| scene.of_side(side).map(|scene| World::new(&scene, rate_hz));
-            return (Self { arms: Side::ALL.map(world), playing: None, outputs: [Outputs::SAFE; SIDES] }, None);
+            return (
+                Self {
+                    arms: Side::ALL.map(world),
+                    playing: None,
+                    period_s: 1.0 / rate_hz,
+                    outputs: [Outputs::SAFE; SIDES],
+                },
+                None,
+            );
         };
         let mut tasks = carrying::ways(setting, scene.left.is_some());
         let arms = Side::ALL.map(|side| {
@@ -40,12 +49,12 @@ impl Worlds {
         });
         let (teller, watched) = watched::ends();
         let playing = Some(Playing::new(setting, 1.0 / rate_hz, teller));
-        (Self { arms, playing, outputs: [Outputs::SAFE; SIDES] }, Some(watched))
+        (Self { arms, playing, period_s: 1.0 / rate_hz, outputs: [Outputs::SAFE; SIDES] }, Some(watched))
     }
 
     /// Both instruments among the same objects, period by period.
     fn play(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
-        let Self { arms, playing: Some(playing), outputs } = self else { return [None; SIDES] };
+        let Self { arms, playing: Some(playing), period_s, outputs } = self else { return [None; SIDES] };
         let mut due = [0; SIDES];
         for ((world, outputs), due) in arms.iter_mut().zip(outputs).zip(&mut due) {
             if let Some(world) = world {
@@ -53,11 +62,13 @@ impl Worlds {
                 *due = world.accept(now_s, outputs);
             }
         }
-        for step in 0..due.into_iter().max().unwrap_or(0) {
+        let steps = due.into_iter().max().unwrap_or(0);
+        for step in 0..steps {
             for (world, due) in arms.iter_mut().zip(due) {
                 world.iter_mut().filter(|_| step < due).for_each(World::step);
             }
-            let loads = playing.step(&arms.each_ref().map(|world| world.as_ref().map(World::instrument)));
+            let t_s = now_s - f64::from(steps - 1 - step) * *period_s;
+            let loads = playing.step(t_s, &arms.each_ref().map(|world| world.as_ref().map(World::instrument)));
             for (world, loads) in arms.iter_mut().zip(loads) {
                 if let Some(world) = world {
                     world.feel(&loads);

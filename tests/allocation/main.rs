@@ -15,5 +15,6 @@ mod kinova;
 mod ndi;
 mod network;
 mod remote;
+mod rings;
 mod tip_force;
 mod whole_loop;

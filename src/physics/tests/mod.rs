@@ -1,6 +1,5 @@
 //! Tests of the whole: what a ring does among instruments.
 
-mod allocation;
 mod carrying;
 mod cost;
 mod energy;

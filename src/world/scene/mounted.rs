@@ -1,7 +1,7 @@
 //! Which arms a rig has in a scene, and where their forces are measured. Sensors and tools belong to the rig.
 
 use nima_machine::{
-    config::{ConfigError, RigConfig},
+    config::{ConfigError, Ranges, RigConfig},
     rig::{ArmSet, SensorPlace, Settings, Side},
 };
 
@@ -14,9 +14,14 @@ impl Scene {
     }
 
     /// The scene as it is at this rig: a hand for each of its arms, whose trocars are where the rig file says.
-    #[must_use]
-    pub fn mounted_at(self, rig: &RigConfig) -> Self {
-        let Some(devices) = &rig.devices else { return self };
+    ///
+    /// # Errors
+    /// [`ConfigError::Range`] for a scene with rings at a rig with devices: only simulated instruments have jaws that hold them.
+    pub fn mounted_at(self, rig: &RigConfig) -> Result<Self, ConfigError> {
+        let Some(devices) = &rig.devices else { return Ok(self) };
+        let rings = self.objects.as_ref().map_or(0, |objects| objects.rings.len());
+        let allowed = "none at a rig with devices: only simulated instruments have jaws that hold rings";
+        Ranges { kind: "scene", name: &self.name }.check("objects.rings (count)", rings as f64, rings == 0, allowed)?;
         let mut scene = if devices.arm(Side::Left).is_some() { self.with_left_hand() } else { self };
         if let Some(set) = devices.arm(Side::Right) {
             scene.trocar_m = set.rcm.trocar_m;
@@ -24,7 +29,7 @@ impl Scene {
         if let (Some(set), Some(left)) = (devices.arm(Side::Left), &mut scene.left) {
             left.trocar_m = set.rcm.trocar_m;
         }
-        scene
+        Ok(scene)
     }
 
     /// Whether this rig has an arm pair on this side in this scene.
@@ -79,12 +84,16 @@ mod tests {
         let [one, two] = ["simulated", "emulated"].map(|rig| RigConfig::load(rig).unwrap());
         assert_eq!([&one, &two].map(Scene::default_for), ["peg_transfer", "bimanual"]);
         let scene = Scene::load("peg_transfer").unwrap();
-        assert!(scene.clone().mounted_at(&one).left.is_none());
-        let mounted = scene.mounted_at(&two);
+        assert!(scene.clone().mounted_at(&one).unwrap().left.is_none());
+        let mounted = scene.mounted_at(&two).unwrap();
         let devices = two.devices.as_ref().unwrap();
         let trocars_m = Side::ALL.map(|side| mounted.of_side(side).unwrap().trocar_m);
         assert_eq!(trocars_m, Side::ALL.map(|side| devices.arm(side).unwrap().rcm.trocar_m));
         assert!((trocars_m[0] - trocars_m[1]).norm() > 0.05, "two instruments do not fit through one trocar");
+        let rings = || Scene::load("rings").unwrap();
+        assert!(rings().mounted_at(&one).is_ok());
+        let refused = rings().mounted_at(&two).unwrap_err().to_string();
+        assert!(refused.contains("objects.rings") && refused.contains("simulated"), "{refused}");
     }
 
     #[test]

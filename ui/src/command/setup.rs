@@ -62,7 +62,7 @@ impl Setup {
     /// Loads and checks both.
     pub(super) fn load(&self) -> Result<(RigConfig, Scene), ConfigError> {
         let rig = RigConfig::load(&self.rig)?;
-        let scene = Scene::load(self.scene())?.mounted_at(&rig);
+        let scene = Scene::load(self.scene())?.mounted_at(&rig)?;
         Ok((rig, scene))
     }
 }

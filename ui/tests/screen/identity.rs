@@ -52,9 +52,11 @@ fn what_comes_and_goes_on_the_screen_takes_no_control_out_of_a_hand() {
         harness.run_steps(3);
         let engaged = controls(&harness);
         assert!(engaged.len() >= 5, "{role:?}: {engaged:?}");
-        for _ in 0..60 {
-            harness.run_steps(3);
-            assert_eq!(changed(&engaged, &harness), [""; 0], "{role:?}: in and out of contact");
+        // Out of contact, in it, and out again.
+        for contact in [false, true, false] {
+            until(&mut harness, "contact or none", |tick| (tick.measured_n.norm() > 0.5) == contact);
+            harness.run_steps(10);
+            assert_eq!(changed(&engaged, &harness), [""; 0], "{role:?}: contact: {contact}");
         }
         press(&mut harness, "Stop");
         until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped);

@@ -61,7 +61,7 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let rig = RigConfig::load(&arguments.rig)?;
     let guided = if rig.devices.is_some() { Scene::default_for(&rig) } else { SIMULATED };
     let scene_name = arguments.scene.as_deref().unwrap_or(guided);
-    let scene = Scene::load(scene_name)?.mounted_at(&rig);
+    let scene = Scene::load(scene_name)?.mounted_at(&rig)?;
     if rig.devices.as_ref().is_some_and(|devices| !devices.emulated) {
         bail!("rig \"{}\" is for real devices, whose stop a person must press; check it in `nima console`", rig.name);
     }

@@ -1,10 +1,8 @@
 //! The score of a run in a scene with a task.
 
-use nima_machine::{
-    messages::{LoopState, Tick},
-    rig::Side,
-};
+use nima_machine::messages::{LoopState, Tick};
 use nima_score::{Event, HandSample, Happening, Sample, Score, Scorer, TaskFile};
+use nima_session::scored::side_of;
 use nima_world::Watched;
 
 /// Scores from the first tick in which an arm is engaged.
@@ -46,11 +44,7 @@ impl Scoring {
         }
         self.newest_s = Some(tick.t_s);
         self.sample.t_s = tick.t_s;
-        let place = match tick.side {
-            Side::Left => nima_score::Side::Left.index(),
-            Side::Right => nima_score::Side::Right.index(),
-        };
-        self.sample.hands[place] = Some(HandSample {
+        self.sample.hands[side_of(tick.side).index()] = Some(HandSample {
             tip_m: tick.tip_m,
             jaw_rad: self.opening_rad[tick.side.index()],
             force_n: tick.measured_n,
@@ -67,7 +61,6 @@ impl Scoring {
                 self.opening_rad = moment.opening_rad.map(Some);
             }
             for happening in watched.happenings() {
-                // The simulation and the loop begin at the same time.
                 self.scorer.happening(&happening);
             }
         }

@@ -141,7 +141,7 @@ impl ConsoleApp {
             return self.start.tell(Some(text::link::ONE_RIG.to_owned()));
         }
         let loaded = RigConfig::load(&choice.rig).and_then(|rig| {
-            let scene = Scene::load(&choice.scene)?.mounted_at(&rig);
+            let scene = Scene::load(&choice.scene)?.mounted_at(&rig)?;
             Ok((rig, scene))
         });
         let (rig, scene) = match loaded {

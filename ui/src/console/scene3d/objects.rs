@@ -18,18 +18,19 @@ const BOARD_THICKNESS_M: f32 = 0.003;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
     rings: Vec<(Vector3<f32>, UnitQuaternion<f32>)>,
-    opening_rad: [f32; SIDES],
+    /// Not known of a past or far session: neither rings nor jaws are recorded.
+    opening_rad: Option<[f32; SIDES]>,
 }
 
 impl Shown {
     /// What the simulation told last; `None` in a scene without objects.
     pub(super) fn of(live: &Live) -> Option<Self> {
         live.scene.objects.as_ref()?;
-        let Some(moment) = &live.moment else { return Some(Self { rings: vec![], opening_rad: [0.0; SIDES] }) };
+        let Some(moment) = &live.moment else { return Some(Self { rings: vec![], opening_rad: None }) };
         let rings = moment.rings.iter().flatten();
         Some(Self {
             rings: rings.map(|ring| (ring.centre_m.cast(), ring.world_from_ring.cast())).collect(),
-            opening_rad: moment.opening_rad.map(|rad| rad as f32),
+            opening_rad: Some(moment.opening_rad.map(|rad| rad as f32)),
         })
     }
 }
@@ -53,16 +54,22 @@ pub(super) fn ground(mesh: &mut Mesh, scene: &Scene, shown: &Shown) {
     mesh.cuboid(low, Vector3::new(x_m, y_m, foot_m), BOARD);
 }
 
-/// Both fingers; where the shaft ends. The wrist holds the jaws upright.
-pub(super) fn jaws(mesh: &mut Mesh, scene: &Scene, shown: &Shown, side: Side, tip_m: &Vector3<f32>) -> Vector3<f32> {
-    let Some(setting) = &scene.objects else { return *tip_m };
+/// Both fingers, which the wrist holds upright; where the shaft ends. `None` where they are not known.
+pub(super) fn jaws(
+    mesh: &mut Mesh,
+    scene: &Scene,
+    shown: &Shown,
+    side: Side,
+    tip_m: &Vector3<f32>,
+) -> Option<Vector3<f32>> {
+    let (setting, opening_rad) = (scene.objects.as_ref()?, shown.opening_rad?[side.index()]);
     let [length_m, radius_m] = [setting.jaws.finger_length_m, setting.jaws.finger_radius_m].map(|m| m as f32);
     let hinge_m = tip_m + Vector3::z() * length_m;
     for sign in [-1.0, 1.0] {
-        let (sin, cos) = (0.5 * shown.opening_rad[side.index()] * sign).sin_cos();
+        let (sin, cos) = (0.5 * opening_rad * sign).sin_cos();
         let end_m = hinge_m + Vector3::new(sin, 0.0, -cos) * length_m;
         mesh.tube([hinge_m, end_m], [1.4 * radius_m, radius_m], 12, FINGER);
         mesh.sphere(end_m, radius_m, 6, FINGER);
     }
-    hinge_m
+    Some(hinge_m)
 }

@@ -131,11 +131,8 @@ pub fn build(
         let [measured, rendered] = arrow_bases_m(pose, trocar_m, right);
         measured_arrow(&mut mesh, measured, &pose.measured_n);
         rendered_arrow(&mut mesh, rendered, &pose.rendered_n);
-        match shown {
-            Some(shown) => {
-                let hinge_m = objects::jaws(&mut mesh, scene, shown, *side, &pose.tip_m);
-                shaft(&mut mesh, trocar_m, &hinge_m);
-            }
+        match shown.and_then(|shown| objects::jaws(&mut mesh, scene, shown, *side, &pose.tip_m)) {
+            Some(hinge_m) => shaft(&mut mesh, trocar_m, &hinge_m),
             None => instrument(&mut mesh, trocar_m, &pose.tip_m),
         }
         dents.0[side.index()] = Dent::new(scene, &pose.tip_m);

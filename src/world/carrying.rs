@@ -26,6 +26,8 @@ const DEEPER_M: f64 = 0.001;
 /// Where rings change hands, m, and where a hand waits beside it.
 const MIDDLE_M: Vector3<f64> = Vector3::new(0.0, 0.0, 0.060);
 const ASIDE_M: Vector3<f64> = Vector3::new(0.045, 0.0, 0.090);
+/// Rest after the task, s.
+const DONE_S: f64 = 1e6;
 /// Rest between two parts of the task, s.
 const REST_S: f64 = 0.3;
 
@@ -65,6 +67,10 @@ pub(super) fn ways(setting: &Setting, two_hands: bool) -> [Vec<Part>; SIDES] {
         } else {
             task.carry(Side::Right, from_m, to_m);
         }
+    }
+    // A ring may lie some millimetres from where it began, and these hands see nothing: they carry it over and back once.
+    if !pairs.is_empty() {
+        task.act(Side::Right, task.at_m[Side::Right.index()], 0.0, DONE_S);
     }
     task.parts
 }

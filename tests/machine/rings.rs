@@ -21,7 +21,7 @@ fn six_rings_go_over_and_back_from_hand_to_hand_and_none_is_dropped() {
     let (assembly, watched) = matched().watched().unwrap();
     let watched = watched.unwrap();
     let (mut events, mut grip_n) = (Vec::new(), 0.0_f64);
-    let summary = runtime::run_virtual(assembly, 110.0, |tick| {
+    let summary = runtime::run_virtual(assembly, 125.0, |tick| {
         if tick.side == Side::Left {
             events.extend(watched.happenings().map(|happening| happening.event));
             grip_n = watched.newest().map_or(grip_n, |moment| grip_n.max(moment.loads[0].opening_n));

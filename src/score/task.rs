@@ -51,9 +51,12 @@ pub struct TaskFile {
     /// Force at the tip from which on the instrument is in contact, N: above the noise of the force.
     #[serde(default = "contact_n")]
     pub contact_n: f64,
-    /// Number of lumps that can be found.
+    /// Number of lumps that can be found. In a scene with lumps it is theirs.
     #[serde(default)]
     pub lumps: Option<u32>,
+    /// A mark finds a lump if it is over it, or this far beside it, m.
+    #[serde(default = "mark_tolerance_m")]
+    pub mark_tolerance_m: f64,
     /// When training is done.
     #[serde(default)]
     pub proficiency: Criterion,
@@ -120,6 +123,10 @@ impl TaskFile {
             let allowed = "from 0 s to 1200 s";
             return Err(TaskError::Setting { key: "penalty_s", value: self.penalty_s, allowed });
         }
+        if !(0.0..=0.05).contains(&self.mark_tolerance_m) {
+            let allowed = "from 0 m to 0.05 m";
+            return Err(TaskError::Setting { key: "mark_tolerance_m", value: self.mark_tolerance_m, allowed });
+        }
         let Criterion { consecutive, max_trials, .. } = self.proficiency;
         positive("proficiency.consecutive", f64::from(consecutive), 1e3, "from 1 to 1000")?;
         positive("proficiency.max_trials", f64::from(max_trials), 1e4, "from 1 to 10000")
@@ -149,4 +156,8 @@ fn force_threshold_n() -> f64 {
 
 fn contact_n() -> f64 {
     0.2
+}
+
+fn mark_tolerance_m() -> f64 {
+    0.003
 }

@@ -67,7 +67,7 @@ pub struct Report {
 /// An effect: its name, whether a scene has it, and the scene without it.
 type Part = (&'static str, fn(&Scene) -> bool, fn(&mut Scene));
 
-const PARTS: [Part; 14] = [
+const PARTS: [Part; 15] = [
     ("tissue", |scene| scene.tissue.is_some(), without_tissue),
     (
         "friction of the tissue",
@@ -92,6 +92,7 @@ const PARTS: [Part; 14] = [
     ("relaxation", |scene| scene.relaxation.is_some(), |scene| scene.relaxation = None),
     ("membrane", |scene| scene.membrane.is_some(), |scene| scene.membrane = None),
     ("rings, pegs and jaws", |scene| scene.objects.is_some(), |scene| scene.objects = None),
+    ("wire and loop", |scene| scene.wire.is_some(), |scene| scene.wire = None),
     ("walls", |scene| !scene.walls.is_empty(), |scene| scene.walls.clear()),
     ("lag of the arm", |scene| scene.follower.is_some(), |scene| scene.follower = None),
     ("noise of the sensor", |scene| scene.sensor.is_some(), |scene| scene.sensor = None),
@@ -121,9 +122,9 @@ fn force_n(sensed: &Sensed) -> Vector3<f64> {
 /// The simulation of one hand: its answer to what it is told at a time.
 type Simulated = Box<dyn FnMut(f64, &Outputs) -> Option<Inputs>>;
 
-/// Of this scene; with its objects, which all instruments share, where it has any.
+/// Of this scene; with what is played with in it, which all instruments share, where there is anything.
 fn simulated(scene: &Scene) -> Simulated {
-    if scene.objects.is_none() {
+    if !scene.is_played() {
         let mut world = World::new(scene, RATE_HZ);
         return Box::new(move |now_s, outputs| world.exchange(now_s, outputs));
     }
@@ -262,6 +263,7 @@ mod tests {
         assert!(effect("peg_transfer", "tissue").unwrap() > 0.3);
         assert!(effect("palpation", "friction in the trocar").unwrap() > 0.1);
         assert!(effect("lumps", "lumps").unwrap() > 0.01 && effect("lumps", "relaxation").unwrap() > 0.01);
+        assert!(effect("find_lumps", "lumps").unwrap() > 0.01 && effect("wire", "wire and loop").unwrap() > 0.001);
         assert_eq!(effect("peg_transfer", "lumps"), None, "what a scene does not have is not listed");
         assert_eq!(effect("free_motion", "tissue"), None);
         assert!(report.text().contains("| lumps |"));

@@ -90,7 +90,7 @@ impl Task {
             let i = hand.index();
             let (to_m, to_rad) = if hand == side { (to_m, to_rad) } else { (self.at_m[i], self.grip_rad[i]) };
             let way = Move { from_m: self.at_m[i], to_m, seconds };
-            self.parts[i].push(Part { way, grip_rad: [self.grip_rad[i], to_rad] });
+            self.parts[i].push(Part { way, grip_rad: [self.grip_rad[i], to_rad], then: None });
             (self.at_m[i], self.grip_rad[i]) = (to_m, to_rad);
         }
     }

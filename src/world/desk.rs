@@ -3,7 +3,7 @@
 //!
 //! The cap commands a velocity: its deflection (-1 to 1) times [`DeskSettings::speed_m_s`], in the workspace (x right,
 //! y away, z up). Until it is touched, the simulated hand performs its task; from then on the hand is led by the cap,
-//! until button 0 ends this. A cap that is lost or silent counts as released, and the hand stays where it is. Leading
+//! until button 0 ends this. Button 1 marks the place under the tip in a scene where lumps are looked for. A cap that is lost or silent counts as released, and the hand stays where it is. Leading
 //! from the screen takes precedence.
 
 use nalgebra::Vector3;
@@ -12,8 +12,8 @@ use nima_devices::{
     hid::{CapDriver, Held, PedalDriver, PedalRoles},
 };
 use nima_machine::rig::{
-    DeskSettings, DeviceEvent, GUIDE_MAX_M, Healths, Inputs, Outputs, Rig, RigError, Roster, RosterEntry, SIDES, Side,
-    Switches, Watch,
+    Act, Acts, DeskSettings, DeviceEvent, GUIDE_MAX_M, Healths, Inputs, Outputs, Rig, RigError, Roster, RosterEntry,
+    SIDES, Side, Switches, Watch,
 };
 
 use super::Worlds;
@@ -29,6 +29,9 @@ pub struct Desk {
     cap: Option<(Slot<CapDriver>, Held<CapReading>)>,
     pedal: Option<(Slot<PedalDriver>, Held<PedalReading>, PedalRoles)>,
     speed_m_s: f64,
+    /// What was done with its buttons, and whether the one that marks is down.
+    acts: Acts,
+    marking: bool,
     /// Position to which the cap leads the hand, m; `None` until it is touched.
     at_m: Option<Vector3<f64>>,
     hand_m: Vector3<f64>,
@@ -67,6 +70,8 @@ impl Desk {
             cap,
             pedal,
             speed_m_s: settings.speed_m_s,
+            acts: Acts::NONE,
+            marking: false,
             at_m: None,
             hand_m: Vector3::zeros(),
             last_s: None,
@@ -82,6 +87,11 @@ impl Desk {
         let (slot, held) = self.cap.as_mut()?;
         let reading = slot.poll(now_s);
         let cap = held.update(reading, slot.health());
+        let marks = cap.buttons >> 1 & 1 == 1;
+        if marks && !std::mem::replace(&mut self.marking, marks) {
+            self.acts.note(Act::Mark);
+        }
+        self.marking = marks;
         if cap.buttons & 1 == 1 {
             self.at_m = None;
         } else if cap.translation.norm() > TOUCH {
@@ -110,6 +120,7 @@ impl Rig for Desk {
         let mut outputs = self.outputs;
         let right = &mut outputs[Side::Right.index()];
         right.guide_m = right.guide_m.or(led_m);
+        right.acts = right.acts.and(self.acts);
         let mut watch = std::mem::take(&mut self.watch);
         for (device, health) in self.standings().enumerate() {
             watch.look(now_s, device, health.standing, [false; SIDES]);

@@ -4,8 +4,12 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 use nima_core::noise::Noise;
+use nima_machine::rig::{Act, Acts};
 
-use crate::scene::{Hand as HandConfig, Scene};
+use crate::{
+    scene::{Hand as HandConfig, Scene},
+    searching::Searching,
+};
 
 /// Height above the targets at which the hand moves from one to the next, m.
 const CARRY_HEIGHT_M: f64 = 0.015;
@@ -38,6 +42,8 @@ pub(super) struct Part {
     pub(super) way: Move,
     /// How far the gripper is open at its beginning and at its end, rad.
     pub(super) grip_rad: [f64; 2],
+    /// What the hand does at its end.
+    pub(super) then: Option<Act>,
 }
 
 impl Move {
@@ -70,6 +76,9 @@ pub struct Hand {
     task: Vec<Part>,
     current: usize,
     in_move_s: f64,
+    /// What it looks for, where that decides on its task.
+    search: Option<Box<Searching>>,
+    acts: Acts,
     time_s: f64,
     tremor_phase: [[f64; 3]; 3],
     position_m: Vector3<f64>,
@@ -102,6 +111,8 @@ impl Hand {
             task,
             current: 0,
             in_move_s: 0.0,
+            search: None,
+            acts: Acts::NONE,
             time_s: 0.0,
             tremor_phase,
             position_m,
@@ -113,6 +124,16 @@ impl Hand {
             led_m: None,
             open: false,
         }
+    }
+
+    /// The same with a task that depends on what is felt.
+    pub(super) fn searching(scene: &Scene, task: Vec<Part>, search: Box<Searching>) -> Self {
+        Self { search: Some(search), ..Self::with_task(scene, task) }
+    }
+
+    /// What the hand has done besides moving.
+    pub(super) const fn acts(&self) -> Acts {
+        self.acts
     }
 
     /// Opens the hand (true), or closes it around the handle where that is now (false); then it goes on with its task.
@@ -185,10 +206,12 @@ impl Hand {
         }
         if self.aside_m().is_none() {
             self.in_move_s += dt_s;
+            if let Some(search) = &mut self.search {
+                search.feel(self.current, &self.position_m, force_n);
+            }
         }
         if self.in_move_s >= self.task[self.current].way.seconds {
-            self.in_move_s = 0.0;
-            self.current = (self.current + 1) % self.task.len();
+            self.go_on();
         }
         let task_rad =
             if self.led_m.is_some() { self.grip_rad } else { self.task[self.current].grip_rad_at(self.in_move_s) };
@@ -201,6 +224,18 @@ impl Hand {
         // Semi-implicit Euler: stable for these stiffnesses at 1 ms.
         self.velocity_m_s += (grip_n + force_n) * (dt_s / mass_kg);
         self.position_m += self.velocity_m_s * dt_s;
+    }
+
+    /// To the next part of the task.
+    fn go_on(&mut self) {
+        if let Some(act) = self.task[self.current].then {
+            self.acts.note(act);
+        }
+        self.in_move_s = 0.0;
+        self.current = (self.current + 1) % self.task.len();
+        if let Some(search) = &mut self.search {
+            self.current = search.onward(self.current, &mut self.task);
+        }
     }
 
     /// The handle alone, up to the end of its mechanism.
@@ -238,12 +273,11 @@ fn task(hand: &HandConfig, targets_m: &[Vector3<f64>]) -> Vec<Part> {
         let stations =
             [target + lift, target + press, target + press + drag, target + press + drag, target + lift, next + lift];
         let seconds = [hand.press_s, hand.hold_s, hand.hold_s, hand.press_s, hand.reach_s];
-        parts.extend(
-            stations.windows(2).zip(seconds).map(|(pair, seconds)| Part {
-                way: Move { from_m: pair[0], to_m: pair[1], seconds },
-                grip_rad: [0.0; 2],
-            }),
-        );
+        parts.extend(stations.windows(2).zip(seconds).map(|(pair, seconds)| Part {
+            way: Move { from_m: pair[0], to_m: pair[1], seconds },
+            grip_rad: [0.0; 2],
+            then: None,
+        }));
     }
     parts
 }

@@ -15,9 +15,11 @@ mod person;
 mod plan;
 mod playing;
 pub mod scene;
+mod searching;
 #[cfg(test)]
 #[cfg(unix)]
 mod simulated_arm_tests;
+mod threading;
 mod tissue;
 mod trocar;
 mod watched;
@@ -31,6 +33,6 @@ pub use hand::Hand;
 pub use plan::{Plan, run_virtual, start, start_on, start_simulated, start_watched};
 pub use tissue::Tissue;
 pub use trocar::Trocar;
-pub use watched::{Moment, RINGS_MAX, Watched};
+pub use watched::{LoopSeen, MARKS_MAX, Mark, Moment, RINGS_MAX, Training, Watched};
 pub use world::World;
 pub use worlds::Worlds;

@@ -1,10 +1,16 @@
-//! Both instruments of a simulation among the objects that they share.
+//! Both instruments of a simulation among the objects that they share, and the training task that is done with them.
 
-use nima_machine::rig::{SIDES, Side};
-use nima_physics::{Doing, Instrument, Loads, Objects, PegTransfer, Setting, Watch};
+mod lumps;
+
+use nima_machine::rig::{Act, Acts, SIDES, Side};
+use nima_physics::{Doing, Instrument, Loads, Objects, PegTransfer, Setting, Watch, Wire, WireSetting, WireTask};
 use nima_score::{Event, Happening};
 
-use crate::watched::{Moment, RINGS_MAX, Teller};
+use crate::{
+    scene::Scene,
+    watched::{LoopSeen, Moment, RINGS_MAX, Teller, Training},
+};
+use lumps::Palpation;
 
 /// The screen is told of a moment every so many s.
 const MOMENT_EVERY_S: f64 = 1.0 / 60.0;
@@ -12,12 +18,27 @@ const MOMENT_EVERY_S: f64 = 1.0 / 60.0;
 /// The objects, what happens to them, and whether the task is done.
 #[derive(Clone, Debug)]
 pub(super) struct Playing {
-    objects: Objects,
-    watch: Watch,
-    task: PegTransfer,
+    game: Game,
+    acts: [Acts; SIDES],
     is_done: bool,
     told_s: f64,
     teller: Teller,
+}
+
+/// What is played.
+#[derive(Clone, Debug)]
+enum Game {
+    Rings(Box<Rings>),
+    Wire(Box<(Wire, WireTask)>),
+    Lumps(Box<Palpation>),
+}
+
+/// Rings on pegs.
+#[derive(Clone, Debug)]
+struct Rings {
+    objects: Objects,
+    watch: Watch,
+    task: PegTransfer,
 }
 
 /// The place of a side among the objects.
@@ -28,32 +49,137 @@ const fn place(side: Side) -> usize {
     }
 }
 
-impl Playing {
-    pub(super) fn new(setting: &Setting, period_s: f64, teller: Teller) -> Self {
-        let objects = Objects::new(setting, period_s);
-        let (watch, task) = (Watch::new(&objects), PegTransfer::new(setting));
-        Self { objects, watch, task, is_done: false, told_s: f64::NEG_INFINITY, teller }
+/// A side as the score has it.
+const fn scored(side: Side) -> nima_score::Side {
+    match side {
+        Side::Left => nima_score::Side::Left,
+        Side::Right => nima_score::Side::Right,
+    }
+}
+
+impl Game {
+    fn of(scene: &Scene, period_s: f64) -> Option<Self> {
+        let rings = |setting: &Setting| {
+            let objects = Objects::new(setting, period_s);
+            let (watch, task) = (Watch::new(&objects), PegTransfer::new(setting));
+            Self::Rings(Box::new(Rings { objects, watch, task }))
+        };
+        let wire = |setting: &WireSetting| Self::Wire(Box::new((Wire::new(setting, period_s), WireTask::new(setting))));
+        let lumps = || Palpation::of(scene).map(|palpation| Self::Lumps(Box::new(palpation)));
+        scene.objects.as_ref().map(rings).or_else(|| scene.wire.as_ref().map(wire)).or_else(lumps)
     }
 
-    /// One period, at whose end it is `t_s` by the loop's clock and the instruments are here.
-    pub(super) fn step(&mut self, t_s: f64, instruments: &[Option<Instrument>; SIDES]) -> [Loads; SIDES] {
+    /// One period; what happened goes to `tell`, with how long ago it did, s.
+    fn step(&mut self, instruments: &[Option<Instrument>; SIDES], tell: &mut dyn FnMut(f64, Event)) -> [Loads; SIDES] {
         let mut placed = [None; SIDES];
         for side in Side::ALL {
             placed[place(side)] = instruments[side.index()];
         }
-        let felt = self.objects.step(&placed);
+        let felt = match self {
+            Self::Rings(rings) => rings.step(&placed, tell),
+            Self::Wire(both) => {
+                let (wire, task) = both.as_mut();
+                let loads = wire.step(&placed);
+                task.look(wire, tell);
+                loads
+            }
+            Self::Lumps(_) => [Loads::default(); SIDES],
+        };
         let mut loads = [Loads::default(); SIDES];
         for side in Side::ALL {
             loads[side.index()] = felt[place(side)];
         }
-        self.watch.look(&self.objects);
-        while let Some(event) = self.watch.next_event() {
-            self.teller.happening(Happening { t_s, event });
-            self.task.take(event);
+        loads
+    }
+
+    /// Whether this can be done in it; then it is.
+    fn act(&mut self, act: Act, side: Side, at: &Instrument, tell: &mut dyn FnMut(f64, Event)) {
+        match (self, act) {
+            (Self::Lumps(palpation), Act::Mark) => palpation.mark(scored(side), &at.tip_m, tell),
+            (Self::Lumps(palpation), Act::Begin) => {
+                palpation.begin();
+                tell(0.0, Event::Begun);
+            }
+            (Self::Lumps(palpation), Act::End) => {
+                palpation.end();
+                tell(0.0, Event::Ended);
+            }
+            (Self::Wire(both), Act::Begin) => {
+                both.1.begin();
+                tell(0.0, Event::Begun);
+            }
+            // Rings lie where they are; a wire has nothing to mark, and its goal ends the trial.
+            (Self::Rings(_), _) | (Self::Wire(_), Act::Mark | Act::End) => {}
         }
-        if self.task.is_done() && !self.is_done {
-            self.is_done = true;
-            self.teller.happening(Happening { t_s, event: Event::Ended });
+    }
+
+    fn training(&self) -> Training {
+        match self {
+            Self::Rings(_) => Training::default(),
+            Self::Lumps(palpation) => palpation.training(),
+            Self::Wire(both) => {
+                let (wire, task) = both.as_ref();
+                let mut training = Training { touches: task.touches(), share: task.share(), ..Training::default() };
+                for side in Side::ALL {
+                    let state = &wire.states()[place(side)];
+                    training.loops[side.index()] =
+                        LoopSeen { touches: state.touches, on_wire: state.along_m.is_some() };
+                }
+                training
+            }
+        }
+    }
+}
+
+impl Rings {
+    fn step(&mut self, placed: &[Option<Instrument>; SIDES], tell: &mut dyn FnMut(f64, Event)) -> [Loads; SIDES] {
+        let loads = self.objects.step(placed);
+        self.watch.look(&self.objects);
+        let mut done = false;
+        while let Some(event) = self.watch.next_event() {
+            tell(0.0, event);
+            self.task.take(event);
+            done = true;
+        }
+        if done && self.task.is_done() {
+            tell(0.0, Event::Ended);
+        }
+        loads
+    }
+}
+
+impl Playing {
+    /// Of this scene; `None` if it has nothing that is played with.
+    pub(super) fn of(scene: &Scene, period_s: f64, teller: Teller) -> Option<Self> {
+        let game = Game::of(scene, period_s)?;
+        Some(Self { game, acts: [Acts::NONE; SIDES], is_done: false, told_s: f64::NEG_INFINITY, teller })
+    }
+
+    /// One period, at whose end it is `t_s` by the loop's clock, the instruments are here, and so much has been done.
+    pub(super) fn step(
+        &mut self,
+        t_s: f64,
+        instruments: &[Option<Instrument>; SIDES],
+        acts: [Acts; SIDES],
+    ) -> [Loads; SIDES] {
+        let Self { game, is_done, teller, .. } = self;
+        let mut tell = |age_s: f64, event: Event| {
+            // A task ends once; what is done after it is not part of the trial.
+            let again = *is_done && event == Event::Ended;
+            *is_done = event != Event::Begun && (*is_done || event == Event::Ended);
+            if !again {
+                teller.happening(Happening { t_s: t_s - age_s, event });
+            }
+        };
+        let loads = game.step(instruments, &mut tell);
+        for side in Side::ALL {
+            let before = std::mem::replace(&mut self.acts[side.index()], acts[side.index()]);
+            let Some(at) = &instruments[side.index()] else { continue };
+            for act in Act::ALL {
+                for _ in 0..acts[side.index()].since(&before, act) {
+                    game.act(act, side, at, &mut tell);
+                }
+            }
         }
         if t_s - self.told_s >= MOMENT_EVERY_S {
             self.told_s = t_s;
@@ -63,14 +189,16 @@ impl Playing {
     }
 
     fn moment(&self, t_s: f64, loads: [Loads; SIDES]) -> Moment {
-        let mut rings = [None; RINGS_MAX];
-        for (place, ring) in rings.iter_mut().zip(self.objects.rings()) {
-            *place = (ring.doing != Doing::OutOfView).then_some(*ring);
+        let (mut rings, mut opening_rad) = ([None; RINGS_MAX], [0.0; SIDES]);
+        if let Game::Rings(game) = &self.game {
+            for (place, ring) in rings.iter_mut().zip(game.objects.rings()) {
+                *place = (ring.doing != Doing::OutOfView).then_some(*ring);
+            }
+            for side in Side::ALL {
+                opening_rad[side.index()] = game.objects.openings_rad()[place(side)].unwrap_or(0.0);
+            }
         }
-        let mut opening_rad = [0.0; SIDES];
-        for side in Side::ALL {
-            opening_rad[side.index()] = self.objects.openings_rad()[place(side)].unwrap_or(0.0);
-        }
-        Moment { t_s, rings, opening_rad, loads }
+        let training = Training { ended: self.is_done, ..self.game.training() };
+        Moment { t_s, rings, opening_rad, loads, training }
     }
 }

@@ -14,7 +14,7 @@ use nima_machine::{
 };
 use serde::{Deserialize, Serialize};
 
-pub use ground::{Layer, Lump, Lumps, Membrane, Relaxation, Tissue, Wall};
+pub use ground::{Drawn, Layer, Lump, Lumps, Membrane, Relaxation, Tissue, Wall};
 pub use wrist::{Flaw, Imu, Person, TissueSensor, Trocar, Wrist};
 
 /// A simulated world. Parts that are not listed cost nothing.
@@ -54,6 +54,8 @@ pub struct Scene {
     pub walls: Vec<Wall>,
     /// Rings and pegs, and jaws that hold them. The hands then carry rings in place of pressing at the targets.
     pub objects: Option<nima_physics::Setting>,
+    /// A wire, and loops at the instruments. The hand then leads its loop along the wire in place of pressing at the targets.
+    pub wire: Option<nima_physics::WireSetting>,
     /// What is scored.
     pub task: Option<nima_score::TaskFile>,
     /// The leader device.
@@ -98,6 +100,9 @@ pub struct Hand {
     pub drag_m: f64,
     /// Amplitude of physiological tremor, m (8-12 Hz).
     pub tremor_m: f64,
+    /// How far the hand aims beside a wire, m; standard deviation on each axis.
+    #[serde(default)]
+    pub aim_error_m: f64,
     /// Effective mass of hand and handle, kg.
     pub mass_kg: f64,
     /// Stiffness of the grip towards the intended position, N/m.
@@ -132,10 +137,12 @@ pub struct Sensor {
     pub noise_n: f64,
 }
 
-const SCENES: [(&str, &str); 10] = [
+const SCENES: [(&str, &str); 12] = [
     ("peg_transfer", include_str!("../../config/scenes/peg_transfer.toml")),
     ("bimanual", include_str!("../../config/scenes/bimanual.toml")),
     ("rings", include_str!("../../config/scenes/rings.toml")),
+    ("find_lumps", include_str!("../../config/scenes/find_lumps.toml")),
+    ("wire", include_str!("../../config/scenes/wire.toml")),
     ("free_motion", include_str!("../../config/scenes/free_motion.toml")),
     ("lumps", include_str!("../../config/scenes/lumps.toml")),
     ("palpation", include_str!("../../config/scenes/palpation.toml")),
@@ -148,7 +155,8 @@ const SCENES: [(&str, &str); 10] = [
 impl Scene {
     /// The scene as seen by one hand; `None` for a left hand that the scene does not have.
     pub fn of_side(&self, side: Side) -> Option<Self> {
-        let scene = Self { left: None, ..self.clone() };
+        // Both hands feel the same lumps.
+        let scene = Self { left: None, lumps: self.placed_lumps(), ..self.clone() };
         match side {
             Side::Right => Some(scene),
             Side::Left => self.left.clone().map(|LeftHand { targets_m, trocar_m }| {
@@ -156,6 +164,40 @@ impl Scene {
                 Self { targets_m, trocar_m, seed: scene.seed.wrapping_add(1), ..scene }
             }),
         }
+    }
+
+    /// The lumps of the scene, with a place for each that is drawn by its seed.
+    pub fn placed_lumps(&self) -> Option<Lumps> {
+        self.lumps.as_ref().map(|lumps| match &self.tissue {
+            Some(tissue) => lumps.placed(self.seed, tissue.size_m),
+            None => lumps.clone(),
+        })
+    }
+
+    /// Whether the scene hides something at places that its seed decides.
+    pub fn is_drawn_by_lot(&self) -> bool {
+        self.lumps.as_ref().is_some_and(|lumps| lumps.drawn.is_some())
+    }
+
+    /// The same with what it hides elsewhere, by this seed or the next one that has room for all; as it is if it hides nothing.
+    #[must_use]
+    pub fn drawn_anew(self, seed: u64) -> Self {
+        if !self.is_drawn_by_lot() {
+            return self;
+        }
+        let drawn = (0..100).map(|more| Self { seed: seed + more, ..self.clone() });
+        drawn.into_iter().find(|scene| scene.validate().is_ok()).unwrap_or(self)
+    }
+
+    /// Whether the hands do a training task with something that the scene simulates for both: rings, a wire, or lumps that are looked for.
+    pub fn is_played(&self) -> bool {
+        self.objects.is_some() || self.wire.is_some() || self.is_searched()
+    }
+
+    /// Whether the task is to find the lumps.
+    pub fn is_searched(&self) -> bool {
+        let palpation = |task: &nima_score::TaskFile| task.kind == nima_score::TaskKind::Palpation;
+        self.tissue.is_some() && self.lumps.is_some() && self.task.as_ref().is_some_and(palpation)
     }
 
     /// Adds a left hand, which mirrors the right one, if the scene has none.
@@ -194,8 +236,9 @@ impl Scene {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn parse(path: &Path, text: &str) -> Result<Self, ConfigError> {
-        let scene: Self = parse("scene", path, text).map_err(mounted::moved_to_the_rig)?;
+        let mut scene: Self = parse("scene", path, text).map_err(mounted::moved_to_the_rig)?;
         scene.validate()?;
+        scene.count_lumps();
         Ok(scene)
     }
 
@@ -219,6 +262,7 @@ impl Scene {
             membrane: _,
             walls: _,
             objects: _,
+            wire: _,
             task,
             leader: _,
             follower: _,
@@ -268,6 +312,7 @@ impl Scene {
         ranges.not_negative("hand.press_depth_m", hand.press_depth_m)?;
         ranges.not_negative("hand.drag_m", hand.drag_m)?;
         ranges.not_negative("hand.tremor_m", hand.tremor_m)?;
+        ranges.not_negative("hand.aim_error_m", hand.aim_error_m)?;
         ranges.positive("hand.mass_kg", hand.mass_kg)?;
         ranges.positive("hand.grip_stiffness_n_m", hand.grip_stiffness_n_m)?;
         ranges.not_negative("hand.grip_damping_n_s_m", hand.grip_damping_n_s_m)?;

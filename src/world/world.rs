@@ -14,6 +14,7 @@ use crate::{
     hand::Part,
     person::Person,
     scene::{Follower, Leader, Scene, Wall},
+    searching::Searching,
     trocar,
     wrist::{Loads, Wrist, along_shaft},
 };
@@ -45,8 +46,21 @@ pub struct World {
     touch: Touch,
     /// Body wall and tissue are out of the way.
     aside: bool,
-    /// What acts on the jaws; `None` for an instrument without jaws.
-    jaws: Option<nima_physics::Loads>,
+    /// The instrument has jaws.
+    jaws: bool,
+    /// What acts on the instrument's jaws, or on the loop at its tip.
+    loads: nima_physics::Loads,
+}
+
+/// What a hand does among the objects of a scene.
+#[derive(Debug)]
+pub(super) enum Doing {
+    /// The parts of its task with jaws; none for a hand whose task is that of its targets.
+    Carrying(Vec<Part>),
+    /// The parts of its task with a loop.
+    Threading(Vec<Part>),
+    /// Looking for lumps.
+    Searching(Option<(Box<Searching>, Vec<Part>)>),
 }
 
 /// Forces of a person's hands, N (`world`).
@@ -91,16 +105,23 @@ impl World {
             carried: None,
             touch: Touch::default(),
             aside: false,
-            jaws: None,
+            jaws: false,
+            loads: nima_physics::Loads::default(),
             hand,
         }
     }
 
-    /// The same with jaws, and with this task of the hand.
-    pub(super) fn carrying(scene: &Scene, rate_hz: f64, task: Vec<Part>) -> Self {
-        let mut world = Self { jaws: Some(nima_physics::Loads::default()), ..Self::new(scene, rate_hz) };
-        if !task.is_empty() {
-            world.hand = Hand::with_task(scene, task);
+    /// The same among objects that it shares with another one.
+    pub(super) fn playing(scene: &Scene, rate_hz: f64, doing: Doing) -> Self {
+        let jaws = matches!(doing, Doing::Carrying(_));
+        let mut world = Self { jaws, ..Self::new(scene, rate_hz) };
+        let hand = match doing {
+            Doing::Carrying(task) | Doing::Threading(task) if task.is_empty() => None,
+            Doing::Carrying(task) | Doing::Threading(task) => Some(Hand::with_task(scene, task)),
+            Doing::Searching(found) => found.map(|(search, task)| Hand::searching(scene, task, search)),
+        };
+        if let Some(hand) = hand {
+            world.hand = hand;
             (world.tip_m, world.command_m) = (world.hand.position_m(), world.hand.position_m());
         }
         world
@@ -116,9 +137,9 @@ impl World {
         }
     }
 
-    /// What now acts on the jaws.
+    /// What now acts on jaws or loop.
     pub(super) fn feel(&mut self, loads: &nima_physics::Loads) {
-        self.jaws = Some(*loads);
+        self.loads = *loads;
     }
 
     /// The simulated hand, for tests and displays.
@@ -257,7 +278,7 @@ impl World {
         };
         let wall_n = |wall: &Wall| wall.contact_n(&self.tip_m, &self.tip_velocity_m_s);
         let walls_n: Vector3<f64> = self.walls.iter().filter(|_| !self.aside).map(wall_n).sum();
-        tissue_n + walls_n + self.hands().tip + self.jaws.map_or_else(Vector3::zeros, |loads| loads.tip_n)
+        tissue_n + walls_n + self.hands().tip + self.loads.tip_n
     }
 
     fn world_from_s1(&self) -> UnitQuaternion<f64> {
@@ -275,7 +296,7 @@ impl World {
         let Touch { tool, stand, .. } = self.hands();
         if let Some(wrist) = &mut self.wrist {
             let trocar = self.trocar.as_ref().filter(|_| !self.aside);
-            let twist_nm = self.jaws.map_or_else(Vector3::zeros, |loads| loads.torque_nm);
+            let twist_nm = self.loads.torque_nm;
             let wall = trocar.map(|trocar| (trocar.force_n(), trocar.shaft(&self.tip_m).1));
             return Sensed::AtWrist(
                 wrist.measure(&world_from_s1, &Loads { tip_n, twist_nm, wall, touch_n: tool, stand_n: stand }),
@@ -299,8 +320,8 @@ impl World {
             .map_or(hand_m, |Leader { resolution_m, .. }| hand_m.map(|x| (x / resolution_m).round() * resolution_m));
         Inputs {
             hand: kinematics::Hand::at(leader_m),
-            gripper_rad: self.jaws.map(|_| self.hand.grip_rad()),
-            grip_n: self.jaws.map(|loads| loads.opening_n),
+            gripper_rad: self.jaws.then(|| self.hand.grip_rad()),
+            grip_n: self.jaws.then_some(self.loads.opening_n),
             tip_m: self.tip_m,
             sensed,
             frames: FrameSample { wrench, ..FrameSample::from(leader_m) },

@@ -5,11 +5,13 @@
 
 use nima_machine::rig::{Inputs, Outputs, Rig, SIDES, Side};
 
-use super::{World, carrying};
+use super::{World, carrying, threading};
 use crate::{
     playing::Playing,
     scene::Scene,
+    searching::Searching,
     watched::{self, Watched},
+    world::Doing,
 };
 
 /// The worlds of a scene.
@@ -22,6 +24,20 @@ pub struct Worlds {
     outputs: [Outputs; SIDES],
 }
 
+/// What each hand does in a scene that is played; none in another one.
+fn doing(scene: &Scene) -> [Option<Doing>; SIDES] {
+    if let Some(setting) = &scene.objects {
+        return carrying::ways(setting, scene.left.is_some()).map(|task| Some(Doing::Carrying(task)));
+    }
+    let of_side = |side: Side| {
+        let scene = scene.of_side(side)?;
+        let of_wire = |setting| Doing::Threading(threading::way(setting, &scene.hand, scene.seed));
+        let of_lumps = || scene.is_searched().then(|| Doing::Searching(Searching::of(&scene)));
+        scene.wire.as_ref().map(of_wire).or_else(of_lumps)
+    };
+    Side::ALL.map(of_side)
+}
+
 impl Worlds {
     /// The worlds of a scene with `rate_hz` steps a second. The scene must have been validated.
     pub fn new(scene: &Scene, rate_hz: f64) -> Self {
@@ -30,33 +46,26 @@ impl Worlds {
 
     /// The same, and where it tells of the objects of the scene, if there are any.
     pub fn watched(scene: &Scene, rate_hz: f64) -> (Self, Option<Watched>) {
-        let Some(setting) = &scene.objects else {
-            let world = |side| scene.of_side(side).map(|scene| World::new(&scene, rate_hz));
-            return (
-                Self {
-                    arms: Side::ALL.map(world),
-                    playing: None,
-                    period_s: 1.0 / rate_hz,
-                    outputs: [Outputs::SAFE; SIDES],
-                },
-                None,
-            );
-        };
-        let mut tasks = carrying::ways(setting, scene.left.is_some());
-        let arms = Side::ALL.map(|side| {
-            let task = std::mem::take(&mut tasks[side.index()]);
-            scene.of_side(side).map(|scene| World::carrying(&scene, rate_hz, task))
-        });
+        let period_s = 1.0 / rate_hz;
         let (teller, watched) = watched::ends();
-        let playing = Some(Playing::new(setting, 1.0 / rate_hz, teller));
-        (Self { arms, playing, period_s: 1.0 / rate_hz, outputs: [Outputs::SAFE; SIDES] }, Some(watched))
+        let playing = Playing::of(scene, period_s, teller);
+        let watched = playing.is_some().then_some(watched);
+        let mut doing = doing(scene);
+        let arms = Side::ALL.map(|side| {
+            let scene = scene.of_side(side)?;
+            Some(match doing[side.index()].take() {
+                Some(doing) => World::playing(&scene, rate_hz, doing),
+                None => World::new(&scene, rate_hz),
+            })
+        });
+        (Self { arms, playing, period_s, outputs: [Outputs::SAFE; SIDES] }, watched)
     }
 
     /// Both instruments among the same objects, period by period.
     fn play(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         let Self { arms, playing: Some(playing), period_s, outputs } = self else { return [None; SIDES] };
         let mut due = [0; SIDES];
-        for ((world, outputs), due) in arms.iter_mut().zip(outputs).zip(&mut due) {
+        for ((world, outputs), due) in arms.iter_mut().zip(&*outputs).zip(&mut due) {
             if let Some(world) = world {
                 world.wait(outputs.tip_command_m.is_none());
                 *due = world.accept(now_s, outputs);
@@ -68,7 +77,12 @@ impl Worlds {
                 world.iter_mut().filter(|_| step < due).for_each(World::step);
             }
             let t_s = now_s - f64::from(steps - 1 - step) * *period_s;
-            let loads = playing.step(t_s, &arms.each_ref().map(|world| world.as_ref().map(World::instrument)));
+            let instruments = arms.each_ref().map(|world| world.as_ref().map(World::instrument));
+            let mut acts = outputs.each_ref().map(|outputs| outputs.acts);
+            for (acts, world) in acts.iter_mut().zip(&*arms) {
+                *acts = world.as_ref().map_or(*acts, |world| acts.and(world.hand().acts()));
+            }
+            let loads = playing.step(t_s, &instruments, acts);
             for (world, loads) in arms.iter_mut().zip(loads) {
                 if let Some(world) = world {
                     world.feel(&loads);

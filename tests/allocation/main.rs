@@ -17,4 +17,5 @@ mod network;
 mod remote;
 mod rings;
 mod tip_force;
+mod training;
 mod whole_loop;

@@ -4,8 +4,8 @@ use nima_core::impedance::Mode;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, LoopState, Refusal, Tick},
-    rig::Side,
-    teleop::{Calibrations, Pair},
+    rig::{Act, Acts, Inputs, Side},
+    teleop::{Calibrations, Pair, Timing},
 };
 use nima_tests::plan;
 use nima_world::run_virtual;
@@ -59,11 +59,30 @@ fn reflection_kicks_the_handle_away_and_the_governor_holds_it() {
 }
 
 #[test]
+fn an_act_of_a_task_is_counted_once_and_refused_in_a_stop() {
+    let rig = RigConfig::load("simulated").unwrap();
+    let mut pair = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();
+    let acts = |pair: &mut Pair| {
+        let timing = Timing { now_s: 0.0, wake_s: 0.0, work_s: 0.0, sample_to_force_s: None, missed_now: 0 };
+        pair.step(false, Some(Inputs::NOTHING), &timing).0.acts
+    };
+    assert_eq!(pair.obey(Command::Task(Act::Mark), 0.0), Ok(()));
+    let marked = Acts { marks: 1, ..Acts::NONE };
+    assert_eq!([acts(&mut pair), acts(&mut pair)], [marked; 2]);
+    assert_eq!(pair.obey(Command::Stop, 0.0), Ok(()));
+    let refused = pair.obey(Command::Task(Act::Mark), 0.0);
+    assert!(matches!(refused, Err(Refusal::State(LoopState::Stopped))), "{refused:?}");
+    assert_eq!(acts(&mut pair), marked);
+}
+
+#[test]
 fn where_a_person_may_hold_the_handle_neither_is_obeyed() {
     for name in ["emulated", "paper"] {
         let rig = RigConfig::load(name).unwrap();
         let mut pair = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();
-        for command in [Command::LetGo(true), Command::SetGovernor(false), Command::SetGovernor(true)] {
+        let acts =
+            [Command::Task(Act::Mark), Command::LetGo(true), Command::SetGovernor(false), Command::SetGovernor(true)];
+        for command in acts {
             assert_eq!(pair.obey(command, 0.0), Err(Refusal::SimulatedOnly), "{name}: {command:?}");
         }
     }

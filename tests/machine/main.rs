@@ -10,5 +10,6 @@ mod rings;
 mod simulated_calibration;
 mod simulated_experiments;
 mod tip_force_loop;
+mod training;
 mod virtual_loop;
 mod watchdogs;

@@ -21,7 +21,7 @@ pub use refusal::Refusal;
 pub use scheduling::Scheduling;
 pub use watchdog::Watchdog;
 
-use crate::rig::{DeviceEvent, Prompt, Side, View};
+use crate::rig::{Act, DeviceEvent, Prompt, Side, View};
 
 /// State of an arm pair.
 pub type LoopState = State<Fault>;
@@ -51,6 +51,8 @@ pub enum Command {
     /// Hold the gripper of the handle open from the screen, this far, rad, at most [`crate::rig::GRIP_MAX_RAD`]; `None` ends this. A
     /// stop and a fault end it too. On a simulated rig only.
     Grip(Option<f64>),
+    /// Do this in the training task, with the tip of the right instrument. On a simulated rig only.
+    Task(Act),
     /// The simulated hand lets go of its handle (true) or takes it again (false). On a simulated rig only.
     LetGo(bool),
     /// Leave the governor out (false) or let it watch again (true). On a simulated rig only, where nobody holds the handle.
@@ -81,7 +83,9 @@ impl Command {
     pub fn concerns(self, side: Side) -> bool {
         match self {
             Self::EngageOne(of) | Self::Prompt(of, _) => of == side,
-            Self::Guide(_) | Self::Grip(_) | Self::LetGo(_) | Self::SetGovernor(_) => side == Side::Right,
+            Self::Guide(_) | Self::Grip(_) | Self::Task(_) | Self::LetGo(_) | Self::SetGovernor(_) => {
+                side == Side::Right
+            }
             _ => true,
         }
     }

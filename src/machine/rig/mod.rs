@@ -3,6 +3,7 @@
 //! Positions in m, forces in N, both in the workspace frame (z up). A rig that cannot deliver a sample says so with
 //! `None`; it never repeats an old one as new.
 
+mod acts;
 mod arm_pair;
 pub mod checkup;
 #[cfg(test)]
@@ -33,6 +34,7 @@ use nima_devices::{ClearFaults, Health, Lever, SlotView, Standing};
 
 use crate::messages::{Bulletin, Command};
 
+pub use acts::{Act, Acts};
 pub use arm_pair::ArmPair;
 pub use devices::{DeviceRig, RigError};
 pub use flaws::Flaws;
@@ -195,6 +197,8 @@ pub struct Outputs {
     pub guide_m: Option<Vector3<f64>>,
     /// How far the person at the screen holds the gripper open, rad; `None` if nobody does.
     pub grip_rad: Option<f64>,
+    /// What the person at the screen did in a training task.
+    pub acts: Acts,
     /// The simulated hand has let go of the handle.
     pub lets_go: bool,
 }
@@ -210,6 +214,7 @@ impl Outputs {
         prompt: Prompt::Rest,
         guide_m: None,
         grip_rad: None,
+        acts: Acts::NONE,
         lets_go: false,
     };
 }

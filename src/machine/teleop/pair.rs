@@ -26,7 +26,7 @@ use super::{Accuracy, Calibrations, ForcePath, Link, ProgrammedLink, Tracking};
 use crate::{
     config::{RigConfig, Teleoperation},
     messages::{Event, Fault, ForceReport, LoopState, Tick, Watchdog},
-    rig::{DeviceEvent, Inputs, Outputs, Prompt, Side},
+    rig::{Acts, DeviceEvent, Inputs, Outputs, Prompt, Side},
 };
 
 /// No sample from the rig for longer than this, s, is a fault.
@@ -85,6 +85,8 @@ pub struct Pair<L: Link = ProgrammedLink> {
     prompt: Prompt,
     guide_m: Option<Vector3<f64>>,
     grip_rad: Option<f64>,
+    /// What the screen did in a training task.
+    acts: Acts,
     /// Whether the simulated hand has let go of the handle; `None` where the handle is a device, which a person may hold.
     lets_go: Option<bool>,
     link: L,
@@ -156,6 +158,7 @@ impl<L: Link> Pair<L> {
             prompt: Prompt::Rest,
             guide_m: None,
             grip_rad: None,
+            acts: Acts::NONE,
             lets_go: rig.devices.is_none().then_some(false),
             link,
             far: Far::none(),
@@ -340,6 +343,7 @@ impl<L: Link> Pair<L> {
             prompt: self.prompt,
             guide_m: self.guide_m,
             grip_rad: self.grip_rad,
+            acts: self.acts,
             lets_go: self.lets_go.unwrap_or(false),
         };
         self.hand_force_n = outputs.hand_force_n;

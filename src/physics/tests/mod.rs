@@ -8,6 +8,7 @@ mod hostile;
 mod repeats;
 mod setting;
 mod transfer;
+mod wire;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_score::Event;

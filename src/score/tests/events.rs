@@ -152,6 +152,7 @@ fn a_task_file_that_is_wrong_names_its_key() {
         ("time_limit_s", "time_limit_s = 1e9"),
         ("penalty_s", "penalty_s = nan"),
         ("force_threshold_n", "force_threshold_n = 0.0"),
+        ("mark_tolerance_m", "mark_tolerance_m = nan"),
         ("proficiency.time_s", "proficiency = { time_s = -1.0 }"),
         ("proficiency.max_trials", "proficiency = { max_trials = 0 }"),
     ] {

@@ -8,7 +8,7 @@ use nima_core::{
 use nima_devices::{Loss, Standing};
 use nima_machine::{
     messages::{Command, Watchdog},
-    rig::{DeviceEvent, Prompt, Side},
+    rig::{Act, DeviceEvent, Prompt, Side},
     runtime::Operation,
 };
 
@@ -44,8 +44,10 @@ choice!(Command {
     18 => Checked { 0: passed: bool },
     19 => Shutdown {},
     20 => Grip { 0: grip_rad: Option<f64> },
+    21 => Task { 0: act: Act },
 });
 
+choice!(Act { 0 => Begin {}, 1 => Mark {}, 2 => End {} });
 choice!(Side { 0 => Right {}, 1 => Left {} });
 choice!(Watchdog { 0 => Loop {}, 1 => Source {}, 2 => Link {} });
 

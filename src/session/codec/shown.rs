@@ -11,7 +11,7 @@ use nima_core::{
 use nima_devices::Loss;
 use nima_machine::{
     messages::{Command, Event, FarStop, Fault, ForceReport, ForceSource, Refusal, Scheduling, Tick},
-    rig::{DeviceEvent, Obstacle, Outputs, Prompt, Side, View},
+    rig::{Acts, DeviceEvent, Obstacle, Outputs, Prompt, Side, View},
 };
 
 use super::{Put, Sink, Source, Take, Wrong, choice, record};
@@ -25,8 +25,11 @@ record!(put Outputs {
     prompt: Prompt,
     guide_m: Option<Vector3<f64>>,
     grip_rad: Option<f64>,
+    acts: Acts,
     lets_go: bool,
 });
+
+record!(put Acts { begins: u8, marks: u8, ends: u8 });
 
 record!(Tick {
     index: u64,

@@ -12,7 +12,7 @@ use nima_devices::{Loss, Standing};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, FarStop, ForceSource, Watchdog},
-    rig::{Awaited, DeviceEvent, Exchange, Identified, Inputs, Obstacle, Prompt, Sensed, Side, Switches, View},
+    rig::{Act, Awaited, DeviceEvent, Exchange, Identified, Inputs, Obstacle, Prompt, Sensed, Side, Switches, View},
     runtime::Operation,
     teleop::{Calibrations, Origin, Timing},
 };
@@ -218,6 +218,7 @@ fn command() -> BoxedStrategy<Command> {
         (side(), prompt()).prop_map(|(side, prompt)| Command::Prompt(side, prompt)),
         maybe(vector()).prop_map(Command::Guide),
         maybe(number()).prop_map(Command::Grip),
+        proptest::sample::select(Act::ALL.to_vec()).prop_map(Command::Task),
         side().prop_map(Command::EngageOne),
         proptest::sample::select(Watchdog::ALL.to_vec()).prop_map(Command::TestWatchdog),
     ]

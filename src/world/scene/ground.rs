@@ -43,7 +43,10 @@ pub struct Lumps {
     /// Thickness of the tissue, m.
     pub thickness_m: f64,
     /// The lumps.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub list: Vec<Lump>,
+    /// More of them, at places that the scene's seed decides.
+    pub drawn: Option<Drawn>,
 }
 
 /// A lump: a sphere in the tissue.
@@ -56,6 +59,22 @@ pub struct Lump {
     pub radius_m: f64,
     /// How many times stiffer than the tissue it is.
     pub times_stiffer: f64,
+}
+
+/// Lumps at places that are drawn by lot, so that nobody can learn them: another seed of the scene, other places.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Drawn {
+    /// How many there are.
+    pub count: u32,
+    /// Least and greatest radius, m.
+    pub radius_m: [f64; 2],
+    /// How many times stiffer than the tissue they are.
+    pub times_stiffer: f64,
+    /// From middle to middle they are at least so far apart, m.
+    pub apart_m: f64,
+    /// Their middles are at least so far from the tissue's edges, m.
+    pub margin_m: f64,
 }
 
 /// A force that is held fades: `f(t) = f(0) (1 - share (1 - exp(-t / time)))`.
@@ -98,6 +117,9 @@ pub struct Wall {
     pub damping_n_s_m: f64,
 }
 
+/// Most lumps that are drawn.
+const DRAWN_MOST: u32 = 32;
+
 impl Scene {
     /// Checks what the tip can touch.
     pub(super) fn validate_ground(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
@@ -108,6 +130,12 @@ impl Scene {
         }
         if let Some(lumps) = &self.lumps {
             lumps.validate(ranges)?;
+            if let (Some(drawn), Some(tissue)) = (&lumps.drawn, &self.tissue) {
+                drawn.validate(ranges, lumps.thickness_m, tissue.size_m)?;
+                let placed = lumps.placed(self.seed, tissue.size_m).list.len() - lumps.list.len();
+                let allowed = "a number for which there is room: fewer lumps, or nearer to each other";
+                ranges.check("lumps.drawn.count", f64::from(drawn.count), placed == drawn.count as usize, allowed)?;
+            }
         }
         if let Some(Relaxation { share, time_s }) = self.relaxation {
             ranges.check("relaxation.share", share, (0.0..1.0).contains(&share), "0 to below 1")?;
@@ -163,6 +191,26 @@ impl Lumps {
             )?;
         }
         Ok(())
+    }
+}
+
+impl Drawn {
+    fn validate(&self, ranges: &Ranges<'_>, thickness_m: f64, size_m: [f64; 2]) -> Result<(), ConfigError> {
+        let Self { count, radius_m: [least_m, most_m], times_stiffer, apart_m, margin_m } = *self;
+        ranges.check("lumps.drawn.count", f64::from(count), (1..=DRAWN_MOST).contains(&count), "1 to 32")?;
+        ranges.positive("lumps.drawn.radius_m", least_m)?;
+        let fits = most_m >= least_m && 2.0 * most_m < thickness_m;
+        ranges.check(
+            "lumps.drawn.radius_m (greatest)",
+            most_m,
+            fits,
+            "at least the least one, and less than half the thickness",
+        )?;
+        let fits = (1.0..=1e3).contains(&times_stiffer);
+        ranges.check("lumps.drawn.times_stiffer", times_stiffer, fits, "1 to 1000")?;
+        ranges.not_negative("lumps.drawn.apart_m", apart_m)?;
+        let fits = margin_m >= 0.0 && size_m.iter().all(|size_m| 2.0 * margin_m < *size_m);
+        ranges.check("lumps.drawn.margin_m", margin_m, fits, "from 0 to less than half the tissue's size")
     }
 }
 

@@ -16,12 +16,15 @@ impl Scene {
     /// The scene as it is at this rig: a hand for each of its arms, whose trocars are where the rig file says.
     ///
     /// # Errors
-    /// [`ConfigError::Range`] for a scene with rings at a rig with devices: only simulated instruments have jaws that hold them.
+    /// [`ConfigError::Range`] for a scene with rings or a wire at a rig with devices: only simulated instruments touch them.
     pub fn mounted_at(self, rig: &RigConfig) -> Result<Self, ConfigError> {
         let Some(devices) = &rig.devices else { return Ok(self) };
         let rings = self.objects.as_ref().map_or(0, |objects| objects.rings.len());
         let allowed = "none at a rig with devices: only simulated instruments have jaws that hold rings";
         Ranges { kind: "scene", name: &self.name }.check("objects.rings (count)", rings as f64, rings == 0, allowed)?;
+        let wires = if self.wire.is_some() { 1.0 } else { 0.0 };
+        let allowed = "none at a rig with devices: only simulated instruments have loops";
+        Ranges { kind: "scene", name: &self.name }.check("number of [wire]", wires, self.wire.is_none(), allowed)?;
         let mut scene = if devices.arm(Side::Left).is_some() { self.with_left_hand() } else { self };
         if let Some(set) = devices.arm(Side::Right) {
             scene.trocar_m = set.rcm.trocar_m;

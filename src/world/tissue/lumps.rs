@@ -1,8 +1,38 @@
 //! Stiff lumps in soft tissue.
 
 use nalgebra::Vector3;
+use nima_core::noise::Noise;
 
-use crate::scene::{Lump, Lumps};
+use crate::scene::{Drawn, Lump, Lumps};
+
+/// Draws for one lump before there is no room for it.
+const DRAWS_MOST: u32 = 2000;
+/// Keeps the lot of the lumps apart from that of tremor and noise.
+const LOT: u64 = 0x1_0b05;
+
+impl Lumps {
+    /// The same with a place for each lump that is drawn; fewer if there is no room for all.
+    #[must_use]
+    pub(crate) fn placed(&self, seed: u64, size_m: [f64; 2]) -> Self {
+        let mut placed = Self { drawn: None, ..self.clone() };
+        let Some(Drawn { count, radius_m: [least_m, most_m], times_stiffer, apart_m, margin_m }) = self.drawn else {
+            return placed;
+        };
+        let mut lot = Noise::new(seed ^ LOT);
+        let half_m = size_m.map(|size_m| (0.5 * size_m - margin_m).max(0.0));
+        for _ in 0..count {
+            let radius_m = least_m + (most_m - least_m) * lot.uniform();
+            let place = (0..DRAWS_MOST).find_map(|_| {
+                let at_m = half_m.map(|half_m| half_m * (2.0 * lot.uniform() - 1.0));
+                let clear = |lump: &Lump| (lump.at_m[0] - at_m[0]).hypot(lump.at_m[1] - at_m[1]) >= apart_m;
+                placed.list.iter().all(clear).then_some(at_m)
+            });
+            let Some(at_m) = place else { break };
+            placed.list.push(Lump { at_m, radius_m, times_stiffer });
+        }
+        placed
+    }
+}
 
 /// How many times stiffer the tissue is under a tip at this place than without lumps.
 ///
@@ -31,7 +61,41 @@ mod tests {
 
     fn lumps() -> Lumps {
         let lump = Lump { at_m: [0.01, -0.02], radius_m: 0.006, times_stiffer: 10.0 };
-        Lumps { thickness_m: 0.03, list: vec![lump] }
+        Lumps { thickness_m: 0.03, list: vec![lump], drawn: None }
+    }
+
+    fn drawn() -> Lumps {
+        let drawn = Drawn { count: 5, radius_m: [0.004, 0.006], times_stiffer: 10.0, apart_m: 0.018, margin_m: 0.012 };
+        Lumps { list: Vec::new(), drawn: Some(drawn), ..lumps() }
+    }
+
+    #[test]
+    fn drawn_lumps_lie_apart_inside_the_margin_and_elsewhere_with_every_seed() {
+        let mut seen = Vec::new();
+        for seed in 0..200 {
+            let placed = drawn().placed(seed, [0.12, 0.09]);
+            assert_eq!(placed, drawn().placed(seed, [0.12, 0.09]), "one seed, one place");
+            assert_eq!((placed.list.len(), placed.drawn), (5, None));
+            for (i, lump) in placed.list.iter().enumerate() {
+                let [x_m, y_m] = lump.at_m;
+                assert!(x_m.abs() <= 0.048 && y_m.abs() <= 0.033 && (0.004..=0.006).contains(&lump.radius_m));
+                let apart = |other: &Lump| (other.at_m[0] - x_m).hypot(other.at_m[1] - y_m) >= 0.018;
+                assert!(placed.list[..i].iter().all(apart), "seed {seed}");
+            }
+            seen.push(placed.list[0].at_m);
+        }
+        // No corner of the tissue is spared.
+        for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
+            let near = seen.iter().filter(|[x_m, y_m]| x * x_m > 0.0 && y * y_m > 0.0).count();
+            assert!(near > 25, "{near} of 200 in this corner");
+        }
+    }
+
+    #[test]
+    fn what_has_no_room_is_left_out() {
+        let mut lumps = drawn();
+        lumps.drawn.iter_mut().for_each(|drawn| (drawn.count, drawn.apart_m) = (30, 0.05));
+        assert!((1..30).contains(&lumps.placed(1, [0.12, 0.09]).list.len()));
     }
 
     #[test]

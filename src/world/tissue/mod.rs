@@ -41,7 +41,7 @@ impl Tissue {
             config,
             anchor_m: None,
             layers,
-            lumps: lumps.clone(),
+            lumps: lumps.as_ref().map(|lumps| lumps.placed(scene.seed, config.size_m)),
             relaxing: relaxation.map(|relaxation| Relaxing::new(relaxation, step_s)),
             membrane: membrane.map(Membrane::new),
         })

@@ -76,7 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     for out in outputs.into_iter().flatten() {
         output::check(out, &[arguments.setup.rig(), arguments.setup.scene()].map(Path::new))?;
     }
-    let (mut rig, scene) = arguments.setup.load()?;
+    let (mut rig, scene) = arguments.setup.load_for_a_trial()?;
     rig.scheduling = arguments.scheduling.unwrap_or(rig.scheduling);
     let line = arguments.network.open(&mut rig, &scene)?;
     let leave = arguments.setup.leave()?;

@@ -31,7 +31,7 @@ impl ToFollower {
     /// Opens the line, if one is asked for; changes the rig to what is here.
     pub(super) fn open(&self, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Option<Line>> {
         let Some(host) = &self.follower else { return Ok(None) };
-        without_rings(scene)?;
+        without_objects(scene)?;
         let follower = address(host)?;
         let (keys, peers) = own_keys()?;
         let paired = peers.list().iter().find(|peer| peer.name == name_of(host)).map(|peer| peer.key);
@@ -47,7 +47,7 @@ impl ToFollower {
 
 /// Opens the follower's end at this address; changes the rig to what is here.
 pub(super) fn listen(rig: &mut RigConfig, scene: &Scene, at: SocketAddr) -> anyhow::Result<Line> {
-    without_rings(scene)?;
+    without_objects(scene)?;
     let (keys, mut consoles) = own_keys()?;
     // The same user's console on this machine.
     let own: PublicKey = keys.public();
@@ -59,11 +59,11 @@ pub(super) fn listen(rig: &mut RigConfig, scene: &Scene, at: SocketAddr) -> anyh
     open(arms(rig, scene), Role::Follower { at: Some(at), consoles }, keys, Ends::Follower)
 }
 
-/// The jaws of a follower are those of its own simulated hand, which would carry rings by itself.
-fn without_rings(scene: &Scene) -> anyhow::Result<()> {
+/// The tools of a follower are those of its own simulated hand, which would do the task by itself.
+fn without_objects(scene: &Scene) -> anyhow::Result<()> {
     anyhow::ensure!(
-        scene.objects.is_none(),
-        "scene \"{}\" has rings, which are on one machine only: choose another scene",
+        !scene.is_played(),
+        "scene \"{}\" has a training task, which is on one machine only: choose another scene",
         scene.name
     );
     Ok(())

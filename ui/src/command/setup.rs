@@ -1,10 +1,13 @@
 //! Arguments of every command that runs the loop: rig and scene.
 
 use clap::Args;
-use nima_machine::config::{ConfigError, RigConfig};
+use nima_machine::config::{ConfigError, Ranges, RigConfig};
 use nima_world::scene::Scene;
 
-use crate::{console::start::Choice, leaving::Leave};
+use crate::{
+    console::start::{Choice, drawn_anew},
+    leaving::Leave,
+};
 
 #[derive(Debug, Args)]
 pub(super) struct Setup {
@@ -14,6 +17,9 @@ pub(super) struct Setup {
     /// Scene: built-in name or TOML file (default: `bimanual` for a rig with two arms, else `peg_transfer`)
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
+    /// Seed of the scene: where hidden lumps lie, tremor, noise (default: the scene's; a console draws one where lumps are hidden)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    seed: Option<u64>,
     /// End with standard input: whoever started this holds its other end
     #[arg(long, hide = true)]
     until_input_ends: bool,
@@ -21,14 +27,14 @@ pub(super) struct Setup {
 
 impl Default for Setup {
     fn default() -> Self {
-        Self { rig: "simulated".to_owned(), scene: None, until_input_ends: false }
+        Self { rig: "simulated".to_owned(), scene: None, seed: None, until_input_ends: false }
     }
 }
 
 impl Setup {
     /// Of this rig and scene.
     pub(super) fn of(rig: &str, scene: Option<&str>) -> Self {
-        Self { rig: rig.to_owned(), scene: scene.map(str::to_owned), until_input_ends: false }
+        Self { rig: rig.to_owned(), scene: scene.map(str::to_owned), seed: None, until_input_ends: false }
     }
 
     /// The name or path of the rig.
@@ -62,7 +68,21 @@ impl Setup {
     /// Loads and checks both.
     pub(super) fn load(&self) -> Result<(RigConfig, Scene), ConfigError> {
         let rig = RigConfig::load(&self.rig)?;
-        let scene = Scene::load(self.scene())?.mounted_at(&rig)?;
+        let mut scene = Scene::load(self.scene())?.mounted_at(&rig)?;
+        if let Some(seed) = self.seed {
+            let ranges = Ranges { kind: "scene", name: &scene.name };
+            let allowed = "left out at a rig with devices: its emulators take the scene's";
+            ranges.check("--seed", seed as f64, rig.devices.is_none(), allowed)?;
+            scene.seed = seed;
+            scene.validate()?;
+        }
+        Ok((rig, scene))
+    }
+
+    /// The same for a window: what a scene hides lies elsewhere each time, unless a seed was given.
+    pub(super) fn load_for_a_trial(&self) -> Result<(RigConfig, Scene), ConfigError> {
+        let (rig, scene) = self.load()?;
+        let scene = if self.seed.is_none() && rig.devices.is_none() { drawn_anew(scene) } else { scene };
         Ok((rig, scene))
     }
 }

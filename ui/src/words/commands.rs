@@ -3,6 +3,7 @@
 use nima_core::impedance::Mode;
 use nima_machine::{
     messages::{Command, Watchdog},
+    rig::Act,
     runtime::Operation,
 };
 
@@ -42,6 +43,9 @@ pub(crate) fn command(command: Command) -> String {
         Command::Guide(None) => "lead the handle no longer".to_owned(),
         Command::Grip(Some(rad)) => format!("hold the gripper open by {:.0} degrees", rad.to_degrees()),
         Command::Grip(None) => "leave the gripper to the hand".to_owned(),
+        Command::Task(Act::Begin) => "begin the trial anew".to_owned(),
+        Command::Task(Act::Mark) => "mark the place under the tip".to_owned(),
+        Command::Task(Act::End) => "end the trial".to_owned(),
         Command::LetGo(true) => "the simulated hand lets go".to_owned(),
         Command::LetGo(false) => "the simulated hand takes hold".to_owned(),
         Command::SetGovernor(true) => "governor on".to_owned(),

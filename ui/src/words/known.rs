@@ -13,7 +13,7 @@ use nima_core::{
 use nima_devices::{Loss, Standing};
 use nima_machine::{
     messages::{Command, Event, Fault, LoopState, Refusal, Scheduling, Watchdog},
-    rig::{Awaited, DeviceEvent, Exchange, Obstacle, Part, Prompt, SIDES, Side},
+    rig::{Act, Awaited, DeviceEvent, Exchange, Obstacle, Part, Prompt, SIDES, Side},
     runtime::Operation,
 };
 use nima_session::STATES;
@@ -154,7 +154,8 @@ fn commands() -> impl Iterator<Item = Command> {
         Command::ReleaseStop,
         Command::Shutdown,
     ];
-    modes.chain(switches).chain(sides).chain(others).chain(Watchdog::ALL.map(Command::TestWatchdog))
+    let counted = Watchdog::ALL.map(Command::TestWatchdog).into_iter().chain(Act::ALL.map(Command::Task));
+    modes.chain(switches).chain(sides).chain(others).chain(counted)
 }
 
 /// Every name that a device can have: role and make, and by number those of older sessions.

@@ -80,3 +80,23 @@ fn a_table_of_trials_gives_the_answer_with_its_files() {
     assert!(refused(&["study", "trials", &at("trials.csv"), "--measure", "force_n"]).contains("force_n"));
     assert!(refused(&["study", "trials", &at("absent.csv")]).contains("absent.csv"));
 }
+
+#[test]
+fn a_run_of_a_training_scene_is_scored_and_its_seed_can_be_given() {
+    let run = |scene: &str, seconds: &str, more: &[&str]| {
+        let run = ["run", "--virtual", "--scene", scene, "--seconds", seconds, "--mode", "matched", "--json"];
+        json(&[&run[..], more].concat())
+    };
+    let number = |told: &Value, key: &str| told["score"][key].as_f64().unwrap_or_else(|| panic!("{key}: {told}"));
+    let lumps = run("find_lumps", "115", &["--seed", "5"]);
+    let [found, missed] = ["lumps_found", "lumps_missed"].map(|key| number(&lumps, key));
+    assert!(found >= 4.0 && (found + missed - 5.0).abs() < 1e-9 && number(&lumps, "lumps_false") <= 1.0, "{lumps}");
+    assert!((1.0..6.0).contains(&number(&lumps, "lump_peak_force_n_right")), "{lumps}");
+    assert_eq!(lumps["score"]["jaw_openings_right"], Value::Null, "there are no jaws");
+    let wire = run("wire", "40", &[]);
+    assert!(number(&wire, "completion_time_s") > 5.0 && number(&wire, "path_length_m_right") > 0.1, "{wire}");
+    assert!(number(&wire, "wire_touches") >= 1.0 && number(&wire, "wire_touch_time_s") > 0.0, "{wire}");
+    let other = run("wire", "2", &["--seed", "32"]);
+    assert_ne!(other["score"]["path_length_m_right"], run("wire", "2", &[])["score"]["path_length_m_right"]);
+    assert!(refused(&["run", "--virtual", "--scene", "wire", "--seed", "-1"]).contains("seed"));
+}

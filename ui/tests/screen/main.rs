@@ -15,6 +15,7 @@ mod ready;
 mod roles;
 mod starting;
 mod tradeoff;
+mod training;
 mod view;
 mod virtual_rig;
 mod walk;

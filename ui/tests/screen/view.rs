@@ -53,7 +53,7 @@ fn ceiling_and_frames_are_drawn_on_request() {
         harness.get_by_label(switch).click();
         harness.run_steps(2);
     }
-    assert_eq!(harness.state().extras(), Extras { ceiling: true, frames: true });
+    assert_eq!(harness.state().extras(), Extras { ceiling: true, frames: true, ..Extras::default() });
 }
 
 #[test]

@@ -54,7 +54,9 @@ impl<L: Link> Pair<L> {
             {
                 self.guide_m = guide_m;
             }
-            Command::LetGo(_) | Command::SetGovernor(_) | Command::Grip(_) if self.lets_go.is_none() => {
+            Command::LetGo(_) | Command::SetGovernor(_) | Command::Grip(_) | Command::Task(_)
+                if self.lets_go.is_none() =>
+            {
                 return Err(Refusal::SimulatedOnly);
             }
             Command::LetGo(lets_go) => self.lets_go = Some(lets_go),
@@ -65,7 +67,8 @@ impl<L: Link> Pair<L> {
             {
                 self.grip_rad = grip_rad;
             }
-            Command::Guide(_) | Command::Grip(_) if self.state().is_latched() => {
+            Command::Task(act) if !self.state().is_latched() => self.acts.note(act),
+            Command::Guide(_) | Command::Grip(_) | Command::Task(_) if self.state().is_latched() => {
                 return Err(Refusal::State(self.state()));
             }
             Command::Engage | Command::EngageOne(_) => {

@@ -1,7 +1,7 @@
 //! The score of a run in a scene with a task.
 
 use nima_machine::messages::{LoopState, Tick};
-use nima_score::{Event, HandSample, Happening, Sample, Score, Scorer, TaskFile};
+use nima_score::{Event, HandSample, Happening, Sample, Score, Scorer, TaskFile, TaskKind};
 use nima_session::scored::side_of;
 use nima_world::Watched;
 
@@ -13,6 +13,8 @@ pub(super) struct Scoring {
     sample: Sample,
     newest_s: Option<f64>,
     begun: bool,
+    /// Only the instruments of a peg transfer have jaws.
+    has_jaws: bool,
     opening_rad: [Option<f64>; 2],
 }
 
@@ -25,6 +27,7 @@ impl Scoring {
             sample: Sample::default(),
             newest_s: None,
             begun: false,
+            has_jaws: task.kind == TaskKind::PegTransfer,
             opening_rad: [None; 2],
         }
     }
@@ -57,7 +60,7 @@ impl Scoring {
     fn pass_on(&mut self) {
         let sample = std::mem::take(&mut self.sample);
         if let Some(watched) = &self.watched {
-            if let Some(moment) = watched.newest() {
+            if let Some(moment) = watched.newest().filter(|_| self.has_jaws) {
                 self.opening_rad = moment.opening_rad.map(Some);
             }
             for happening in watched.happenings() {

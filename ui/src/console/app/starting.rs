@@ -15,7 +15,7 @@ use crate::{
     console::{
         chain, keys,
         reader::Reader,
-        start::{Choice, Now},
+        start::{Choice, Now, drawn_anew},
         text,
     },
     emulators::Emulators,
@@ -142,6 +142,7 @@ impl ConsoleApp {
         }
         let loaded = RigConfig::load(&choice.rig).and_then(|rig| {
             let scene = Scene::load(&choice.scene)?.mounted_at(&rig)?;
+            let scene = if rig.devices.is_none() { drawn_anew(scene) } else { scene };
             Ok((rig, scene))
         });
         let (rig, scene) = match loaded {

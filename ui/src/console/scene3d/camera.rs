@@ -90,6 +90,13 @@ impl Camera {
         2.0 * self.distance_m * (0.5 * self.field_of_view).tan() / height.max(1.0)
     }
 
+    /// The depth cue: how much of its brightness a surface loses per metre, and from which distance on, m. As with a light at the lens, what is
+    /// farther than the target is darker.
+    pub fn dims(&self) -> [f32; 2] {
+        let distance_m = self.distance_m.max(0.01);
+        [0.75 / distance_m, 0.88 * distance_m]
+    }
+
     /// Horizontal direction away from the eye, unit length.
     pub fn away(&self) -> Vector3<f32> {
         let (sin_yaw, cos_yaw) = self.yaw.sin_cos();

@@ -31,14 +31,33 @@ pub const CEILING_MEANING: &str = text::field::CEILING_HOVER;
 pub const FRAMES: &str = text::field::FRAMES;
 /// Hover text of [`FRAMES`].
 pub const FRAMES_MEANING: &str = text::field::FRAMES_HOVER;
+/// Label of the switch for shadows.
+pub const SHADOWS: &str = text::field::SHADOWS;
+/// Label of the switch for the depth cue.
+pub const DEPTH: &str = text::field::DEPTH;
+/// Label of the switch for the round picture.
+pub const ROUND: &str = text::field::ROUND;
 
-/// Which objects are shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Which objects are shown, and how the picture looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct Extras {
     /// The force ceiling as a sphere.
     pub ceiling: bool,
     /// Coordinate frames.
     pub frames: bool,
+    /// Shadows on a board.
+    pub shadows: bool,
+    /// What is farther away is darker.
+    pub depth: bool,
+    /// The endoscope's picture is round, in the surgeon's view.
+    pub round: bool,
+}
+
+impl Default for Extras {
+    fn default() -> Self {
+        Self { ceiling: false, frames: false, shadows: true, depth: true, round: true }
+    }
 }
 
 /// Origin (m) and axes of a frame, in the workspace.
@@ -63,6 +82,9 @@ impl Extras {
                 ui.set_min_width(200.0);
                 ui.checkbox(&mut self.ceiling, CEILING).on_hover_text(CEILING_MEANING);
                 ui.checkbox(&mut self.frames, FRAMES).on_hover_text(FRAMES_MEANING);
+                ui.checkbox(&mut self.shadows, SHADOWS).on_hover_text(text::field::SHADOWS_HOVER);
+                ui.checkbox(&mut self.depth, DEPTH).on_hover_text(text::field::DEPTH_HOVER);
+                ui.checkbox(&mut self.round, ROUND).on_hover_text(text::field::ROUND_HOVER);
             });
             response.on_hover_text(SHOW_MEANING);
         });

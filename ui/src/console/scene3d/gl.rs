@@ -24,6 +24,8 @@ pub struct Frame {
     pub eye_m: Vector3<f32>,
     /// Tip and top of each instrument's shaft, m, for their shadows. At most two shafts are used.
     pub shafts_m: Vec<[Vector3<f32>; 2]>,
+    /// How much of its brightness a surface loses per metre, and from which distance on, m.
+    pub dims: [f32; 2],
     /// Colours at the top and at the bottom of the background.
     pub backdrop: [Color32; 2],
     /// Draw with antialiasing.
@@ -309,6 +311,7 @@ unsafe fn uniforms(gl: &glow::Context, program: glow::Program, frame: &Frame) {
         if let (Some(place), false) = (place("u_shaft_ends"), ends.is_empty()) {
             gl.uniform_3_f32_slice(Some(&place), &ends);
         }
+        gl.uniform_2_f32(place("u_dims").as_ref(), frame.dims[0], frame.dims[1]);
         let clip = frame.clip_from_workspace.as_slice();
         gl.uniform_matrix_4_f32_slice(place("u_clip_from_workspace").as_ref(), false, clip);
     }

@@ -5,7 +5,10 @@
 
 use egui::{Button, Key, Rect, Response, RichText, Ui, vec2};
 use nalgebra::Vector3;
-use nima_machine::messages::{Command, LoopState};
+use nima_machine::{
+    messages::{Command, LoopState},
+    rig::Act,
+};
 
 use super::{Camera, Live, Outbox};
 use crate::console::{text, theme};
@@ -58,6 +61,24 @@ impl Lead {
         }
     }
 
+    /// What else is done in a training task, by keys.
+    fn acts(ui: &Ui, live: &Live, outbox: &mut Outbox) {
+        if ui.ctx().text_edit_focused() {
+            return;
+        }
+        let pressed = |key: Key| ui.input(|input| input.modifiers.is_none() && input.key_pressed(key));
+        let (is_searched, on_wire) = (live.scene.is_searched(), live.scene.wire.is_some());
+        for (key, act, has) in [
+            (Key::X, Act::Mark, is_searched),
+            (Key::D, Act::End, is_searched),
+            (Key::N, Act::Begin, is_searched || on_wire),
+        ] {
+            if has && pressed(key) {
+                outbox.push(Command::Task(act));
+            }
+        }
+    }
+
     /// The switch in the view, and the handling of mouse and keys while it is on. Returns true while it is on.
     pub(super) fn ui(
         &mut self,
@@ -91,6 +112,7 @@ impl Lead {
         }
         if self.at_m.is_some() {
             self.jaws(ui, live, outbox);
+            Self::acts(ui, live, outbox);
         }
         let Some(at_m) = &mut self.at_m else { return false };
         let before_m = *at_m;

@@ -101,6 +101,27 @@ impl Mesh {
         }
     }
 
+    /// A tube of even thickness along points, open at both ends.
+    pub fn pipe(&mut self, points: &[Vector3<f32>], radius: f32, sides: u32, paint: Paint) {
+        let way = |i: usize| points[(i + 1).min(points.len() - 1)] - points[i.saturating_sub(1)];
+        if points.len() < 2 || (0..points.len()).any(|i| way(i).norm() < 1e-7) {
+            return;
+        }
+        let first = self.vertices.len() as u32;
+        let (mut u, _) = across(&way(0).normalize());
+        for (i, point) in points.iter().enumerate() {
+            // The frame turns as little as it can, so that the tube is not twisted.
+            let along = way(i).normalize();
+            u = (u - along * along.dot(&u)).try_normalize(1e-6).unwrap_or_else(|| across(&along).0);
+            let v = along.cross(&u);
+            for side in 0..=sides {
+                let out = around(&u, &v, side, sides);
+                self.vertex(point + out * radius, out, paint);
+            }
+        }
+        self.sheet(first, points.len() as u32 - 1, sides);
+    }
+
     fn disc(&mut self, centre: Vector3<f32>, facing: Vector3<f32>, radius: f32, sides: u32, paint: Paint) {
         let (u, v) = across(&facing);
         let middle = self.vertex(centre, facing, paint);
@@ -247,6 +268,7 @@ mod tests {
         mesh.ring(Vector3::zeros(), [0.01, 0.001], |x, y| x * y, PAINT);
         mesh.torus(Vector3::x(), &UnitQuaternion::from_euler_angles(1.0, 0.3, 0.0), [0.01, 0.002], PAINT);
         mesh.cuboid(-Vector3::repeat(1.0), Vector3::repeat(2.0), PAINT);
+        mesh.pipe(&[Vector3::zeros(), Vector3::x(), Vector3::new(1.0, 1.0, 0.2), Vector3::z()], 0.1, 8, PAINT);
         mesh.ribbon(&[Vector3::zeros(), Vector3::x(), Vector3::x()], &Vector3::z(), |_| 0.01, PAINT);
         sound(&mesh);
     }
@@ -256,6 +278,7 @@ mod tests {
         let mut mesh = Mesh::default();
         mesh.tube([Vector3::x(), Vector3::x()], [0.01, 0.01], 12, PAINT);
         mesh.ribbon(&[Vector3::x()], &Vector3::z(), |_| 0.01, PAINT);
+        mesh.pipe(&[Vector3::x(), Vector3::x()], 0.1, 8, PAINT);
         assert!(mesh.vertices.is_empty() && mesh.indices.is_empty());
     }
 

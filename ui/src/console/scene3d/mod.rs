@@ -8,7 +8,10 @@ mod lead;
 pub mod mesh;
 mod objects;
 mod pick;
+mod shadows;
 pub mod stage;
+mod training;
+mod vignette;
 
 use std::sync::Arc;
 
@@ -68,6 +71,7 @@ struct Drawn {
     scene: String,
     camera: Camera,
     smooth: bool,
+    extras: Extras,
     arms: Vec<Arm>,
     shown: Option<Shown>,
 }
@@ -155,6 +159,9 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
     if let Some(callback) = triangles(rect, live, view, &arms) {
         painter.set(ground, callback);
     }
+    if view.look == Look::Endoscope && view.extras.round {
+        vignette::paint(&painter, rect);
+    }
     if view.figures {
         view.extras.paint(&painter, rect, &camera, &live.scene, &arms, live.gate_settings().ceiling_n);
     }
@@ -167,7 +174,8 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
     if view.look == Look::Free {
         axes(&painter, rect, &camera);
     }
-    hint(&painter, rect, view);
+    hint(&painter, rect, live, view);
+    training::line_ui(ui, rect, live, view.lead.is_on());
     // No hover texts in a surgeon's view.
     let pointed_at = response.hover_pos().filter(|_| view.figures && !response.dragged());
     if let Some(words) = pointed_at.and_then(|pointer| pick::pick(pointer, rect, &camera, &live.scene, &arms)) {
@@ -213,18 +221,21 @@ fn triangles(rect: Rect, live: &Live, view: &mut SceneView, arms: &[Arm]) -> Opt
     let renderer = view.renderer.clone()?;
     let camera = view.camera(&live.scene);
     let (scene, shown) = (live.scene.name.clone(), Shown::of(live));
-    let wanted = Drawn { rect, scene, camera, smooth: view.smooth, arms: arms.to_vec(), shown };
+    let (smooth, extras) = (view.smooth, view.extras);
+    let wanted = Drawn { rect, scene, camera, smooth, extras, arms: arms.to_vec(), shown };
     if let Some((_, callback)) = view.drawn.as_ref().filter(|(drawn, _)| *drawn == wanted) {
         return Some(callback.clone());
     }
     let (eye_m, right) = (camera.eye_m(), camera.right());
+    let style = stage::Style { eye_m: &eye_m, right: &right, fine: smooth, shadows: extras.shadows };
     let frame = gl::Frame {
-        mesh: stage::build(&live.scene, arms, wanted.shown.as_ref(), &eye_m, &right, view.smooth),
+        mesh: stage::build(&live.scene, arms, wanted.shown.as_ref(), style),
+        dims: if extras.depth { camera.dims() } else { [0.0; 2] },
         clip_from_workspace: camera.clip_from_workspace(rect.aspect_ratio()),
         eye_m,
         shafts_m: arms.iter().map(|arm| [arm.pose.tip_m, arm.trocar_m]).collect(),
         backdrop: [theme::FIELD_FAR, theme::FIELD_NEAR],
-        smooth: view.smooth,
+        smooth,
     };
     let paint = egui_glow::CallbackFn::new(move |info, painter| {
         renderer.paint(painter.gl(), &info.viewport_in_pixels(), &frame);
@@ -360,10 +371,10 @@ fn axes(painter: &Painter, rect: Rect, camera: &Camera) {
     }
 }
 
-fn hint(painter: &Painter, rect: Rect, view: &SceneView) {
+fn hint(painter: &Painter, rect: Rect, live: &Live, view: &SceneView) {
     let (words, colour) = match &view.problem {
         Some(problem) => (text::field::not_drawn(problem), theme::DARK.text),
-        None if view.lead.is_on() => (text::field::LEAD_HOVER.to_owned(), theme::DARK.text),
+        None if view.lead.is_on() => (text::field::lead_hover(live.scene.objects.is_some()), theme::DARK.text),
         None if view.look == Look::Endoscope => (text::field::RESET_VIEW.to_owned(), theme::DARK.text_weak),
         None => (text::field::VIEW_HOVER.to_owned(), theme::DARK.text_weak),
     };

@@ -1,14 +1,17 @@
-//! Board, pegs, rings and jaws of a scene with objects.
+//! Board, pegs, rings and jaws of a scene with objects; and what moves in any training scene.
 
 use egui::Color32;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_machine::rig::{SIDES, Side};
-use nima_world::scene::Scene;
+use nima_world::{LoopSeen, scene::Scene};
 
-use super::mesh::{Material, Mesh, Paint};
+use super::{
+    mesh::{Material, Mesh, Paint},
+    shadows::Shadows,
+};
 use crate::console::live::Live;
 
-const BOARD: Paint = Paint(Color32::from_rgb(0x3a, 0x45, 0x52), Material::Matte);
+pub(super) const BOARD: Paint = Paint(Color32::from_rgb(0x3a, 0x45, 0x52), Material::Matte);
 const PEG: Paint = Paint(Color32::from_rgb(0xc9, 0xcf, 0xd6), Material::Matte);
 const RING: Paint = Paint(Color32::from_rgb(0xe0, 0x8a, 0x2e), Material::Matte);
 const FINGER: Paint = Paint(Color32::from_rgb(0xb4, 0xbc, 0xc6), Material::Metal);
@@ -20,27 +23,49 @@ pub struct Shown {
     rings: Vec<(Vector3<f32>, UnitQuaternion<f32>)>,
     /// Not known of a past or far session: neither rings nor jaws are recorded.
     opening_rad: Option<[f32; SIDES]>,
+    /// Places that were marked; whether a lump lies there, which is only shown when the trial is over.
+    pub(super) marks: Vec<(Vector3<f32>, bool)>,
+    pub(super) loops: [LoopSeen; SIDES],
+    /// The trial is over.
+    pub(super) ended: bool,
 }
 
 impl Shown {
-    /// What the simulation told last; `None` in a scene without objects.
+    /// What the simulation told last; `None` in a scene without a training task of its own.
     pub(super) fn of(live: &Live) -> Option<Self> {
-        live.scene.objects.as_ref()?;
-        let Some(moment) = &live.moment else { return Some(Self { rings: vec![], opening_rad: None }) };
-        let rings = moment.rings.iter().flatten();
+        if !live.scene.is_played() {
+            return None;
+        }
+        let Some(moment) = &live.moment else {
+            let loops = [LoopSeen::default(); SIDES];
+            return Some(Self { rings: vec![], opening_rad: None, marks: vec![], loops, ended: false });
+        };
+        let (rings, marks) = (moment.rings.iter().flatten(), moment.training.marks.iter().flatten());
+        let has_jaws = live.scene.objects.is_some();
         Some(Self {
             rings: rings.map(|ring| (ring.centre_m.cast(), ring.world_from_ring.cast())).collect(),
-            opening_rad: Some(moment.opening_rad.map(|rad| rad as f32)),
+            opening_rad: has_jaws.then(|| moment.opening_rad.map(|rad| rad as f32)),
+            marks: marks.map(|mark| (mark.at_m.cast(), mark.is_true)).collect(),
+            loops: moment.training.loops,
+            ended: moment.training.ended,
         })
     }
 }
 
+/// A board with its surface at this height, m.
+pub(super) fn board(mesh: &mut Mesh, board: &nima_physics::Board) {
+    let ([x_m, y_m], top_m) = (board.size_m.map(|m| 0.5 * m as f32), board.z_m as f32);
+    let low = Vector3::new(-x_m, -y_m, top_m - BOARD_THICKNESS_M);
+    mesh.cuboid(low, Vector3::new(x_m, y_m, top_m), BOARD);
+}
+
 /// Board, pegs and rings.
-pub(super) fn ground(mesh: &mut Mesh, scene: &Scene, shown: &Shown) {
+pub(super) fn ground(mesh: &mut Mesh, scene: &Scene, shown: &Shown, shadows: &mut Shadows) {
     let Some(setting) = &scene.objects else { return };
     let [tube_m, major_m] = [setting.ring.tube_radius_m, setting.ring.major_radius_m].map(|m| m as f32);
     for (centre_m, turn) in &shown.rings {
         mesh.torus(*centre_m, turn, [major_m, tube_m], RING);
+        shadows.circle(centre_m, turn, [major_m, tube_m]);
     }
     let (radius_m, foot_m) = (setting.pegs.radius_m as f32, setting.board.z_m as f32);
     let top_m = foot_m + setting.pegs.height_m as f32 - radius_m;
@@ -48,10 +73,8 @@ pub(super) fn ground(mesh: &mut Mesh, scene: &Scene, shown: &Shown) {
         let [foot, top] = [foot_m, top_m].map(|z| Vector3::new(*x as f32, *y as f32, z));
         mesh.tube([foot, top], [radius_m; 2], 16, PEG);
         mesh.sphere(top, radius_m, 8, PEG);
+        shadows.rod(&foot, &(top + Vector3::z() * radius_m), radius_m);
     }
-    let [x_m, y_m] = setting.board.size_m.map(|m| 0.5 * m as f32);
-    let low = Vector3::new(-x_m, -y_m, foot_m - BOARD_THICKNESS_M);
-    mesh.cuboid(low, Vector3::new(x_m, y_m, foot_m), BOARD);
 }
 
 /// Both fingers, which the wrist holds upright; where the shaft ends. `None` where they are not known.
@@ -61,6 +84,7 @@ pub(super) fn jaws(
     shown: &Shown,
     side: Side,
     tip_m: &Vector3<f32>,
+    shadows: &mut Shadows,
 ) -> Option<Vector3<f32>> {
     let (setting, opening_rad) = (scene.objects.as_ref()?, shown.opening_rad?[side.index()]);
     let [length_m, radius_m] = [setting.jaws.finger_length_m, setting.jaws.finger_radius_m].map(|m| m as f32);
@@ -70,6 +94,7 @@ pub(super) fn jaws(
         let end_m = hinge_m + Vector3::new(sin, 0.0, -cos) * length_m;
         mesh.tube([hinge_m, end_m], [1.4 * radius_m, radius_m], 12, FINGER);
         mesh.sphere(end_m, radius_m, 6, FINGER);
+        shadows.rod(&end_m, &hinge_m, 1.2 * radius_m);
     }
     Some(hinge_m)
 }

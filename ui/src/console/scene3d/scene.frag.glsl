@@ -1,6 +1,10 @@
 // One lamp, a sky, a highlight; gamma 2, which a processor without a GPU can afford. One program for each MATERIAL (see mesh.rs) and, where they
 // throw shadows, for each number of SHAFTS: a processor works out both sides of every branch.
 uniform vec3 u_eye;
+#if MATERIAL != 3
+// What a surface loses of its brightness per metre, and from which distance on: the depth cue.
+uniform vec2 u_dims;
+#endif
 #if MATERIAL == 1
 // Tip and top of each instrument's shaft, m.
 uniform vec3 u_shaft_ends[2 * SHAFTS];
@@ -30,7 +34,9 @@ float light_past_shaft(vec3 p, vec3 tip, vec3 top) {
 
 void main() {
     vec3 normal = normalize(v_normal);
-    vec3 to_eye = normalize(u_eye - v_position);
+    vec3 ray = u_eye - v_position;
+    float range = length(ray);
+    vec3 to_eye = ray / range;
 #if MATERIAL == 3
     // Information: nearly its own colour, shaded just enough to be seen as round.
     f_colour = vec4(v_colour.rgb * (0.86 + 0.14 * clamp(dot(normal, to_eye), 0.0, 1.0)), 1.0);
@@ -73,6 +79,7 @@ void main() {
     shaded = base * (0.70 * clamp(facing, 0.0, 1.0) + 0.28 * sky + 0.06) + vec3(0.08) * shine + vec3(0.03, 0.035, 0.04) * rim;
 #endif
 #endif
+    shaded *= clamp(1.0 - u_dims.x * (range - u_dims.y), 0.25, 1.1);
     f_colour = vec4(sqrt(clamp(shaded, 0.0, 1.0)), 1.0);
 #endif
 }

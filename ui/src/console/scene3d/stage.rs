@@ -8,6 +8,8 @@ use nima_world::scene::Scene;
 use super::{
     mesh::{Material, Mesh, Paint},
     objects::{self, Shown},
+    shadows::Shadows,
+    training,
 };
 use crate::console::theme;
 
@@ -115,15 +117,23 @@ pub struct Arm {
     pub trail_m: Vec<Vector3<f32>>,
 }
 
-/// Builds the scene as seen from `eye_m`, with `right` to the right of the screen; `fine` selects more triangles.
-pub fn build(
-    scene: &Scene,
-    arms: &[Arm],
-    shown: Option<&Shown>,
-    eye_m: &Vector3<f32>,
-    right: &Vector3<f32>,
-    fine: bool,
-) -> Mesh {
+/// How a scene is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Style<'a> {
+    /// From where it is seen, m.
+    pub eye_m: &'a Vector3<f32>,
+    /// The direction to the right of the screen.
+    pub right: &'a Vector3<f32>,
+    /// More triangles.
+    pub fine: bool,
+    /// Shadows on a board.
+    pub shadows: bool,
+}
+
+/// Builds the scene.
+pub fn build(scene: &Scene, arms: &[Arm], shown: Option<&Shown>, style: Style<'_>) -> Mesh {
+    let Style { eye_m, right, fine, .. } = style;
+    let mut shadows = Shadows::on(training::board_of(scene).filter(|_| style.shadows));
     let mut mesh = Mesh { vertices: Vec::with_capacity(12_000), indices: Vec::with_capacity(60_000) };
     let mut dents = Dents([Dent::NONE; SIDES]);
     // Front objects first, so that hidden pixels are not shaded.
@@ -131,10 +141,15 @@ pub fn build(
         let [measured, rendered] = arrow_bases_m(pose, trocar_m, right);
         measured_arrow(&mut mesh, measured, &pose.measured_n);
         rendered_arrow(&mut mesh, rendered, &pose.rendered_n);
-        match shown.and_then(|shown| objects::jaws(&mut mesh, scene, shown, *side, &pose.tip_m)) {
-            Some(hinge_m) => shaft(&mut mesh, trocar_m, &hinge_m),
+        let tool = shown.and_then(|shown| {
+            let jaws = objects::jaws(&mut mesh, scene, shown, *side, &pose.tip_m, &mut shadows);
+            jaws.or_else(|| training::hoop(&mut mesh, scene, shown, (*side, &pose.tip_m, trocar_m), &mut shadows))
+        });
+        match tool {
+            Some(end_m) => shaft(&mut mesh, trocar_m, &end_m),
             None => instrument(&mut mesh, trocar_m, &pose.tip_m),
         }
+        shadows.rod(&tool.unwrap_or(pose.tip_m), trocar_m, SHAFT_RADIUS_M);
         dents.0[side.index()] = Dent::new(scene, &pose.tip_m);
     }
     for Arm { targets_m, trail_m, .. } in arms {
@@ -144,7 +159,11 @@ pub fn build(
         mesh.ribbon(trail_m, eye_m, |i| 0.0011 * (i as f32 / trail_m.len() as f32), TRAIL);
     }
     if let Some(shown) = shown {
-        objects::ground(&mut mesh, scene, shown);
+        objects::ground(&mut mesh, scene, shown, &mut shadows);
+        training::wire(&mut mesh, scene, &mut shadows);
+        training::marks(&mut mesh, scene, shown, |x, y| dents.lift_m(x, y));
+        shadows.lay(&mut mesh);
+        training::board(&mut mesh, scene);
     }
     tissue(&mut mesh, scene, &dents, if fine { CELLS } else { CELLS_COARSE });
     mesh
@@ -268,6 +287,10 @@ fn rendered_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
 mod tests {
     use super::*;
 
+    const EYE_M: Vector3<f32> = Vector3::new(0.0, -0.3, 0.2);
+    const RIGHT: Vector3<f32> = Vector3::new(1.0, 0.0, 0.0);
+    const STYLE: Style<'static> = Style { eye_m: &EYE_M, right: &RIGHT, fine: true, shadows: true };
+
     fn pose(z: f32, force_n: Vector3<f32>) -> Pose {
         Pose { tip_m: Vector3::new(0.0, 0.018, z), measured_n: force_n, rendered_n: force_n * 0.5 }
     }
@@ -293,8 +316,7 @@ mod tests {
         let scene = Scene::load("free_motion").unwrap();
         let one = arm(pose(0.01, Vector3::z()));
         let other = Arm { side: Side::Left, ..one.clone() };
-        let corners =
-            |arms: &[Arm]| build(&scene, arms, None, &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), true).vertices.len();
+        let corners = |arms: &[Arm]| build(&scene, arms, None, STYLE).vertices.len();
         assert_eq!(corners(&[one.clone(), other]), 2 * corners(&[one]));
     }
 
@@ -314,21 +336,11 @@ mod tests {
     fn a_scene_without_tissue_has_none_and_no_force_has_no_arrow() {
         let full = Scene::load("peg_transfer").unwrap();
         let bare = Scene::load("free_motion").unwrap();
-        let size = |scene: &Scene, force_n| {
-            build(scene, &[arm(pose(0.01, force_n))], None, &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), true)
-                .vertices
-                .len()
-        };
+        let size = |scene: &Scene, force_n| build(scene, &[arm(pose(0.01, force_n))], None, STYLE).vertices.len();
         assert!(size(&full, Vector3::zeros()) > size(&bare, Vector3::zeros()) + 4000);
         assert!(size(&bare, Vector3::z()) > size(&bare, Vector3::z() * 0.01));
-        let coarse = build(
-            &full,
-            &[arm(pose(0.01, Vector3::zeros()))],
-            None,
-            &Vector3::new(0.0, -0.3, 0.2),
-            &Vector3::x(),
-            false,
-        );
+        let coarse = Style { fine: false, ..STYLE };
+        let coarse = build(&full, &[arm(pose(0.01, Vector3::zeros()))], None, coarse);
         assert!(2 * coarse.vertices.len() < 2 * 1000 + size(&full, Vector3::zeros()));
     }
 
@@ -336,7 +348,7 @@ mod tests {
     fn what_is_not_finite_reaches_no_arrow() {
         let scene = Scene::load("free_motion").unwrap();
         let nowhere = arm(pose(0.01, Vector3::repeat(f32::NAN)));
-        let mesh = build(&scene, &[nowhere], None, &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), true);
+        let mesh = build(&scene, &[nowhere], None, STYLE);
         assert!(mesh.vertices.iter().all(|v| v.position.iter().all(|x| x.is_finite())));
     }
 }

@@ -1,6 +1,9 @@
 //! The rigs and scenes to choose from: built-in ones, those in the user's folders, and those used last.
 
-use std::path::Path;
+use std::{
+    path::Path,
+    time::{SystemTime, UNIX_EPOCH},
+};
 
 use nima_machine::{config::RigConfig, rig::rig_probes};
 use nima_world::scene::Scene;
@@ -21,6 +24,14 @@ impl Default for Choice {
     fn default() -> Self {
         Self { rig: "simulated".to_owned(), scene: "peg_transfer".to_owned() }
     }
+}
+
+/// The scene with what it hides elsewhere: a trainee cannot learn the places.
+pub(crate) fn drawn_anew(scene: Scene) -> Scene {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    let lot = since.as_secs().wrapping_mul(1_000_003).wrapping_add(u64::from(since.subsec_nanos()));
+    // Six digits: a person can write the seed down.
+    scene.drawn_anew(lot % 1_000_000)
 }
 
 /// Number of choices that are remembered.

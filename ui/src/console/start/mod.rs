@@ -11,6 +11,7 @@ use nima_devices::discovery::{Diagnosis, Found, Outcome, Plugged};
 use nima_machine::{config::RigConfig, messages::LoopState, rig::Settings as Devices};
 
 pub use choices::Choice;
+pub(crate) use choices::drawn_anew;
 use choices::{Entry, Lists};
 pub(in crate::console) use looking::Looked;
 use looking::{Answers, PluggedIn};

@@ -9,6 +9,13 @@ pub(in crate::console) const CEILING_HOVER: &str =
 pub(in crate::console) const FRAMES: &str = "Coordinate frames";
 pub(in crate::console) const FRAMES_HOVER: &str = "World (the frame of all forces and positions), trocar (axes of the world), tip (z along the shaft, \
     away from the tissue) and endoscope (z towards the viewer). Axes are drawn 16 mm long.";
+pub(in crate::console) const SHADOWS: &str = "Shadows on the board";
+pub(in crate::console) const SHADOWS_HOVER: &str = "What stands between the lamp and the board throws a shadow: it helps to judge height. On tissue the shafts always throw theirs.";
+pub(in crate::console) const DEPTH: &str = "Darker with distance";
+pub(in crate::console) const DEPTH_HOVER: &str =
+    "As under an endoscope, whose light is at the lens: what is farther away is darker. It helps to judge depth.";
+pub(in crate::console) const ROUND: &str = "Round picture in the surgeon's view";
+pub(in crate::console) const ROUND_HOVER: &str = "The endoscope's picture is a disc with a dark rim";
 pub(in crate::console) const FRAME_WORLD: &str = "World";
 pub(in crate::console) const ENDOSCOPE: &str = "Endoscope";
 pub(in crate::console) const TROCAR: &str = "Trocar";
@@ -19,7 +26,14 @@ pub(in crate::console) const ARROW_MEASURED: &str = "Measured force";
 pub(in crate::console) const ARROW_RENDERED: &str = "Rendered force";
 pub(in crate::console) const RESET_VIEW: &str = "Endoscope view";
 pub(in crate::console) const VIEW_HOVER: &str = "Drag to turn, wheel to zoom, double-click to reset";
-pub(in crate::console) const LEAD_HOVER: &str = "Drag to move the instrument, wheel or Page Up and Page Down to change its height, arrow keys for small steps; G opens and closes jaws";
+
+/// How the instrument is led.
+pub(in crate::console) fn lead_hover(has_jaws: bool) -> String {
+    let jaws = if has_jaws { "; G opens and closes the jaws" } else { "" };
+    format!(
+        "Drag to move the instrument, wheel or Page Up and Page Down to change its height, arrow keys for small steps{jaws}"
+    )
+}
 
 /// The view cannot be drawn.
 pub(in crate::console) fn not_drawn(problem: &str) -> String {

@@ -79,7 +79,7 @@ pub(in crate::console) const KEYS_HEADING: &str = "Keys";
 pub(in crate::console) const WORDS_HEADING: &str = "Terms";
 
 /// All keys with their functions.
-pub(in crate::console) const KEYS: [(&str, &str); 18] = [
+pub(in crate::console) const KEYS: [(&str, &str); 22] = [
     ("Space, Escape", "Stop, in every view. While you type a name, only Escape."),
     ("F1, F2, F3", "Surgeon, Technician, Demo."),
     ("F4", "This list of keys and terms."),
@@ -94,6 +94,10 @@ pub(in crate::console) const KEYS: [(&str, &str); 18] = [
     ("M", "Drive the instrument by mouse, or let it go."),
     ("Arrow keys", "Move the instrument by a small step while you drive it."),
     ("Page Up, Page Down", "Move the instrument up or down while you drive it."),
+    ("G", "In a scene with rings: open or close the jaws of the instrument that you drive."),
+    ("X", "In a palpation: mark the place under the tip of the instrument that you drive."),
+    ("D", "In a palpation: end the trial."),
+    ("N", "In a palpation or on a wire: begin the trial anew."),
     ("Ctrl +, Ctrl -", "Make everything larger or smaller."),
     ("Tab, Shift Tab", "Select the next or the previous control; it gets a frame."),
     ("Enter", "Press the selected control."),

@@ -40,4 +40,5 @@ pub(super) mod timing;
 pub(super) mod tip_force;
 pub(super) mod top_bar;
 pub(super) mod tradeoff;
+pub(super) mod training;
 pub(super) mod wizards;

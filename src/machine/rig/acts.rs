@@ -1,0 +1,86 @@
+//! What the operator does in a training task besides moving the instrument.
+
+/// One such act.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Act {
+    /// The trial begins anew: what was done before is forgotten.
+    Begin,
+    /// The place under the tip is marked, as one under which a lump lies.
+    Mark,
+    /// The operator has done what was to be done.
+    End,
+}
+
+/// How often each was done. A simulation carries out what a count has moved on by, so that nothing is done twice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Acts {
+    pub begins: u8,
+    pub marks: u8,
+    pub ends: u8,
+}
+
+impl Act {
+    /// All.
+    pub const ALL: [Self; 3] = [Self::Begin, Self::Mark, Self::End];
+}
+
+impl Acts {
+    /// Nothing was done.
+    pub const NONE: Self = Self { begins: 0, marks: 0, ends: 0 };
+
+    /// One more.
+    pub const fn note(&mut self, act: Act) {
+        let count = match act {
+            Act::Begin => &mut self.begins,
+            Act::Mark => &mut self.marks,
+            Act::End => &mut self.ends,
+        };
+        *count = count.wrapping_add(1);
+    }
+
+    /// How often this was done.
+    pub const fn of(&self, act: Act) -> u8 {
+        match act {
+            Act::Begin => self.begins,
+            Act::Mark => self.marks,
+            Act::End => self.ends,
+        }
+    }
+
+    /// What was done here or there.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self {
+            begins: self.begins.wrapping_add(other.begins),
+            marks: self.marks.wrapping_add(other.marks),
+            ends: self.ends.wrapping_add(other.ends),
+        }
+    }
+
+    /// How often an act was done since `before`. A count that went back was begun anew, and nothing was done.
+    pub const fn since(&self, before: &Self, act: Act) -> u8 {
+        let more = self.of(act).wrapping_sub(before.of(act));
+        if more > u8::MAX / 2 { 0 } else { more }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn acts_are_counted_round_and_a_count_that_begins_anew_is_no_act() {
+        let mut acts = Acts::NONE;
+        for _ in 0..300 {
+            acts.note(Act::Mark);
+        }
+        let before = acts;
+        assert_eq!((acts.since(&before, Act::Mark), acts.since(&before, Act::End)), (0, 0));
+        acts.note(Act::Mark);
+        acts.note(Act::End);
+        assert_eq!(Act::ALL.map(|act| acts.since(&before, act)), [0, 1, 1]);
+        assert_eq!(Acts::NONE.since(&acts, Act::Mark), 0, "the loop has ended");
+        assert_eq!(acts.and(acts).marks, 2_u8.wrapping_mul(acts.marks));
+    }
+}

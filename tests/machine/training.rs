@@ -1,0 +1,104 @@
+//! Palpation and the wire in the closed loop: simulated hands, and what a person does from the screen.
+
+use nalgebra::Vector3;
+use nima_core::impedance::Mode;
+use nima_machine::{
+    messages::{Command, LoopState},
+    rig::Act,
+    runtime,
+};
+use nima_score::{Event, Happening};
+use nima_tests::plan;
+use nima_world::Plan;
+
+fn of(scene: &str, mode: Mode) -> Plan {
+    let mut plan = plan(scene);
+    plan.rig.mode = mode;
+    plan
+}
+
+/// What happens in so many seconds, in which these commands are given at these times, and the bits of what was measured.
+fn played(plan: &Plan, seconds: f64, commands: &[(f64, Command)]) -> (Vec<Happening>, Vec<u64>) {
+    let (assembly, watched) = plan.watched().unwrap();
+    let watched = watched.unwrap();
+    let (mut happenings, mut bits, mut given) = (Vec::new(), Vec::new(), 0);
+    let summary = runtime::run_virtual(assembly, seconds, |tick| {
+        happenings.extend(watched.happenings());
+        bits.extend(tick.measured_n.iter().chain(&tick.tip_m).map(|x| x.to_bits()));
+        let (at_s, command) = commands.get(given)?;
+        (tick.t_s >= *at_s).then(|| {
+            given += 1;
+            *command
+        })
+    });
+    assert_eq!((summary.final_state, given), (LoopState::Engaged, commands.len()));
+    happenings.extend(watched.happenings());
+    (happenings, bits)
+}
+
+#[test]
+fn a_hand_that_feels_lumps_finds_them_wherever_they_are() {
+    for (seed, mode) in [(23, Mode::Matched), (4, Mode::Best), (11, Mode::Matched)] {
+        let mut plan = of("find_lumps", mode);
+        plan.scene.seed = seed;
+        let (happenings, _) = played(&plan, 115.0, &[]);
+        let marks = happenings.iter().filter_map(|happening| match happening.event {
+            Event::LumpMarked { lump, .. } => Some(lump),
+            _ => None,
+        });
+        let marks: Vec<Option<usize>> = marks.collect();
+        let mut found: Vec<usize> = marks.iter().flatten().copied().collect();
+        found.sort_unstable();
+        found.dedup();
+        let wrong = marks.iter().filter(|lump| lump.is_none()).count();
+        assert!(found.len() >= 4 && wrong <= 1, "seed {seed}, {mode}: {marks:?}");
+        assert_eq!(happenings.last().map(|happening| happening.event), Some(Event::Ended));
+    }
+}
+
+#[test]
+fn a_hand_that_follows_the_wire_reaches_its_end_and_one_that_aims_better_touches_less() {
+    let touches = |aim_error_m: f64| {
+        let mut plan = of("wire", Mode::Matched);
+        plan.scene.hand.aim_error_m = aim_error_m;
+        let (happenings, _) = played(&plan, 40.0, &[]);
+        assert_eq!(happenings.last().map(|happening| happening.event), Some(Event::Ended), "{aim_error_m}");
+        happenings.iter().filter(|happening| matches!(happening.event, Event::WireTouched { .. })).count()
+    };
+    let counts = [0.0, 0.0012, 0.0022].map(touches);
+    assert!(counts[0] <= 1 && counts[1] >= 1 && counts[2] > counts[1], "{counts:?}");
+}
+
+#[test]
+fn the_same_training_gives_the_same_bits() {
+    for scene in ["find_lumps", "wire"] {
+        let plan = of(scene, Mode::Matched);
+        let (one, other) = (played(&plan, 12.0, &[]), played(&plan, 12.0, &[]));
+        assert!(one == other, "{scene}");
+    }
+}
+
+#[test]
+fn a_person_marks_begins_anew_and_ends_from_the_screen() {
+    let plan = of("find_lumps", Mode::Matched);
+    let lump = plan.scene.placed_lumps().unwrap().list[2];
+    let beside = Vector3::new(lump.at_m[0], lump.at_m[1], 0.004);
+    let task = |at_s: f64, act: Act| (at_s, Command::Task(act));
+    let commands = [
+        (0.5, Command::Guide(Some(beside))),
+        task(2.5, Act::Mark),
+        task(2.6, Act::Begin),
+        task(2.7, Act::Mark),
+        (2.8, Command::Guide(Some(Vector3::new(0.055, 0.042, 0.004)))),
+        task(4.8, Act::Mark),
+        task(4.9, Act::End),
+        task(5.0, Act::Mark),
+        task(5.1, Act::End),
+    ];
+    let (happenings, _) = played(&plan, 6.0, &commands);
+    let side = nima_score::Side::Right;
+    let found = Event::LumpMarked { side, lump: Some(2) };
+    let wrong = Event::LumpMarked { side, lump: None };
+    let events: Vec<Event> = happenings.iter().map(|happening| happening.event).collect();
+    assert_eq!(events, [found, Event::Begun, found, wrong, Event::Ended]);
+}

@@ -1,0 +1,194 @@
+//! Wire and loop, marks and lumps; and one line on how far the trial has come.
+
+use egui::{Color32, Label, Rect, RichText, Ui, vec2};
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_machine::rig::Side;
+use nima_world::scene::Scene;
+
+use super::{
+    mesh::{Material, Mesh, Paint},
+    objects::{self, Shown},
+    shadows::Shadows,
+};
+use crate::console::{live::Live, text, theme};
+
+const WIRE: Paint = Paint(Color32::from_rgb(0xa9, 0xbd, 0xcc), Material::Metal);
+const LOOP: Paint = Paint(Color32::from_rgb(0xd8, 0xdd, 0xe2), Material::Metal);
+/// A loop that touches: brighter, and thicker.
+const LOOP_TOUCHES: Paint = Paint(Color32::from_rgb(0xe0, 0x8a, 0x2e), Material::Plain);
+const THICKER: f32 = 1.5;
+/// The free end of a wire and its goal.
+const ENDS: Paint = Paint(Color32::from_rgb(0xe8, 0xed, 0xf2), Material::Matte);
+const MARK: Paint = Paint(Color32::from_rgb(0xee, 0xf1, 0xf5), Material::Matte);
+const MARK_FALSE: Paint = Paint(Color32::from_rgb(0x3a, 0x42, 0x4c), Material::Matte);
+const PIN: Paint = Paint(Color32::from_rgb(0xb4, 0xbc, 0xc6), Material::Metal);
+const LUMP: Paint = Paint(Color32::from_rgb(0x6a, 0x2f, 0x4e), Material::Matte);
+
+/// One of so many points of the wire's curve is drawn.
+const POINTS: usize = 3;
+/// Height of a pin, and radius of its head, m.
+const PIN_M: f32 = 0.007;
+const HEAD_M: f32 = 0.0015;
+
+/// Wire and its board, with the goal.
+pub(super) fn wire(mesh: &mut Mesh, scene: &Scene, shadows: &mut Shadows) {
+    let Some(setting) = &scene.wire else { return };
+    let (curve, radius_m) = (setting.curve(), setting.radius_m as f32);
+    let last = curve.points_m().len() - 1;
+    let points_m: Vec<Vector3<f32>> = curve
+        .points_m()
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| i % POINTS == 0 || *i == last)
+        .map(|(_, point_m)| point_m.cast())
+        .collect();
+    mesh.pipe(&points_m, radius_m, 10, WIRE);
+    mesh.sphere(points_m[0], 1.4 * radius_m, 8, ENDS);
+    let goal_m = curve.given_m(setting.goal_point);
+    for band in 0..3 {
+        let at_m = goal_m + 0.003 * f64::from(band);
+        let ends = [at_m, at_m + 0.0012].map(|along_m| curve.at(along_m).cast());
+        mesh.tube(ends, [1.9 * radius_m; 2], 14, ENDS);
+    }
+    shadows.line(points_m, radius_m);
+}
+
+/// The loop of an instrument; where its shaft ends. `None` in a scene without a wire.
+pub(super) fn hoop(
+    mesh: &mut Mesh,
+    scene: &Scene,
+    shown: &Shown,
+    (side, tip_m, trocar_m): (Side, &Vector3<f32>, &Vector3<f32>),
+    shadows: &mut Shadows,
+) -> Option<Vector3<f32>> {
+    let hoop = scene.wire.as_ref()?.hoop;
+    let along_shaft = trocar_m - tip_m;
+    let given = hoop.axis.map_or(along_shaft, |axis| Vector3::from(axis).cast());
+    let axis = given.try_normalize(1e-6).unwrap_or_else(Vector3::x);
+    let turn = UnitQuaternion::rotation_between(&Vector3::z(), &axis).unwrap_or_else(UnitQuaternion::identity);
+    let [major_m, tube_m] = [hoop.radius_m as f32, hoop.tube_radius_m as f32];
+    let (paint, thick) = if shown.loops[side.index()].touches { (LOOP_TOUCHES, THICKER) } else { (LOOP, 1.0) };
+    mesh.torus(*tip_m, &turn, [major_m, thick * tube_m], paint);
+    shadows.circle(tip_m, &turn, [major_m, tube_m]);
+    let in_plane = along_shaft - axis * axis.dot(&along_shaft);
+    let up = in_plane.try_normalize(1e-4).unwrap_or_else(|| turn * Vector3::x());
+    Some(tip_m + up * major_m)
+}
+
+/// Pins where the operator marked; when the trial is over also the lumps, and marks over none look otherwise.
+pub(super) fn marks(mesh: &mut Mesh, scene: &Scene, shown: &Shown, lift_m: impl Fn(f32, f32) -> f32) {
+    for (at_m, is_true) in &shown.marks {
+        let foot_m = at_m + Vector3::z() * lift_m(at_m.x, at_m.y);
+        let head_m = foot_m + Vector3::z() * PIN_M;
+        mesh.tube([foot_m, head_m], [0.0004; 2], 8, PIN);
+        if shown.ended && !is_true {
+            mesh.cuboid(head_m - Vector3::repeat(HEAD_M), head_m + Vector3::repeat(HEAD_M), MARK_FALSE);
+        } else {
+            mesh.sphere(head_m, HEAD_M, 8, MARK);
+        }
+    }
+    let Some((lumps, tissue)) = scene.placed_lumps().zip(scene.tissue).filter(|_| shown.ended) else { return };
+    for lump in &lumps.list {
+        let [x, y] = lump.at_m.map(|m| m as f32);
+        let at_m = Vector3::new(x, y, tissue.surface_z_m as f32);
+        mesh.ring(at_m, [lump.radius_m as f32, 0.0007], &lift_m, LUMP);
+    }
+}
+
+/// The board under the wire, or under the pegs.
+pub(super) fn board(mesh: &mut Mesh, scene: &Scene) {
+    if let Some(board) = board_of(scene) {
+        objects::board(mesh, board);
+    }
+}
+
+/// The board of a scene.
+pub(super) fn board_of(scene: &Scene) -> Option<&nima_physics::Board> {
+    let under_pegs = scene.objects.as_ref().map(|setting| &setting.board);
+    under_pegs.or_else(|| scene.wire.as_ref().map(|setting| &setting.board))
+}
+
+/// How far the trial has come, in words; `None` in a scene where that is not known.
+pub(super) fn told(live: &Live, is_led: bool) -> Option<String> {
+    let training = &live.moment.as_ref()?.training;
+    if live.scene.wire.is_some() {
+        return Some(text::training::wire(training.touches, training.share, training.ended, is_led));
+    }
+    let lumps = live.scene.task.as_ref().filter(|_| live.scene.is_searched())?.lumps.unwrap_or(0);
+    let mark_false = training.marks.iter().flatten().filter(|mark| !mark.is_true).count() as u32;
+    Some(if training.ended {
+        text::training::lumps_found(training.found, lumps, mark_false)
+    } else {
+        text::training::lumps_marked(training.marked, is_led)
+    })
+}
+
+/// The line, at the top of the view.
+pub(super) fn line_ui(ui: &mut Ui, rect: Rect, live: &Live, is_led: bool) {
+    let Some(words) = told(live, is_led) else { return };
+    let place = Rect::from_center_size(rect.center_top() + vec2(0.0, 22.0), vec2(rect.width().min(560.0), 28.0));
+    ui.painter_at(rect).rect_filled(place, theme::CORNER, Color32::from_black_alpha(150));
+    ui.put(place, Label::new(RichText::new(words).font(theme::strong(15.0)).color(theme::DARK.text)).truncate());
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::{config::RigConfig, rig::SIDES};
+    use nima_world::{LoopSeen, MARKS_MAX, Mark, Moment, Training};
+
+    use super::*;
+
+    fn live(scene: &str, training: Training) -> Live {
+        let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
+        let loads = [nima_physics::Loads::default(); SIDES];
+        live.moment = Some(Moment { t_s: 0.0, rings: [None; 12], opening_rad: [0.0; SIDES], loads, training });
+        live
+    }
+
+    fn marked(ended: bool) -> Training {
+        let mut marks = [None; MARKS_MAX];
+        for (mark, is_true) in marks.iter_mut().zip([true, false, false]) {
+            *mark = Some(Mark { at_m: Vector3::new(0.01, 0.0, 0.0), is_true });
+        }
+        Training { ended, marks, marked: 3, found: 1, ..Training::default() }
+    }
+
+    fn vertices(live: &Live) -> usize {
+        let mut mesh = Mesh::default();
+        marks(&mut mesh, &live.scene, &Shown::of(live).unwrap(), |_, _| 0.0);
+        mesh.vertices.len()
+    }
+
+    #[test]
+    fn neither_picture_nor_words_tell_of_lumps_before_the_trial_is_over() {
+        let (during, after) = (live("find_lumps", marked(false)), live("find_lumps", marked(true)));
+        let mut wrong = marked(false);
+        wrong.marks.iter_mut().flatten().for_each(|mark| mark.is_true = false);
+        wrong.found = 0;
+        let wrong = live("find_lumps", wrong);
+        assert_eq!(vertices(&during), vertices(&wrong), "a true mark looks as a false one does");
+        assert_eq!(told(&during, true), told(&wrong, true));
+        assert!(vertices(&after) > vertices(&during) + 1000, "the lumps");
+        assert_eq!(told(&after, false).unwrap(), "Lumps found: 1 of 5, false marks: 2");
+        assert_eq!(told(&live("lumps", marked(true)), false), None, "nobody looks for them");
+    }
+
+    #[test]
+    fn a_loop_hangs_on_its_shaft_and_shows_that_it_touches() {
+        let mut training = Training::default();
+        training.loops[Side::Right.index()] = LoopSeen { touches: true, on_wire: true };
+        let of = |training| {
+            let live = live("wire", training);
+            let (mut mesh, shown) = (Mesh::default(), Shown::of(&live).unwrap());
+            let (tip_m, trocar_m) = (Vector3::new(0.0, 0.0, 0.03), Vector3::new(0.0, -0.06, 0.14));
+            let mut shadows = Shadows::on(board_of(&live.scene));
+            let end_m = hoop(&mut mesh, &live.scene, &shown, (Side::Right, &tip_m, &trocar_m), &mut shadows).unwrap();
+            assert!(((end_m - tip_m).norm() - 0.006).abs() < 1e-6 && end_m.z > tip_m.z, "{end_m}");
+            wire(&mut mesh, &live.scene, &mut shadows);
+            shadows.lay(&mut mesh);
+            assert!(mesh.vertices.iter().all(|vertex| vertex.position.iter().all(|x| x.is_finite())));
+            mesh.vertices.iter().filter(|vertex| vertex.colour[3] == Material::Plain as u8).count()
+        };
+        assert!(of(training) > 100 && of(Training::default()) == 0);
+    }
+}

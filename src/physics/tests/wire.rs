@@ -9,6 +9,7 @@ use crate::{Instrument, Loads, Wire, WireSetting, WireTask};
 
 const PERIOD_S: f64 = 1e-3;
 
+#[expect(clippy::unnecessary_wraps, reason = "as a step takes its instruments")]
 fn holding(tip_m: Vector3<f64>) -> Option<Instrument> {
     let trocar_m = at(0.0, -0.06, 0.14);
     Some(Instrument { tip_m, world_from_jaws: UnitQuaternion::identity(), trocar_m, opening_rad: 0.0 })
@@ -192,7 +193,7 @@ fn digest() -> u64 {
 fn ten_seconds_on_a_wire_repeat_to_the_last_bit_in_every_build() {
     let first = digest();
     assert_eq!(first, digest());
-    assert_eq!(first, 0, "a build, a processor or a law has become other: {first:#018x}");
+    assert_eq!(first, 0xacd3_9e86_be76_6b46, "a build, a processor or a law has become other: {first:#018x}");
 }
 
 #[test]

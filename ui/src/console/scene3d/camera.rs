@@ -36,10 +36,10 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// Default camera of a scene. Two instruments are seen from the operator's side, so that the right one is on the
-    /// right.
+    /// Default camera of a scene. Two instruments, and a wire, are seen from the operator's side, so that the right one is on the
+    /// right, and the wire's end.
     pub fn of(scene: &Scene) -> Self {
-        if scene.left.is_none() {
+        if scene.left.is_none() && scene.wire.is_none() {
             return Self::default();
         }
         Self { target_m: Vector3::new(0.0, -0.012, 0.042), distance_m: 0.30, yaw: 0.16, pitch: 0.58, ..Self::default() }
@@ -47,7 +47,7 @@ impl Camera {
 
     /// Camera of the endoscope: between two instruments, or beside a single one.
     pub fn endoscope(scene: &Scene) -> Self {
-        let yaw = if scene.left.is_some() { 0.0 } else { -0.55 };
+        let yaw = if scene.left.is_some() || scene.wire.is_some() { 0.0 } else { -0.55 };
         let target_m = Vector3::new(0.0, 0.0, 0.006);
         Self { target_m, distance_m: 0.128, yaw, pitch: 0.72, field_of_view: ENDOSCOPE_FIELD }
     }

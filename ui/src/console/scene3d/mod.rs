@@ -175,7 +175,7 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         axes(&painter, rect, &camera);
     }
     hint(&painter, rect, live, view);
-    training::line_ui(ui, rect, live, view.lead.is_on());
+    training::line_ui(ui, rect, live, (view.lead.is_on(), view.figures));
     // No hover texts in a surgeon's view.
     let pointed_at = response.hover_pos().filter(|_| view.figures && !response.dragged());
     if let Some(words) = pointed_at.and_then(|pointer| pick::pick(pointer, rect, &camera, &live.scene, &arms)) {
@@ -228,7 +228,9 @@ fn triangles(rect: Rect, live: &Live, view: &mut SceneView, arms: &[Arm]) -> Opt
     }
     let (eye_m, right) = (camera.eye_m(), camera.right());
     let style = stage::Style { eye_m: &eye_m, right: &right, fine: smooth, shadows: extras.shadows };
+    let is_round = view.look == Look::Endoscope && extras.round;
     let frame = gl::Frame {
+        share: if is_round { vignette::share_of_width(rect) } else { 1.0 },
         mesh: stage::build(&live.scene, arms, wanted.shown.as_ref(), style),
         dims: if extras.depth { camera.dims() } else { [0.0; 2] },
         clip_from_workspace: camera.clip_from_workspace(rect.aspect_ratio()),

@@ -22,6 +22,8 @@ const SHADE: [f32; 2] = [0.80, 0.56];
 /// Places around a ring, and along a rod.
 const AROUND: u32 = 28;
 const ALONG: u32 = 16;
+/// Corners of a round end.
+const CAP: u32 = 12;
 
 /// Shadows on one board, which are gathered while objects are drawn.
 #[derive(Debug)]
@@ -114,6 +116,24 @@ fn band(
         }
     }
     mesh.sheet(first, points.len() as u32 - 1, 1);
+    for (point_m, height_m) in [points.first(), points.last()].into_iter().flatten() {
+        cap(mesh, point_m, half_m, lift_m, width_m(*height_m), paint);
+    }
+}
+
+/// A flat disc, cut off at the edges of the board: the round end of a band.
+fn cap(mesh: &mut Mesh, at_m: &Vector3<f32>, half_m: [f32; 2], lift_m: f32, radius_m: f32, paint: Paint) {
+    let mut corner = |out: Vector3<f32>| {
+        let corner_m = at_m + out * radius_m;
+        let [x, y] = [corner_m.x.clamp(-half_m[0], half_m[0]), corner_m.y.clamp(-half_m[1], half_m[1])];
+        mesh.vertex(Vector3::new(x, y, at_m.z + lift_m), Vector3::z(), paint)
+    };
+    let middle = corner(Vector3::zeros());
+    for side in 0..=CAP {
+        let (sin, cos) = (std::f32::consts::TAU * side as f32 / CAP as f32).sin_cos();
+        corner(Vector3::new(cos, sin, 0.0));
+    }
+    mesh.indices.extend((1..=CAP).flat_map(|side| [middle, middle + side, middle + side + 1]));
 }
 
 #[cfg(test)]

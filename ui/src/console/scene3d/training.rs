@@ -24,6 +24,9 @@ const MARK_FALSE: Paint = Paint(Color32::from_rgb(0x3a, 0x42, 0x4c), Material::M
 const PIN: Paint = Paint(Color32::from_rgb(0xb4, 0xbc, 0xc6), Material::Metal);
 const LUMP: Paint = Paint(Color32::from_rgb(0x6a, 0x2f, 0x4e), Material::Matte);
 
+/// Width of the readings at the left of the view, and of the gauges at its right, points.
+const READINGS: f32 = 250.0;
+const GAUGES: f32 = 110.0;
 /// One of so many points of the wire's curve is drawn.
 const POINTS: usize = 3;
 /// Height of a pin, and radius of its head, m.
@@ -124,11 +127,18 @@ pub(super) fn told(live: &Live, is_led: bool) -> Option<String> {
 }
 
 /// The line, at the top of the view.
-pub(super) fn line_ui(ui: &mut Ui, rect: Rect, live: &Live, is_led: bool) {
+pub(super) fn line_ui(ui: &mut Ui, rect: Rect, live: &Live, (is_led, figures): (bool, bool)) {
     let Some(words) = told(live, is_led) else { return };
-    let place = Rect::from_center_size(rect.center_top() + vec2(0.0, 22.0), vec2(rect.width().min(560.0), 28.0));
+    // Between the readings and the gauges, where they are shown.
+    let room = if figures {
+        Rect::from_min_max(rect.left_top() + vec2(READINGS, 0.0), rect.right_bottom() - vec2(GAUGES, 0.0))
+    } else {
+        rect
+    };
+    let place =
+        Rect::from_center_size(room.center_top() + vec2(0.0, 22.0), vec2(room.width().clamp(60.0, 520.0), 28.0));
     ui.painter_at(rect).rect_filled(place, theme::CORNER, Color32::from_black_alpha(150));
-    ui.put(place, Label::new(RichText::new(words).font(theme::strong(15.0)).color(theme::DARK.text)).truncate());
+    ui.put(place, Label::new(RichText::new(words).font(theme::strong(14.0)).color(theme::DARK.text)).truncate());
 }
 
 #[cfg(test)]
@@ -138,10 +148,11 @@ mod tests {
 
     use super::*;
 
-    fn live(scene: &str, training: Training) -> Live {
+    fn live(scene: &str, training: &Training) -> Live {
         let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
         let loads = [nima_physics::Loads::default(); SIDES];
-        live.moment = Some(Moment { t_s: 0.0, rings: [None; 12], opening_rad: [0.0; SIDES], loads, training });
+        live.moment =
+            Some(Moment { t_s: 0.0, rings: [None; 12], opening_rad: [0.0; SIDES], loads, training: *training });
         live
     }
 
@@ -161,23 +172,23 @@ mod tests {
 
     #[test]
     fn neither_picture_nor_words_tell_of_lumps_before_the_trial_is_over() {
-        let (during, after) = (live("find_lumps", marked(false)), live("find_lumps", marked(true)));
+        let (during, after) = (live("find_lumps", &marked(false)), live("find_lumps", &marked(true)));
         let mut wrong = marked(false);
         wrong.marks.iter_mut().flatten().for_each(|mark| mark.is_true = false);
         wrong.found = 0;
-        let wrong = live("find_lumps", wrong);
+        let wrong = live("find_lumps", &wrong);
         assert_eq!(vertices(&during), vertices(&wrong), "a true mark looks as a false one does");
         assert_eq!(told(&during, true), told(&wrong, true));
         assert!(vertices(&after) > vertices(&during) + 1000, "the lumps");
         assert_eq!(told(&after, false).unwrap(), "Lumps found: 1 of 5, false marks: 2");
-        assert_eq!(told(&live("lumps", marked(true)), false), None, "nobody looks for them");
+        assert_eq!(told(&live("lumps", &marked(true)), false), None, "nobody looks for them");
     }
 
     #[test]
     fn a_loop_hangs_on_its_shaft_and_shows_that_it_touches() {
         let mut training = Training::default();
         training.loops[Side::Right.index()] = LoopSeen { touches: true, on_wire: true };
-        let of = |training| {
+        let of = |training: &Training| {
             let live = live("wire", training);
             let (mut mesh, shown) = (Mesh::default(), Shown::of(&live).unwrap());
             let (tip_m, trocar_m) = (Vector3::new(0.0, 0.0, 0.03), Vector3::new(0.0, -0.06, 0.14));
@@ -189,6 +200,6 @@ mod tests {
             assert!(mesh.vertices.iter().all(|vertex| vertex.position.iter().all(|x| x.is_finite())));
             mesh.vertices.iter().filter(|vertex| vertex.colour[3] == Material::Plain as u8).count()
         };
-        assert!(of(training) > 100 && of(Training::default()) == 0);
+        assert!(of(&training) > 100 && of(&Training::default()) == 0);
     }
 }

@@ -15,6 +15,12 @@ fn radii(rect: Rect) -> [f32; 2] {
     [radius * (1.0 - RIM), radius]
 }
 
+/// Share of the width of a view that the disc takes.
+pub(super) fn share_of_width(rect: Rect) -> f32 {
+    let [_, dark] = radii(rect);
+    (2.0 * dark / rect.width().max(1.0)).clamp(0.0, 1.0)
+}
+
 /// Covers what an endoscope does not show.
 pub(super) fn paint(painter: &Painter, rect: Rect) {
     let [clear, dark] = radii(rect);
@@ -50,6 +56,8 @@ mod tests {
             let [clear, dark] = radii(Rect::from_min_size(Pos2::ZERO, size));
             let least = size.x.min(size.y);
             assert!(clear < dark && clear > 0.5 * least && dark < 0.7 * least, "{size:?}: {clear} {dark}");
+            let share = share_of_width(Rect::from_min_size(Pos2::ZERO, size));
+            assert!((share - (2.0 * dark / size.x).min(1.0)).abs() < 1e-6, "{share}");
         }
     }
 }

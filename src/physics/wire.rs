@@ -43,7 +43,8 @@ const JUMP_M: f64 = 0.03;
 /// use nalgebra::{UnitQuaternion, Vector3};
 /// use nima_physics::{Instrument, Wire, WireSetting};
 ///
-/// let setting = WireSetting { points_m: vec![[-0.05, 0.0, 0.03], [0.05, 0.0, 0.03]], ..WireSetting::default() };
+/// let points_m = vec![[-0.05, 0.0, 0.03], [0.05, 0.0, 0.03]];
+/// let setting = WireSetting { points_m, goal_point: 1, ..WireSetting::default() };
 /// setting.validate()?;
 /// let mut wire = Wire::new(&setting, 1e-3);
 /// // The loop is around the wire, and pulled up until it overlaps it by 0.5 mm.

@@ -48,11 +48,13 @@ mod label;
 mod learning;
 pub mod order;
 mod plan;
+mod progress;
 mod questionnaire;
 mod seal;
 mod secret;
 pub mod simulated;
 mod state;
+mod step;
 mod study;
 mod table;
 mod telling;
@@ -68,10 +70,12 @@ pub use file::{Breaks, Interrupted, Mistakes, NotReached, Practice, Questionnair
 pub use label::Label;
 pub use learning::Learning;
 pub use plan::{Participant, Plan, Practising};
+pub use progress::{Made, Progress};
 pub use questionnaire::{
     PAIRS, Questionnaire, REALISM_ITEM, SUS_ITEMS, TLX_SCALES, TlxScale, of_sus, raw_tlx, weighted_tlx,
 };
 pub use secret::Opened;
-pub use state::{Done, Made, Progress, State, Step, Unblinding};
+pub use state::{State, Unblinding};
+pub use step::{Done, Step};
 pub use study::{JOURNAL, Running, Study};
 pub use table::Table;

@@ -61,14 +61,14 @@ impl Person {
         }
     }
 
-    /// The hand after so many trials, practice included, so many of them since the last break.
-    pub fn hand(&self, made: u32, since_break: u32) -> Hand {
+    /// The hand after so many trials, practice included, so many of them since the last break; in this attempt, from 1.
+    pub fn hand(&self, made: u32, since_break: u32, attempt: u32) -> Hand {
         let learning = 1.0 + self.slower * (-f64::from(made) / self.learns_in).exp();
         let fatigue = 1.0 + self.tires * f64::from(since_break);
         Hand {
             pace: (self.skill / (learning * fatigue)).clamp(0.4, 1.3),
             tremor_m: self.tremor_m * fatigue,
-            seed: self.seed.wrapping_add(u64::from(made).wrapping_mul(7919)),
+            seed: self.seed.wrapping_add(u64::from(made) * 7919 + u64::from(attempt) * 104_729),
         }
     }
 

@@ -1,17 +1,19 @@
 //! The folder of a study, and all that can be done with it.
 
+mod sessions;
+
 use std::{
     fmt,
     fs::{self, File},
-    io::{self, BufReader, BufWriter},
+    io,
     path::{Path, PathBuf},
 };
 
 use nima_score::Score;
 
 use crate::{
-    Answers, Condition, Ending, Event, Exclusion, Label, Learning, Measures, Opened, Participant, Phase, Plan, State,
-    Step, StudyError, StudyFile, Table, TrialId,
+    Answers, Condition, Ending, Event, Exclusion, Label, Learning, Measures, Opened, Participant, Plan, State, Step,
+    StudyError, StudyFile, Table, TrialId,
     entry::measures,
     exclusion::exclusions,
     journal::{self, Journal},
@@ -27,13 +29,9 @@ const SCENE: &str = "scene.toml";
 const SEALED: &str = "conditions.sealed";
 const OPENED: &str = "conditions.json";
 const KEY: &str = "study.key";
-const SESSIONS: &str = "sessions";
-/// The ending of an encrypted session.
-const SEALED_END: &str = "sealed";
 /// What is encrypted.
 const CONDITIONS: &str = "conditions";
 const MEASURES: &str = "measures";
-const SESSION: &str = "session";
 
 /// An open study. Its `Debug` does not tell the conditions.
 pub struct Study {
@@ -380,70 +378,6 @@ impl Study {
         self.state = state;
         Ok(())
     }
-
-    /// The place of a recording.
-    fn session_of(&self, participant: &str, trial: TrialId) -> Result<PathBuf, StudyError> {
-        let folder = self.folder.join(SESSIONS);
-        fs::create_dir_all(&folder).map_err(StudyError::io(&folder))?;
-        let phase = if trial.phase == Phase::Practice { "practice" } else { "trial" };
-        Ok(folder.join(format!("{participant}-{phase}-{:02}-{}.mcap", trial.number, trial.attempt)))
-    }
-
-    /// Encrypts a recording, if nobody may see it; gives its name in the folder.
-    fn put_away(&self, plain: &Path) -> Result<String, StudyError> {
-        let kept = if self.state.is_open(&self.plan) {
-            plain.to_owned()
-        } else {
-            let sealed = with_end(plain);
-            self.pass(plain, &sealed, |from, to| self.key.seal_stream(SESSION, from, to))?;
-            sealed
-        };
-        let name = kept.file_name().unwrap_or_default().to_string_lossy();
-        Ok(format!("{SESSIONS}/{name}"))
-    }
-
-    /// Writes `to` from `from`, whole and on the disk, and removes `from`.
-    fn pass(
-        &self,
-        from: &Path,
-        to: &Path,
-        through: impl FnOnce(BufReader<File>, &mut dyn io::Write) -> io::Result<()>,
-    ) -> Result<(), StudyError> {
-        let source = File::open(from).map_err(StudyError::io(from))?;
-        let mut target = tempfile::NamedTempFile::new_in(self.folder.join(SESSIONS)).map_err(StudyError::io(to))?;
-        through(BufReader::new(source), &mut BufWriter::new(target.as_file_mut())).map_err(StudyError::io(from))?;
-        target.as_file().sync_all().map_err(StudyError::io(to))?;
-        target.persist(to).map_err(|error| StudyError::Io { path: to.to_owned(), source: error.error })?;
-        fs::remove_file(from).map_err(StudyError::io(from))
-    }
-
-    /// Brings the folder to what the journal says: recordings that an interrupted program left are encrypted, and after the unblinding
-    /// all are opened and the assignment is there to read.
-    fn tidy(&self) -> Result<(), StudyError> {
-        let is_open = self.state.is_open(&self.plan);
-        let opened = self.folder.join(OPENED);
-        if is_open && !opened.exists() {
-            let written = nima_files::write_atomically(&opened, |file| file.write_all(self.secret_text.as_bytes()));
-            written.map_err(StudyError::io(opened))?;
-        }
-        let Ok(sessions) = fs::read_dir(self.folder.join(SESSIONS)) else { return Ok(()) };
-        for path in sessions.filter_map(|entry| Some(entry.ok()?.path())) {
-            let end = path.extension().unwrap_or_default();
-            if is_open && end == SEALED_END {
-                self.pass(&path, &path.with_extension(""), |from, to| self.key.open_stream(SESSION, from, to))?;
-            } else if !is_open && end == "mcap" {
-                self.put_away(&path)?;
-            }
-        }
-        Ok(())
-    }
-}
-
-fn with_end(path: &Path) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(".");
-    name.push(SEALED_END);
-    PathBuf::from(name)
 }
 
 fn not_now(participant: &str, asked: &str, next: &Step) -> StudyError {

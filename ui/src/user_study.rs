@@ -74,8 +74,10 @@ pub(crate) fn under(mut rig: RigConfig, condition: &Condition) -> Result<RigConf
 /// The hand of the scene, with other random sequences in each trial.
 pub(crate) fn plain_hand(study: &Study, participant: &str) -> anyhow::Result<Hand> {
     let scene = scene_in(study)?;
-    let (made, _) = made(study, participant);
-    Ok(Hand { pace: scene.hand.pace, tremor_m: scene.hand.tremor_m, seed: scene.seed.wrapping_add(u64::from(made)) })
+    // Trials and interruptions, so that a repetition is not the same.
+    let of = study.state().progress(participant).map_or(0, |one| u64::from(one.interruptions));
+    let seed = scene.seed.wrapping_add(u64::from(made(study, participant).0) + 1000 * of);
+    Ok(Hand { pace: scene.hand.pace, tremor_m: scene.hand.tremor_m, seed })
 }
 
 /// Trials that a participant has made, practice included; all, and since the last break.

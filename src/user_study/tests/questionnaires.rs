@@ -70,10 +70,18 @@ fn simulated_people_give_answers_that_the_forms_allow_and_learn_and_tire() {
             assert_eq!((answers.check(), answers.questionnaire()), (Ok(()), asked));
             assert_eq!(answers, Person::new(3, number).answers(asked, made), "the same seed, the same answers");
         }
-        let hand = |made, since| person.hand(made, since).pace;
+        let hand = |made, since| person.hand(made, since, 1).pace;
         assert!(hand(20, 0) > hand(0, 0), "learning");
-        assert!(hand(20, 12) < hand(20, 0) && person.hand(20, 12).tremor_m > person.hand(20, 0).tremor_m, "fatigue");
+        assert!(
+            hand(20, 12) < hand(20, 0) && person.hand(20, 12, 1).tremor_m > person.hand(20, 0, 1).tremor_m,
+            "fatigue"
+        );
         assert!((0.4..=1.3).contains(&hand(0, 0)));
     }
-    assert_ne!(Person::new(3, 0).hand(0, 0), Person::new(3, 1).hand(0, 0));
+    assert_ne!(Person::new(3, 0).hand(0, 0, 1), Person::new(3, 1).hand(0, 0, 1));
+    assert_ne!(
+        Person::new(3, 0).hand(0, 0, 1).seed,
+        Person::new(3, 0).hand(0, 0, 2).seed,
+        "a repetition is not the same"
+    );
 }

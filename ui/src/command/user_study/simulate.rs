@@ -48,11 +48,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 Step::Questionnaire { questionnaire, .. } => {
                     study.answer(&name, person.answers(questionnaire, before), true, &utc_now())?;
                 }
-                Step::Practice { attempt, .. } if attempt > study.plan().attempts => {
-                    bail!("{name}: practice was broken off {} times", attempt - 1);
-                }
-                Step::Practice { .. } | Step::Trial { .. } | Step::Running { .. } => {
-                    run_virtual(&mut study, &name, &person.hand(before, since_break), &leave)?;
+                Step::Running { .. } => bail!("{name}: a trial is running"),
+                Step::Practice { attempt, .. } | Step::Trial { attempt, .. } => {
+                    run_virtual(&mut study, &name, &person.hand(before, since_break, attempt), &leave)?;
                 }
             }
             if leave.is_asked() {

@@ -3,7 +3,7 @@
 mod arms;
 pub(crate) mod html;
 mod overall;
-mod plots;
+pub(crate) mod plots;
 
 use std::{
     fmt::Write as _,

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, fmt::Write as _};
 use nima_analysis::Summary;
 use nima_study::{picture::COLOURS, trials::Table};
 
-use crate::report::html::{digits, escape};
+use crate::report::{html::escape, plots::step};
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 260.0;
@@ -32,12 +32,14 @@ pub(super) fn svg(table: &Table, measure: &str, order: &[String], axis: &str) ->
         "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{title}\" font-family=\"sans-serif\" font-size=\"12\" \
          style=\"max-width: {WIDTH}px\">\n<title>{title}</title>\n"
     );
-    for step in 0..=4 {
-        let value = low + (high - low) * f64::from(step) / 4.0;
+    let apart = step(high - low, 5.0);
+    let decimals = (-apart.log10().floor()).max(0.0) as usize;
+    for mark in (low / apart).ceil() as i64..=(high / apart).floor() as i64 {
+        let value = mark as f64 * apart;
         let y = down(value);
         // Writing into a String cannot fail, here and below.
         writeln!(out, "<path d=\"M{LEFT} {y:.1}H{}\" stroke=\"#dddddd\"/>", WIDTH - RIGHT).ok();
-        writeln!(out, "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>", LEFT - 6.0, y + 4.0, digits(value))
+        writeln!(out, "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{value:.decimals$}</text>", LEFT - 6.0, y + 4.0)
             .ok();
     }
     let middle = f64::midpoint(TOP, HEIGHT - BOTTOM);

@@ -46,7 +46,8 @@ pub(crate) fn write(study: &Study, out: &Path, all: bool) -> anyhow::Result<Path
     let wanted = if all { columns(&trials.csv, |name| !named.iter().any(|known| known == name)) } else { Vec::new() };
     let wanted: Vec<String> = named.into_iter().chain(wanted).collect();
     let measures = Analysed::of(study, out, TRIALS, &trials.csv, &wanted, "trials")?;
-    let scores = SCORES.map(str::to_owned);
+    // Only those that were asked.
+    let scores = columns(&questionnaires.csv, |name| SCORES.contains(&name));
     let scores = Analysed::of(study, out, QUESTIONNAIRES, &questionnaires.csv, &scores, "questionnaires")?;
     let page = page(study, &trials, measures.as_ref(), scores.as_ref());
     output::write(out, PAGE, &page).context("the report")?;

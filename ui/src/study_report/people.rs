@@ -91,6 +91,10 @@ pub(super) fn remarks(study: &Study) -> String {
 /// Proficiency and learning curves.
 pub(super) fn learning(study: &Study) -> String {
     let all = study.learning();
+    // A task without an end, such as touching for a time, has no completion times.
+    if all.iter().all(|of| of.practice == 0 && of.times_s.iter().all(Option::is_none)) {
+        return String::new();
+    }
     let row = |of: &Learning| {
         let standing = of.standing.map_or_else(|| "-".to_owned(), standing_in_words);
         let last = of.times_s.iter().rev().find_map(|time_s| *time_s).map_or_else(|| "-".to_owned(), digits);

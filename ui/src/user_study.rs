@@ -1,6 +1,6 @@
 //! Trials of a user study in the loop: from the sealed condition to a rig, from a simulated person to a scene, from a run to a score.
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, anyhow, bail};
 use nima_core::impedance::Mode;
 use nima_machine::{
     config::{ConfigError, RigConfig, text},
@@ -101,12 +101,14 @@ pub(crate) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, lea
     (scene.hand.pace, scene.hand.tremor_m, scene.seed) = (hand.pace, hand.tremor_m, hand.seed);
     let task = scene.task.clone().context("the scene of the study has no task")?;
     let scene = scene.mounted_at(&rig)?;
-    let running = study.begin_trial(participant, true, &utc_now())?;
-    let rig = under(rig, running.condition())?;
-    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    let mut plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
     if !plan.may_engage() {
         bail!("scene \"{}\" cannot be engaged: the force at its tip is not known", plan.scene.name);
     }
+    let running = study.begin_trial(participant, true, &utc_now())?;
+    // The reason would tell the condition. A rig that was changed since `new` is the only one.
+    plan.rig = under(plan.rig, running.condition())
+        .map_err(|_| anyhow!("the rig of the study does not allow this condition any more: was its file changed?"))?;
     let recorded = running.session().map(|file| recording::begin(Destination::file(file), &plan, "virtual"));
     let (tap, recorder) = recorded.transpose()?.unzip();
     let (assembly, watched) = plan.watched()?;

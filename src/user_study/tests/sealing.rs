@@ -164,3 +164,18 @@ fn a_folder_with_something_in_it_is_left_alone() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     assert!(Study::read(folder.path()).unwrap_err().to_string().contains("study.toml"));
 }
+
+#[test]
+fn a_recording_that_a_power_cut_left_open_is_sealed_when_the_study_is_opened_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut study = made(folder.path(), &format!("record = true\n{TWO}"));
+    let running = study.begin_trial("P01", true, AT).unwrap();
+    let session = running.session().unwrap().to_owned();
+    fs::write(&session, "mode = anchored, delay 137.5").unwrap();
+    drop((running, study));
+    assert_eq!(found(folder.path()), ["anchored", "137.5"], "until then it can be read");
+    let mut study = again(folder.path());
+    assert!(!session.exists() && found(folder.path()).is_empty(), "{:?}", found(folder.path()));
+    study.unblind("A", "end", AT).unwrap();
+    assert_eq!(fs::read_to_string(session).unwrap(), "mode = anchored, delay 137.5");
+}

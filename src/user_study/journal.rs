@@ -66,9 +66,14 @@ impl Journal {
     /// Opens it for this program alone. A torn last line is cut off and told by an entry, which the caller finds among the contents.
     pub(crate) fn open(path: &Path, at: &str) -> Result<(Self, Vec<Entry>), StudyError> {
         let mut file = OpenOptions::new().read(true).write(true).open(path).map_err(StudyError::io(path))?;
+        let about = file.metadata().map_err(StudyError::io(path))?;
+        if !about.is_file() || about.len() > MOST {
+            let why = "it is no journal: no regular file, or too large".to_owned();
+            return Err(StudyError::Damaged { path: path.to_owned(), why });
+        }
         lock(&file, path)?;
         let mut bytes = Vec::new();
-        (&mut file).take(MOST).read_to_end(&mut bytes).map_err(StudyError::io(path))?;
+        file.read_to_end(&mut bytes).map_err(StudyError::io(path))?;
         let Contents { mut entries, torn, end } = parse(path, &bytes)?;
         let mut journal = Self { path: path.to_owned(), file, entries: entries.len() as u64, end };
         if torn > 0 {

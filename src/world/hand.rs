@@ -102,7 +102,10 @@ impl Hand {
     }
 
     /// The hand of `scene` with this task, which it repeats.
-    pub(super) fn with_task(scene: &Scene, task: Vec<Part>) -> Self {
+    pub(super) fn with_task(scene: &Scene, mut task: Vec<Part>) -> Self {
+        for part in &mut task {
+            part.way.seconds /= scene.hand.pace;
+        }
         let mut noise = Noise::new(scene.seed);
         let tremor_phase = std::array::from_fn(|_| std::array::from_fn(|_| TAU * noise.uniform()));
         let position_m = task.first().map_or_else(Vector3::zeros, |first| first.way.from_m);
@@ -312,6 +315,17 @@ mod tests {
         }
         assert!(fastest_m_s < 0.4, "{fastest_m_s} m/s");
         assert!(hand.led_m.is_none(), "it has taken up its task");
+    }
+
+    #[test]
+    fn twice_the_pace_takes_half_the_time() {
+        let mut scene = Scene::load("free_motion").unwrap();
+        scene.hand.tremor_m = 0.0;
+        let slow = Hand::new(&scene);
+        scene.hand.pace = 2.0;
+        let fast = Hand::new(&scene);
+        let seconds = |hand: &Hand| hand.task.iter().map(|part| part.way.seconds).sum::<f64>();
+        assert!(seconds(&slow) > 1.0 && (seconds(&slow) / seconds(&fast) - 2.0).abs() < 1e-12);
     }
 
     #[test]

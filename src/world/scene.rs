@@ -109,6 +109,22 @@ pub struct Hand {
     pub grip_stiffness_n_m: f64,
     /// Damping of the grip, N s/m.
     pub grip_damping_n_s_m: f64,
+    /// What the speed of all movements of the task is multiplied by: the pace of one person and another.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub pace: f64,
+}
+
+const fn one() -> f64 {
+    1.0
+}
+
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    clippy::float_cmp,
+    reason = "serde asks for a reference; the default itself"
+)]
+fn is_one(pace: &f64) -> bool {
+    *pace == one()
 }
 
 /// The leader device's measurable limits.
@@ -316,6 +332,7 @@ impl Scene {
         ranges.positive("hand.mass_kg", hand.mass_kg)?;
         ranges.positive("hand.grip_stiffness_n_m", hand.grip_stiffness_n_m)?;
         ranges.not_negative("hand.grip_damping_n_s_m", hand.grip_damping_n_s_m)?;
+        ranges.check("hand.pace", hand.pace, (0.1..=3.0).contains(&hand.pace), "from 0.1 to 3")?;
         self.validate_ground(&ranges)?;
         self.validate_objects(&ranges)?;
         if let Some(leader) = &self.leader {

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use nima_analysis::{AnalysisError, Interval, friedman::Friedman, mixed, signed_rank::Location};
 use serde::Serialize;
 
-pub use table::{Table, TableError};
+pub use table::{Table, TableError, Trial};
 
 use crate::Experiment;
 

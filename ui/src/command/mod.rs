@@ -23,8 +23,10 @@ mod sessions;
 mod setup;
 mod stretch;
 mod study;
+mod study_report;
 mod train;
 pub(crate) mod truth;
+mod user_study;
 
 use std::process::ExitCode;
 
@@ -82,6 +84,11 @@ enum Command {
     /// Run an experiment and print its results
     #[command(subcommand, arg_required_else_help = false)]
     Study(study::StudyCommand),
+    /// Run a user study: orders, blind conditions, trials, questionnaires
+    #[command(subcommand, arg_required_else_help = false)]
+    UserStudy(user_study::UserStudyCommand),
+    /// Analyse a user study: one page with tables and pictures, the tables as CSV, and a script for R
+    StudyReport(study_report::Arguments),
     /// Train models from data
     #[command(subcommand, arg_required_else_help = false)]
     Train(train::TrainCommand),
@@ -132,6 +139,8 @@ pub fn main() -> ExitCode {
         Command::Calibrate(calibrate) => calibrate::run(&calibrate),
         Command::Check(check) => check::run(&check),
         Command::Study(study) => study::run(&study),
+        Command::UserStudy(study) => user_study::run(&study),
+        Command::StudyReport(arguments) => study_report::run(&arguments),
         Command::Train(train) => train::run(&train),
         Command::Evaluate(evaluate) => evaluate::run(&evaluate),
     };

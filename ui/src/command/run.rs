@@ -2,7 +2,6 @@
 
 mod engaging;
 mod record;
-mod scoring;
 mod status;
 mod words;
 
@@ -30,7 +29,6 @@ use serde::Serialize;
 use self::{
     engaging::Engaging,
     record::{Recorded, Recording},
-    scoring::Scoring,
     status::{StatusLine, Troubles},
     words::in_words,
 };
@@ -46,6 +44,7 @@ use crate::{
     emulators::Emulators,
     leaving::Leave,
     line::{Line, LinkFigures, LinkNews},
+    scoring::Scoring,
     telling::tell,
     watching::Watching,
     words::{Remedy as _, drift as drift_in_words, link_rows},

@@ -1,9 +1,9 @@
 //! The report of sessions: one page that needs nothing beside it.
 
 mod arms;
-mod html;
+pub(crate) mod html;
 mod overall;
-mod plots;
+pub(crate) mod plots;
 
 use std::{
     fmt::Write as _,
@@ -18,7 +18,7 @@ use html::{escape, table};
 
 /// Name of the page in its folder.
 pub(crate) const PAGE: &str = "report.html";
-const STYLE: &str = include_str!("style.css");
+pub(crate) const STYLE: &str = include_str!("style.css");
 
 /// Reads the sessions and writes their page into this folder, which is made if it is missing.
 pub(crate) fn write(sessions: &[PathBuf], folder: &Path) -> anyhow::Result<PathBuf> {

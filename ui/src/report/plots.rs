@@ -47,7 +47,7 @@ fn begin(height: f64, name: &str) -> String {
 }
 
 /// A step of 1, 2 or 5 times a power of ten that divides a range into at most this many parts.
-fn step(range: f64, parts: f64) -> f64 {
+pub(crate) fn step(range: f64, parts: f64) -> f64 {
     let rough = (range / parts).max(1e-9);
     let power = 10.0_f64.powf(rough.log10().floor());
     [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|step| *step >= rough).unwrap_or(rough)

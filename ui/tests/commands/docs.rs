@@ -78,12 +78,13 @@ fn every_command_and_flag_in_the_pages_exists() {
         for command in commands(&text) {
             let words: Vec<String> = command.split_whitespace().skip(1).map(str::to_owned).collect();
             // Some commands have a second word of their own: `nima study faults`.
-            let depth =
-                if ["study", "train", "evaluate", "calibrate", "check", "department"].contains(&words[0].as_str()) {
-                    2
-                } else {
-                    1
-                };
+            let depth = if ["study", "train", "evaluate", "calibrate", "check", "department", "user-study"]
+                .contains(&words[0].as_str())
+            {
+                2
+            } else {
+                1
+            };
             let named: Vec<String> =
                 words.iter().take(depth).take_while(|word| !word.starts_with('-')).cloned().collect();
             if named.iter().any(|word| word.chars().any(char::is_uppercase)) {

@@ -21,4 +21,5 @@ mod score;
 mod sessions;
 mod study;
 mod two_machines;
+mod user_study;
 mod words;

@@ -6,13 +6,15 @@ use nima_session::scored::side_of;
 use nima_world::Watched;
 
 /// Scores from the first tick in which an arm is engaged.
-pub(super) struct Scoring {
+pub(crate) struct Scoring {
     scorer: Scorer,
     watched: Option<Watched>,
     /// The tick of both hands that is not yet complete.
     sample: Sample,
     newest_s: Option<f64>,
-    begun: bool,
+    begun_s: Option<f64>,
+    ended: bool,
+    limit_s: f64,
     /// Only the instruments of a peg transfer have jaws.
     has_jaws: bool,
     opening_rad: [Option<f64>; 2],
@@ -20,26 +22,28 @@ pub(super) struct Scoring {
 
 impl Scoring {
     /// For this task; `watched` tells what happens to the objects.
-    pub(super) fn new(task: &TaskFile, watched: Option<Watched>) -> Self {
+    pub(crate) fn new(task: &TaskFile, watched: Option<Watched>) -> Self {
         Self {
             scorer: Scorer::new(task),
             watched,
             sample: Sample::default(),
             newest_s: None,
-            begun: false,
+            begun_s: None,
+            ended: false,
+            limit_s: task.time_limit_s,
             has_jaws: task.kind == TaskKind::PegTransfer,
             opening_rad: [None; 2],
         }
     }
 
     /// Takes the next tick of a side.
-    pub(super) fn tick(&mut self, tick: &Tick) {
+    pub(crate) fn tick(&mut self, tick: &Tick) {
         let engaged = tick.state == LoopState::Engaged;
-        if !self.begun && engaged {
-            self.begun = true;
+        if self.begun_s.is_none() && engaged {
+            self.begun_s = Some(tick.t_s);
             self.scorer.happening(&Happening { t_s: tick.t_s, event: Event::Begun });
         }
-        if !self.begun {
+        if self.begun_s.is_none() {
             return;
         }
         if self.newest_s.is_some_and(|newest_s| tick.t_s > newest_s) {
@@ -57,6 +61,12 @@ impl Scoring {
         });
     }
 
+    /// Whether the task is done, or its time is over: what follows does not count.
+    pub(crate) fn is_over(&self) -> bool {
+        let lasts_s = self.begun_s.zip(self.newest_s).map_or(0.0, |(begun_s, newest_s)| newest_s - begun_s);
+        self.ended || lasts_s > self.limit_s
+    }
+
     fn pass_on(&mut self) {
         let sample = std::mem::take(&mut self.sample);
         if let Some(watched) = &self.watched {
@@ -64,6 +74,7 @@ impl Scoring {
                 self.opening_rad = moment.opening_rad.map(Some);
             }
             for happening in watched.happenings() {
+                self.ended |= happening.event == Event::Ended;
                 self.scorer.happening(&happening);
             }
         }
@@ -71,7 +82,7 @@ impl Scoring {
     }
 
     /// The score, if anything was engaged.
-    pub(super) fn end(mut self) -> Option<Score> {
+    pub(crate) fn end(mut self) -> Option<Score> {
         self.newest_s?;
         self.pass_on();
         Some(self.scorer.finish())

@@ -1,0 +1,85 @@
+//! What is compared.
+
+use std::fmt;
+
+use nima_core::impedance::{Mode, OwnMotion};
+use serde::{Deserialize, Serialize};
+
+/// Longest delay, ms.
+const DELAY_MAX_MS: f64 = 2000.0;
+/// Longest name, letters.
+const NAME_MAX: usize = 40;
+
+/// A condition: what the hand feels. Its `Debug` shows nothing, so that no log tells it by accident.
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Condition {
+    /// Its name, for the report after the unblinding.
+    pub name: String,
+    /// The hand feels no force at all; then there is neither mode nor gain.
+    #[serde(default)]
+    pub no_force: bool,
+    /// How the force is made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mode: Option<Mode>,
+    /// What it is multiplied by, above 0 to 1; 1 where it is not named.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<f64>,
+    /// One-way delay of the link, ms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub delay_ms: Option<f64>,
+    /// The motion from which the leader makes the force; the rig's where it is not named.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub own_motion: Option<OwnMotion>,
+}
+
+impl fmt::Debug for Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Condition")
+    }
+}
+
+impl Condition {
+    /// What is wrong with it, a line each.
+    pub(crate) fn mistakes(&self) -> Vec<String> {
+        let Self { name, no_force, mode, gain, delay_ms, own_motion } = self;
+        let mut wrong = Vec::new();
+        let usable = |letter: char| letter.is_alphanumeric() || " _-.+()%".contains(letter);
+        if name.trim() != name || name.is_empty() || name.chars().count() > NAME_MAX || !name.chars().all(usable) {
+            wrong.push(format!("its name has to be 1 to {NAME_MAX} letters, digits, spaces or any of _ - . + ( ) %"));
+        }
+        if name.chars().count() == 1 {
+            wrong.push("a name of one letter could be taken for a label: give it a longer one".to_owned());
+        }
+        if *no_force && (mode.is_some() || gain.is_some() || own_motion.is_some()) {
+            wrong.push("with no_force there is no mode, gain or own_motion: remove them or no_force".to_owned());
+        }
+        if !*no_force && mode.is_none() {
+            wrong.push("mode is missing; or say no_force = true".to_owned());
+        }
+        if !*no_force && delay_ms.is_none() {
+            wrong.push("delay_ms is missing; 0 is no delay".to_owned());
+        }
+        if delay_ms.is_some_and(|delay_ms| !(0.0..=DELAY_MAX_MS).contains(&delay_ms)) {
+            wrong.push(format!("delay_ms has to be from 0 to {DELAY_MAX_MS:.0}"));
+        }
+        if gain.is_some_and(|gain| !(gain > 0.0 && gain <= 1.0)) {
+            wrong.push("gain has to be above 0 and at most 1; without force say no_force = true".to_owned());
+        }
+        wrong
+    }
+
+    /// Whether the hand would feel the same.
+    pub(crate) fn feels_like(&self, other: &Self) -> bool {
+        let of =
+            |one: &Self| (one.no_force, one.mode, one.gain.unwrap_or(1.0), one.delay_ms.unwrap_or(0.0), one.own_motion);
+        of(self) == of(other)
+    }
+
+    /// Words that tell it: its name, its mode, its delay.
+    pub(crate) fn tells(&self) -> Vec<String> {
+        let delay = self.delay_ms.filter(|delay_ms| *delay_ms > 0.0).map(|delay_ms| format!("{delay_ms}"));
+        let mode = self.mode.map(|mode| mode.name().to_owned());
+        [Some(self.name.clone()), mode, delay].into_iter().flatten().collect()
+    }
+}

@@ -1,0 +1,40 @@
+//! Why something cannot be done with a study.
+
+use std::{io, path::PathBuf};
+
+use crate::file::Mistakes;
+
+/// What is wrong, where, and what to do.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum StudyError {
+    #[error(transparent)]
+    Mistakes(#[from] Mistakes),
+    #[error("{} is there already: choose a new folder for the study", .folder.display())]
+    Exists { folder: PathBuf },
+    #[error("{}: {source}", .path.display())]
+    Io { path: PathBuf, source: io::Error },
+    #[error("{}: {why}", .path.display())]
+    Damaged { path: PathBuf, why: String },
+    #[error("{}: line {line}: {why}", .path.display())]
+    Journal { path: PathBuf, line: u64, why: String },
+    #[error("the study in {} is open in another program: close it there first", .folder.display())]
+    InUse { folder: PathBuf },
+    #[error("the study was opened for reading only")]
+    ReadOnly,
+    #[error("there is no participant \"{name}\"; there are {known}")]
+    Participant { name: String, known: String },
+    #[error("{participant}: {asked} is not what comes next, which is {next}")]
+    NotNow { participant: String, asked: String, next: String },
+    #[error("{participant}: {why}")]
+    Answers { participant: String, why: String },
+    #[error("{0}")]
+    Refused(String),
+}
+
+impl StudyError {
+    pub(crate) fn io(path: impl Into<PathBuf>) -> impl FnOnce(io::Error) -> Self {
+        let path = path.into();
+        move |source| Self::Io { path, source }
+    }
+}

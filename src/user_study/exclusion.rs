@@ -1,0 +1,131 @@
+//! Rules by which trials and participants are left out, written before the first trial.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Plan, Progress, State};
+
+/// One rule.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExclusionRule {
+    /// The measure that it looks at.
+    pub measure: String,
+    /// When it applies.
+    pub is: Comparison,
+    /// What the measure is compared with, in its unit; not for `missing`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit: Option<f64>,
+    /// What is left out.
+    pub exclude: Excludes,
+    /// A participant is left out from so many such trials on; only for participants.
+    #[serde(default = "once", skip_serializing_if = "is_once")]
+    pub times: u32,
+}
+
+/// How a measure is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Comparison {
+    /// It is greater than the limit.
+    Above,
+    /// It is less than the limit.
+    Below,
+    /// It has no value.
+    Missing,
+}
+
+/// What a rule leaves out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Excludes {
+    /// This trial.
+    Trial,
+    /// All trials of the participant.
+    Participant,
+}
+
+/// What is left out of the analysis, and why.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Exclusion {
+    /// Of whom.
+    pub participant: String,
+    /// The number of the trial; all of them without one.
+    pub trial: Option<u32>,
+    /// The rule in words, or what a person gave as the reason.
+    pub why: String,
+}
+
+const fn once() -> u32 {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+const fn is_once(times: &u32) -> bool {
+    *times == 1
+}
+
+impl ExclusionRule {
+    pub(crate) fn mistakes(&self) -> Vec<String> {
+        let Self { is, limit, exclude, times, .. } = self;
+        let mut wrong = Vec::new();
+        match (is, limit) {
+            (Comparison::Missing, Some(_)) => wrong.push("with is = \"missing\" there is no limit".to_owned()),
+            (Comparison::Above | Comparison::Below, None) => wrong.push("limit is missing".to_owned()),
+            (_, Some(limit)) if !limit.is_finite() => wrong.push("limit has to be a number".to_owned()),
+            _ => {}
+        }
+        if *times == 0 || (*times > 1 && *exclude == Excludes::Trial) {
+            wrong.push("times has to be at least 1, and more than 1 only with exclude = \"participant\"".to_owned());
+        }
+        wrong
+    }
+
+    fn applies(&self, value: Option<f64>) -> bool {
+        match (self.is, value, self.limit) {
+            (Comparison::Above, Some(value), Some(limit)) => value > limit,
+            (Comparison::Below, Some(value), Some(limit)) => value < limit,
+            (Comparison::Missing, value, _) => value.is_none(),
+            _ => false,
+        }
+    }
+
+    /// The rule in words.
+    fn in_words(&self) -> String {
+        let Self { measure, is, limit, times, .. } = self;
+        let limit = limit.map_or_else(String::new, |limit| limit.to_string());
+        let what = match is {
+            Comparison::Above => format!("{measure} above {limit}"),
+            Comparison::Below => format!("{measure} below {limit}"),
+            Comparison::Missing => format!("{measure} missing"),
+        };
+        if *times > 1 { format!("{what} in {times} trials or more") } else { what }
+    }
+}
+
+/// What the rules and the people of the study leave out, in the order of participants and trials.
+pub(crate) fn exclusions(plan: &Plan, state: &State) -> Vec<Exclusion> {
+    let mut all = Vec::new();
+    for (participant, progress) in state.participants() {
+        let of = |trial: Option<u32>, why: String| Exclusion { participant: participant.to_owned(), trial, why };
+        all.extend(progress.excluded.iter().map(|why| of(None, why.clone())));
+        for rule in &plan.exclusion {
+            let met: Vec<u32> =
+                made(progress).filter(|(_, values)| rule.applies(values(&rule.measure))).map(|m| m.0).collect();
+            match rule.exclude {
+                Excludes::Trial => all.extend(met.iter().map(|trial| of(Some(*trial), rule.in_words()))),
+                Excludes::Participant if met.len() >= rule.times as usize => all.push(of(None, rule.in_words())),
+                Excludes::Participant => {}
+            }
+        }
+        all.extend(progress.excluded_trials.iter().map(|(trial, why)| of(Some(*trial), why.clone())));
+    }
+    all
+}
+
+/// The trials with a result, and their measures.
+fn made(progress: &Progress) -> impl Iterator<Item = (u32, impl Fn(&str) -> Option<f64>)> {
+    progress.trials.iter().filter_map(|made| {
+        let measures = made.measures.as_ref()?;
+        Some((made.number, |key: &str| measures.get(key).copied()))
+    })
+}

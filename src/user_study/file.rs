@@ -1,0 +1,321 @@
+//! The study file (TOML): what is compared, with whom, in which order, and under which rules.
+
+use std::{collections::BTreeSet, fmt};
+
+use nima_score::{Criterion, MEASURES, Side, TaskFile};
+use serde::{Deserialize, Serialize};
+
+use crate::{Condition, ExclusionRule, Label, Questionnaire, telling};
+
+/// Most participants, and most trials under a condition.
+const PARTICIPANTS_MAX: u32 = 200;
+const TRIALS_MAX: u32 = 100;
+const NAME_MAX: usize = 120;
+/// Most attempts at a trial.
+const ATTEMPTS_MAX: u32 = 10;
+/// Longest break that can be required, s.
+const BREAK_MAX_S: f64 = 7200.0;
+
+/// A study, as its TOML file says it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StudyFile {
+    /// Name for screen and report. In a blind study it must not name a condition.
+    pub name: String,
+    /// Scene: built-in name or file.
+    pub scene: String,
+    /// Rig: built-in name or file.
+    #[serde(default = "simulated")]
+    pub rig: String,
+    /// Only so many rings of the scene, for a short trial.
+    #[serde(default)]
+    pub rings: Option<u32>,
+    /// What is scored, in place of the scene's task.
+    #[serde(default)]
+    pub task: Option<TaskFile>,
+    /// The measure that decides, chosen before the first trial: a key of `docs/score.md`, with the hand where it has one.
+    pub primary: String,
+    /// Further measures of the report.
+    #[serde(default)]
+    pub secondary: Vec<String>,
+    /// How many participants.
+    pub participants: u32,
+    /// Trials under each condition.
+    pub trials: u32,
+    /// Nobody sees the conditions before the unblinding.
+    #[serde(default = "yes")]
+    pub blind: bool,
+    /// Repeats orders and labels. Whoever knows it and this file can find out the labels: leave it out in a real study.
+    #[serde(default)]
+    pub seed: Option<u64>,
+    /// Record every trial as a session; in a blind study encrypted when the trial is over.
+    #[serde(default)]
+    pub record: bool,
+    /// What happens after an interrupted trial.
+    #[serde(default)]
+    pub interrupted: Interrupted,
+    /// Attempts at a trial; after that it has no result.
+    #[serde(default = "three")]
+    pub attempts: u32,
+    /// What is compared.
+    pub conditions: Vec<Condition>,
+    /// The condition with which the others are compared, in the report after the unblinding.
+    #[serde(default)]
+    pub reference: Option<String>,
+    /// Practice before the first trial.
+    #[serde(default)]
+    pub practice: Option<Practice>,
+    /// Breaks.
+    #[serde(default)]
+    pub breaks: Option<Breaks>,
+    /// Questionnaires.
+    #[serde(default)]
+    pub questionnaires: Questionnaires,
+    /// Which trials and participants are left out of the analysis.
+    #[serde(default)]
+    pub exclusion: Vec<ExclusionRule>,
+}
+
+/// What happens after a trial that was interrupted or given up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Interrupted {
+    /// The trial is done again from its beginning, under the same condition, up to the number of attempts.
+    #[default]
+    Repeat,
+    /// The session resumes with the next trial; the interrupted one has no result.
+    Resume,
+}
+
+/// Practice to criterion.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Practice {
+    /// Name of the condition that is practised; without it each in turn, in the participant's order.
+    #[serde(default)]
+    pub under: Option<String>,
+    /// What happens if the criterion was not met in the most trials that are allowed.
+    #[serde(default)]
+    pub not_reached: NotReached,
+    /// When practice is over.
+    pub criterion: Criterion,
+}
+
+/// What happens to a participant who did not reach the criterion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NotReached {
+    /// The trials follow all the same.
+    #[default]
+    GoOn,
+    /// The participant is excluded.
+    Exclude,
+}
+
+/// When a break is due.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Breaks {
+    /// After so many trials, practice included, since the last break.
+    pub after_trials: u32,
+    /// For at least so long, s.
+    pub least_s: f64,
+}
+
+/// Which questionnaires are filled in when.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Questionnaires {
+    /// After the last trial under each condition.
+    pub after_condition: Vec<Questionnaire>,
+    /// At the end.
+    pub at_end: Vec<Questionnaire>,
+}
+
+/// Everything that is wrong with a study file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mistakes(pub Vec<String>);
+
+impl fmt::Display for Mistakes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0.as_slice() {
+            [one] => write!(f, "the study file has a mistake: {one}"),
+            several => write!(f, "the study file has {} mistakes: {}", several.len(), several.join("; ")),
+        }
+    }
+}
+
+impl std::error::Error for Mistakes {}
+
+fn simulated() -> String {
+    "simulated".to_owned()
+}
+
+const fn yes() -> bool {
+    true
+}
+
+const fn three() -> u32 {
+    3
+}
+
+/// Whether there is such a measure: `completion_time_s`, `peak_force_n_right`.
+pub(crate) fn is_measure(key: &str) -> bool {
+    measure_keys().any(|known| known == key)
+}
+
+/// The keys of all measures, in the order in which they are shown.
+pub(crate) fn measure_keys() -> impl Iterator<Item = String> {
+    MEASURES.iter().flat_map(|definition| {
+        let of = |side: Side| format!("{}_{}", definition.id, side.name());
+        if definition.per_hand { Side::ALL.map(of).to_vec() } else { vec![definition.id.to_owned()] }
+    })
+}
+
+impl StudyFile {
+    /// Reads and checks the text of a study file.
+    ///
+    /// # Errors
+    /// [`Mistakes`]: every value that is wrong, or why the text cannot be read at all.
+    pub fn from_toml(text: &str) -> Result<Self, Mistakes> {
+        let file: Self = toml::from_str(text).map_err(|error| {
+            let line = error.span().map_or(1, |span| text[..span.start.min(text.len())].matches('\n').count() + 1);
+            Mistakes(vec![format!("line {line}: {}", error.message().lines().collect::<Vec<_>>().join(" "))])
+        })?;
+        file.check()?;
+        Ok(file)
+    }
+
+    /// Whether every value can be used.
+    ///
+    /// # Errors
+    /// [`Mistakes`]: all that are wrong.
+    pub fn check(&self) -> Result<(), Mistakes> {
+        let mut wrong = Vec::new();
+        self.check_numbers(&mut wrong);
+        self.check_conditions(&mut wrong);
+        self.check_measures(&mut wrong);
+        self.check_practice(&mut wrong);
+        for (key, asked) in
+            [("after_condition", &self.questionnaires.after_condition), ("at_end", &self.questionnaires.at_end)]
+        {
+            let twice = asked.iter().enumerate().find(|(at, one)| asked[..*at].contains(one));
+            wrong.extend(twice.map(|(_, one)| format!("questionnaires.{key}: {} is there twice", one.name())));
+        }
+        if self.blind {
+            wrong.extend(self.told_by_name());
+        }
+        if wrong.is_empty() { Ok(()) } else { Err(Mistakes(wrong)) }
+    }
+
+    fn check_numbers(&self, wrong: &mut Vec<String>) {
+        let Self { name, participants, trials, attempts, rings, task, breaks, .. } = self;
+        if name.trim().is_empty() || name.chars().count() > NAME_MAX || name.chars().any(char::is_control) {
+            wrong.push(format!("name has to be one line of 1 to {NAME_MAX} letters"));
+        }
+        let mut within = |key: &str, value: u32, most: u32| {
+            if !(1..=most).contains(&value) {
+                wrong.push(format!("{key} = {value}: it has to be from 1 to {most}"));
+            }
+        };
+        within("participants", *participants, PARTICIPANTS_MAX);
+        within("trials", *trials, TRIALS_MAX);
+        within("attempts", *attempts, ATTEMPTS_MAX);
+        within("rings", rings.unwrap_or(1), 100);
+        within("breaks.after_trials", breaks.map_or(1, |breaks| breaks.after_trials), 1000);
+        let least_s = breaks.map_or(0.0, |breaks| breaks.least_s);
+        if !(0.0..=BREAK_MAX_S).contains(&least_s) {
+            wrong.push(format!("breaks.least_s = {least_s}: it has to be from 0 to {BREAK_MAX_S:.0} s"));
+        }
+        if let Some(Err(error)) = task.as_ref().map(TaskFile::check) {
+            wrong.push(format!("task: {error}"));
+        }
+    }
+
+    fn check_conditions(&self, wrong: &mut Vec<String>) {
+        let conditions = &self.conditions;
+        if !(2..=Label::MOST).contains(&conditions.len()) {
+            wrong.push(format!("there are {} conditions: it takes 2 to {}", conditions.len(), Label::MOST));
+        }
+        for (at, condition) in conditions.iter().enumerate() {
+            let of = |mistake: String| format!("condition {} (\"{}\"): {mistake}", at + 1, shown(&condition.name));
+            wrong.extend(condition.mistakes().into_iter().map(of));
+            for before in &conditions[..at] {
+                let names = [&before.name, &condition.name].map(|name| shown(name));
+                if before.name.to_lowercase() == condition.name.to_lowercase() {
+                    wrong.push(format!("two conditions are called \"{}\"", names[0]));
+                } else if before.feels_like(condition) {
+                    wrong.push(format!("conditions \"{}\" and \"{}\" are the same", names[0], names[1]));
+                }
+            }
+        }
+        let known = |name: &String| conditions.iter().any(|condition| condition.name == *name);
+        let under = self.practice.as_ref().and_then(|practice| practice.under.as_ref());
+        for (key, name) in [("reference", self.reference.as_ref()), ("practice.under", under)] {
+            if let Some(name) = name.filter(|name| !known(name)) {
+                wrong.push(format!("{key}: there is no condition \"{}\"", shown(name)));
+            }
+        }
+    }
+
+    fn check_measures(&self, wrong: &mut Vec<String>) {
+        let measures: Vec<&String> = std::iter::once(&self.primary).chain(&self.secondary).collect();
+        let ruled = self.exclusion.iter().map(|rule| &rule.measure);
+        for key in measures.iter().copied().chain(ruled) {
+            if !is_measure(key) {
+                let key = shown(key);
+                wrong.push(format!(
+                    "there is no measure \"{key}\": docs/score.md lists them; one of a hand ends with _left or _right"
+                ));
+            }
+        }
+        let mut seen = BTreeSet::new();
+        let twice = measures.iter().find(|key| !seen.insert(key.as_str()));
+        wrong.extend(twice.map(|key| format!("measure {key} is there twice")));
+        for (at, rule) in self.exclusion.iter().enumerate() {
+            let of = |mistake: String| format!("exclusion {}: {mistake}", at + 1);
+            wrong.extend(rule.mistakes().into_iter().map(of));
+            if self.blind && telling::tells(&rule.measure) {
+                wrong.push(of(format!("{} tells the condition, so a blind study cannot judge by it", rule.measure)));
+            }
+        }
+    }
+
+    fn check_practice(&self, wrong: &mut Vec<String>) {
+        let Some(Practice { criterion, .. }) = &self.practice else { return };
+        let Criterion { time_s, consecutive, additional, max_trials, .. } = *criterion;
+        if !(time_s > 0.0 && time_s <= 1200.0) {
+            wrong.push(format!("practice.criterion.time_s = {time_s}: it has to be above 0 and at most 1200 s"));
+        }
+        if consecutive == 0 || max_trials == 0 || max_trials > 200 {
+            wrong.push("practice.criterion: consecutive has to be at least 1, max_trials from 1 to 200".to_owned());
+        }
+        if consecutive.saturating_add(additional) > max_trials {
+            wrong.push(format!(
+                "practice.criterion: {consecutive} in a row and {additional} more do not fit into {max_trials} trials"
+            ));
+        }
+    }
+
+    /// A name that everybody reads must not say what is compared with what number.
+    fn told_by_name(&self) -> Option<String> {
+        let words = |text: &str| format!(" {} ", split(text).join(" "));
+        let name = words(&self.name);
+        let told: Vec<String> = self.conditions.iter().flat_map(Condition::tells).collect();
+        let told = told.iter().find(|word| !word.trim().is_empty() && name.contains(&words(word)))?;
+        Some(format!(
+            "name: it contains \"{}\" of a condition, and everybody reads it: choose a neutral one",
+            shown(told)
+        ))
+    }
+}
+
+/// Words and numbers of a text, in small letters.
+fn split(text: &str) -> Vec<String> {
+    let parts = text.split(|letter: char| !letter.is_alphanumeric() && letter != '.');
+    parts.filter(|part| !part.is_empty()).map(|part| part.trim_matches('.').to_lowercase()).collect()
+}
+
+fn shown(text: &str) -> String {
+    nima_files::quoted(text)
+}

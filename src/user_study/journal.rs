@@ -1,0 +1,117 @@
+//! The journal of a study: one line of JSON for each event, only ever appended to.
+//!
+//! A line counts when it ends with a line break and is on the disk; [`Journal::append`] returns after that. What a power cut leaves behind
+//! the last line break was never confirmed: it is dropped and told, and nothing before it is touched.
+
+use std::{
+    fs::{File, OpenOptions, TryLockError},
+    io::{self, Read as _, Seek as _, SeekFrom, Write as _},
+    path::{Path, PathBuf},
+};
+
+use crate::{Entry, Event, StudyError};
+
+/// Largest journal that is read, bytes.
+const MOST: u64 = 256 << 20;
+
+/// An open journal.
+#[derive(Debug)]
+pub(crate) struct Journal {
+    path: PathBuf,
+    file: File,
+    entries: u64,
+    /// Where the next line begins.
+    end: u64,
+}
+
+/// What stands in a journal.
+#[derive(Debug)]
+pub(crate) struct Contents {
+    pub(crate) entries: Vec<Entry>,
+    /// Bytes behind the last line break.
+    pub(crate) torn: u64,
+    end: u64,
+}
+
+/// Reads a journal and leaves it as it is.
+pub(crate) fn read(path: &Path) -> Result<Contents, StudyError> {
+    let bytes = nima_files::read(path, MOST).map_err(StudyError::io(path))?;
+    parse(path, &bytes)
+}
+
+fn parse(path: &Path, bytes: &[u8]) -> Result<Contents, StudyError> {
+    let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+    let mut entries = Vec::new();
+    for (line, text) in (1..).zip(bytes[..end].split_inclusive(|byte| *byte == b'\n')) {
+        let damaged = |why: String| StudyError::Journal { path: path.to_owned(), line, why };
+        let entry: Entry = serde_json::from_slice(text)
+            .map_err(|error| damaged(format!("it is no line of a journal ({error}): restore the file from a copy")))?;
+        if entry.n != line {
+            return Err(damaged(format!("it has number {}: lines are missing or were moved", entry.n)));
+        }
+        entries.push(entry);
+    }
+    Ok(Contents { entries, torn: (bytes.len() - end) as u64, end: end as u64 })
+}
+
+impl Journal {
+    /// Makes an empty one.
+    pub(crate) fn create(path: &Path) -> Result<Self, StudyError> {
+        let file =
+            OpenOptions::new().read(true).write(true).create_new(true).open(path).map_err(StudyError::io(path))?;
+        lock(&file, path)?;
+        Ok(Self { path: path.to_owned(), file, entries: 0, end: 0 })
+    }
+
+    /// Opens it for this program alone. A torn last line is cut off and told by an entry, which the caller finds among the contents.
+    pub(crate) fn open(path: &Path, at: &str) -> Result<(Self, Vec<Entry>), StudyError> {
+        let mut file = OpenOptions::new().read(true).write(true).open(path).map_err(StudyError::io(path))?;
+        let about = file.metadata().map_err(StudyError::io(path))?;
+        if !about.is_file() || about.len() > MOST {
+            let why = "it is no journal: no regular file, or too large".to_owned();
+            return Err(StudyError::Damaged { path: path.to_owned(), why });
+        }
+        lock(&file, path)?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).map_err(StudyError::io(path))?;
+        let Contents { mut entries, torn, end } = parse(path, &bytes)?;
+        let mut journal = Self { path: path.to_owned(), file, entries: entries.len() as u64, end };
+        if torn > 0 {
+            journal.file.set_len(end).map_err(StudyError::io(path))?;
+            entries.push(journal.append(at, Event::TornLineDropped { bytes: torn })?);
+        }
+        Ok((journal, entries))
+    }
+
+    /// Writes a line; it is on the disk when this returns.
+    pub(crate) fn append(&mut self, at: &str, event: Event) -> Result<Entry, StudyError> {
+        let entry = Entry { n: self.entries + 1, at: at.to_owned(), event };
+        let written = self.write(&entry);
+        if written.is_err() {
+            // Half a line would stand before the next one.
+            self.file.set_len(self.end).ok();
+        }
+        self.end += written.map_err(StudyError::io(&self.path))?;
+        self.entries += 1;
+        Ok(entry)
+    }
+
+    fn write(&mut self, entry: &Entry) -> io::Result<u64> {
+        let mut line = serde_json::to_vec(entry)?;
+        line.push(b'\n');
+        self.file.seek(SeekFrom::Start(self.end))?;
+        self.file.write_all(&line)?;
+        self.file.sync_data()?;
+        Ok(line.len() as u64)
+    }
+}
+
+fn lock(file: &File, path: &Path) -> Result<(), StudyError> {
+    match file.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => {
+            Err(StudyError::InUse { folder: path.parent().unwrap_or_else(|| Path::new(".")).to_owned() })
+        }
+        Err(TryLockError::Error(source)) => Err(StudyError::Io { path: path.to_owned(), source }),
+    }
+}

@@ -1,0 +1,42 @@
+//! How a participant learns: proficiency in practice, and the curve over all trials.
+
+use nima_score::{LearningCurve, Standing};
+use serde::Serialize;
+
+use crate::{Progress, State};
+
+/// The learning of one participant.
+#[derive(Clone, Debug, Serialize)]
+pub struct Learning {
+    /// Whose.
+    pub participant: String,
+    /// Practice trials.
+    pub practice: u32,
+    /// Where practice stands; nothing without practice.
+    pub standing: Option<Standing>,
+    /// Completion times of all trials in order, practice first, s; nothing for one that was not completed.
+    pub times_s: Vec<Option<f64>>,
+    /// The curve through them, if there are enough.
+    pub curve: Option<LearningCurve>,
+}
+
+/// Of everybody who has begun.
+pub(crate) fn learning(state: &State) -> Vec<Learning> {
+    let began = state.participants().filter(|(_, progress)| progress.began);
+    began.map(|(participant, progress)| of(participant, progress)).collect()
+}
+
+fn of(participant: &str, progress: &Progress) -> Learning {
+    let time_s = |made: &crate::Made| {
+        let time_s = made.measures.as_ref().and_then(|measures| measures.get("completion_time_s").copied());
+        time_s.unwrap_or(f64::NAN)
+    };
+    let times_s: Vec<f64> = progress.practice_s.iter().copied().chain(progress.trials.iter().map(time_s)).collect();
+    Learning {
+        participant: participant.to_owned(),
+        practice: progress.practice_s.len() as u32,
+        standing: progress.practice.as_ref().map(nima_score::Proficiency::standing),
+        curve: LearningCurve::fit(&times_s),
+        times_s: times_s.into_iter().map(|time_s| Some(time_s).filter(|time_s| time_s.is_finite())).collect(),
+    }
+}

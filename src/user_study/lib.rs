@@ -1,0 +1,81 @@
+//! User studies as a laboratory runs them: who does what next, under which condition, blind.
+//!
+//! [`StudyFile`] is what a person writes. [`Study::create`] makes a folder of it: pseudonyms, an order for each participant ([`order`]), labels
+//! A, B, ... in place of the conditions, and the assignment of labels to conditions, encrypted and committed to by its hash. Everything that
+//! happens goes into the folder's journal, a line per event, on the disk before the call returns. [`State`] (what is next for P03?) is a pure
+//! function of [`Plan`] and journal. Questionnaires are scored as published ([`Questionnaire`]); [`Study::trials`] gives the table for the
+//! analysis.
+//!
+//! This crate knows no loop, window, thread or clock: times are handed in as text. Whoever runs a trial asks [`Study::begin_trial`] for its
+//! condition, which nothing here prints.
+//!
+//! ```
+//! use nima_user_study::{Step, Study, StudyFile};
+//!
+//! let text = "
+//!     name = 'Two kinds of feedback'
+//!     scene = 'rings'
+//!     primary = 'completion_time_s'
+//!     participants = 4
+//!     trials = 2
+//!     [[conditions]]
+//!     name = 'reflection'
+//!     mode = 'dfr'
+//!     delay_ms = 50.0
+//!     [[conditions]]
+//!     name = 'without'
+//!     no_force = true
+//! ";
+//! let file = StudyFile::from_toml(text)?;
+//! let folder = tempfile::tempdir()?;
+//! let place = folder.path().join("study");
+//! let study = Study::create(&place, &file, "name = 'scene'", "2026-01-01T09:00:00Z")?;
+//! assert!(matches!(study.next("P01")?, Step::Trial { number: 1, attempt: 1, .. }));
+//! let public = std::fs::read_to_string(place.join("study.toml"))?;
+//! assert!(!public.contains("dfr") && public.contains(&study.plan().commitment));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![warn(missing_docs)]
+
+mod answers;
+mod condition;
+mod entry;
+mod error;
+mod exclusion;
+mod file;
+mod journal;
+mod label;
+mod learning;
+pub mod order;
+mod plan;
+mod progress;
+mod questionnaire;
+mod seal;
+mod secret;
+pub mod simulated;
+mod state;
+mod step;
+mod study;
+mod table;
+mod telling;
+#[cfg(test)]
+mod tests;
+
+pub use answers::{Answers, Ratings};
+pub use condition::Condition;
+pub use entry::{Ending, Entry, Event, Measures, Phase, TrialId};
+pub use error::StudyError;
+pub use exclusion::{Comparison, Excludes, Exclusion, ExclusionRule};
+pub use file::{Breaks, Interrupted, Mistakes, NotReached, Practice, Questionnaires, StudyFile};
+pub use label::Label;
+pub use learning::Learning;
+pub use plan::{Participant, Plan, Practising};
+pub use progress::{Made, Progress};
+pub use questionnaire::{
+    PAIRS, Questionnaire, REALISM_ITEM, SUS_ITEMS, TLX_SCALES, TlxScale, of_sus, raw_tlx, weighted_tlx,
+};
+pub use secret::Opened;
+pub use state::{State, Unblinding};
+pub use step::{Done, Step};
+pub use study::{JOURNAL, Running, Study};
+pub use table::Table;

@@ -1,0 +1,146 @@
+//! What everybody may know of a study: `study.toml` in its folder.
+
+use nima_score::Criterion;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    Breaks, ExclusionRule, Interrupted, Label, NotReached, Practice, Questionnaires, StudyError, StudyFile, order, seal,
+};
+
+/// Of the form of the file.
+const VERSION: u32 = 1;
+
+/// A study without its conditions. What comes next follows from it and the journal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plan {
+    version: u32,
+    /// Name for screen and report.
+    pub name: String,
+    /// Rig: built-in name or file.
+    pub rig: String,
+    /// The measure that decides.
+    pub primary: String,
+    /// Further measures of the report.
+    pub secondary: Vec<String>,
+    /// Trials under each condition.
+    pub trials: u32,
+    /// Whether nobody sees the conditions before the unblinding.
+    pub blind: bool,
+    /// Whether trials are recorded.
+    pub record: bool,
+    /// What happens after an interrupted trial.
+    pub interrupted: Interrupted,
+    /// Attempts at a trial.
+    pub attempts: u32,
+    /// The labels of the conditions.
+    pub labels: Vec<Label>,
+    /// BLAKE2b-256 of the sealed assignment, in hexadecimal digits: proves later that nobody changed it.
+    pub commitment: String,
+    /// When practice is over.
+    pub practice: Option<Practising>,
+    /// When breaks are due.
+    pub breaks: Option<Breaks>,
+    /// Which questionnaires are filled in when.
+    pub questionnaires: Questionnaires,
+    /// Rules of exclusion.
+    pub exclusion: Vec<ExclusionRule>,
+    /// The participants.
+    pub participants: Vec<Participant>,
+}
+
+/// Practice, without its condition.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "as in the study file")]
+pub struct Practising {
+    pub not_reached: NotReached,
+    pub criterion: Criterion,
+}
+
+/// One who takes part, by a pseudonym.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Participant {
+    /// P01, P02, ...
+    pub name: String,
+    /// The labels in the order in which this one meets them.
+    pub order: Vec<Label>,
+}
+
+impl Plan {
+    /// Of a file that was checked.
+    pub(crate) fn draw(file: &StudyFile, commitment: String) -> std::io::Result<Self> {
+        let labels = Label::first(file.conditions.len());
+        let seed = match file.seed {
+            Some(seed) => seed,
+            None => u64::from_le_bytes(seal::random()?),
+        };
+        let orders = order::orders(labels.len(), file.participants as usize, seed);
+        let digits = file.participants.to_string().len().max(2);
+        let participant = |(at, order): (usize, Vec<usize>)| Participant {
+            name: format!("P{:0digits$}", at + 1),
+            order: order.into_iter().map(|place| labels[place]).collect(),
+        };
+        let participants = orders.into_iter().enumerate().map(participant).collect();
+        let practising =
+            |practice: &Practice| Practising { not_reached: practice.not_reached, criterion: practice.criterion };
+        Ok(Self {
+            version: VERSION,
+            name: file.name.clone(),
+            rig: file.rig.clone(),
+            primary: file.primary.clone(),
+            secondary: file.secondary.clone(),
+            trials: file.trials,
+            blind: file.blind,
+            record: file.record,
+            interrupted: file.interrupted,
+            attempts: file.attempts,
+            labels: labels.clone(),
+            commitment,
+            practice: file.practice.as_ref().map(practising),
+            breaks: file.breaks,
+            questionnaires: file.questionnaires.clone(),
+            exclusion: file.exclusion.clone(),
+            participants,
+        })
+    }
+
+    pub(crate) fn parse(text: &str) -> Result<Self, String> {
+        let plan: Self = toml::from_str(text).map_err(|error| error.message().lines().collect::<Vec<_>>().join(" "))?;
+        match plan.version {
+            VERSION => Ok(plan),
+            other => {
+                Err(format!("it has version {other}, and this program knows version {VERSION}: use a newer program"))
+            }
+        }
+    }
+
+    /// The participant of this name.
+    ///
+    /// # Errors
+    /// [`StudyError::Participant`] names those that there are.
+    pub fn participant(&self, name: &str) -> Result<&Participant, StudyError> {
+        let known = || match self.participants.as_slice() {
+            [first, .., last] => format!("{} to {}", first.name, last.name),
+            few => few.iter().map(|one| one.name.clone()).collect::<Vec<_>>().join(", "),
+        };
+        let found = self.participants.iter().find(|participant| participant.name == name);
+        found.ok_or_else(|| StudyError::Participant { name: nima_files::quoted(name), known: known() })
+    }
+
+    /// Trials of each participant, practice not counted.
+    pub fn trials_of_each(&self) -> u32 {
+        self.trials * self.labels.len() as u32
+    }
+
+    /// The label of a trial, counted from 1; `None` beyond the last one.
+    pub(crate) fn label(&self, participant: &Participant, number: u32) -> Option<Label> {
+        participant.order.get((number.checked_sub(1)? / self.trials.max(1)) as usize).copied()
+    }
+
+    /// Rows of the design that balances the orders; the number of participants should be a multiple of it.
+    pub fn rows(&self) -> usize {
+        order::williams(self.labels.len()).len()
+    }
+}

@@ -1,0 +1,207 @@
+//! What one participant has done, and what follows from it.
+
+use std::collections::BTreeMap;
+
+use nima_score::{Proficiency, Standing};
+use serde::Serialize;
+
+use crate::{
+    Answers, Done, Ending, Interrupted, Label, Measures, NotReached, Participant, Phase, Plan, Questionnaire, Step,
+    TrialId,
+};
+
+/// A trial that counts and is over.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Made {
+    /// Its number, from 1.
+    pub number: u32,
+    /// What stands for its condition.
+    pub label: Label,
+    /// The attempt that counts, or the last one.
+    pub attempt: u32,
+    /// How it ended; `None` without a result.
+    pub ending: Option<Ending>,
+    /// Its measures; `None` without a result.
+    pub measures: Option<Measures>,
+    /// Measures that tell the condition, encrypted.
+    #[serde(skip)]
+    pub withheld: Option<String>,
+    /// By a simulated person.
+    pub simulated: bool,
+    /// Made after the unblinding of a blind study.
+    pub unblinded: bool,
+}
+
+/// What one participant has done.
+#[derive(Clone, Debug, Default)]
+pub struct Progress {
+    /// Has begun.
+    pub began: bool,
+    /// Times of the practice trials, s; NaN for one that was not completed.
+    pub practice_s: Vec<f64>,
+    /// Practice, if there is any.
+    pub practice: Option<Proficiency>,
+    /// The trials that are over, in order.
+    pub trials: Vec<Made>,
+    /// Breaks taken, s.
+    pub breaks_s: Vec<f64>,
+    /// Answers, each with the condition that they are about, and whether they were simulated.
+    pub answers: Vec<(Option<Label>, Answers, bool)>,
+    /// Why the participant is excluded.
+    pub excluded: Option<String>,
+    /// Trials that a person left out, and why.
+    pub excluded_trials: BTreeMap<u32, String>,
+    /// Attempts that were interrupted or given up, in all.
+    pub interruptions: u32,
+    /// Attempts at the present trial that are over.
+    attempts: u32,
+    open: Option<(TrialId, bool)>,
+    since_break: u32,
+}
+
+impl Progress {
+    /// Before the first step.
+    pub(crate) fn of(plan: &Plan) -> Self {
+        Self { practice: plan.practice.map(|practice| Proficiency::new(practice.criterion)), ..Self::default() }
+    }
+
+    pub(crate) fn rest(&mut self, seconds: f64) {
+        self.breaks_s.push(seconds);
+        self.since_break = 0;
+    }
+
+    /// The trial that has begun and not ended.
+    pub fn open(&self) -> Option<TrialId> {
+        self.open.map(|(trial, _)| trial)
+    }
+
+    /// Trials made since the last break, practice included.
+    pub const fn since_break(&self) -> u32 {
+        self.since_break
+    }
+
+    pub(crate) fn next(&self, plan: &Plan, participant: &Participant) -> Step {
+        if let Some((trial, _)) = self.open {
+            return Step::Running { trial };
+        }
+        if self.excluded.is_some() {
+            return Step::Done { why: Done::Excluded };
+        }
+        let attempt = self.attempts + 1;
+        let made = self.trials.len() as u32;
+        let practises = made == 0 && self.practice.as_ref().is_some_and(practises);
+        if !practises && let Some(asked) = self.asked(plan, participant, made) {
+            return asked;
+        }
+        let number = made + 1;
+        let step = if practises {
+            Step::Practice { number: self.practice_s.len() as u32 + 1, attempt }
+        } else {
+            match plan.label(participant, number) {
+                Some(label) => Step::Trial { number, attempt, label },
+                None => return Step::Done { why: Done::Finished },
+            }
+        };
+        // A trial that is repeated follows at once; the break is due after it.
+        match plan.breaks {
+            Some(breaks) if attempt == 1 && self.since_break >= breaks.after_trials => {
+                Step::Break { least_s: breaks.least_s }
+            }
+            _ => step,
+        }
+    }
+
+    /// The questionnaire that is due after so many trials.
+    fn asked(&self, plan: &Plan, participant: &Participant, made: u32) -> Option<Step> {
+        let is_answered = |questionnaire: Questionnaire, after: Option<Label>| {
+            self.answers.iter().any(|(of, answers, _)| answers.questionnaire() == questionnaire && *of == after)
+        };
+        let due = |all: &[Questionnaire], after: Option<Label>| {
+            let next = all.iter().copied().find(|questionnaire| !is_answered(*questionnaire, after))?;
+            Some(Step::Questionnaire { questionnaire: next, after })
+        };
+        let is_block_over = made > 0 && made.is_multiple_of(plan.trials);
+        let after = plan.label(participant, made).filter(|_| is_block_over);
+        let about = after.and_then(|label| due(&plan.questionnaires.after_condition, Some(label)));
+        about.or_else(|| due(&plan.questionnaires.at_end, None).filter(|_| made == plan.trials_of_each()))
+    }
+
+    pub(crate) fn begin(
+        &mut self,
+        plan: &Plan,
+        participant: &Participant,
+        trial: TrialId,
+        label: Option<Label>,
+        simulated: bool,
+    ) -> Result<(), String> {
+        let next = self.next(plan, participant);
+        if next.trial() != Some((trial, label)) {
+            let TrialId { phase, number, attempt } = trial;
+            let what = if phase == Phase::Practice { "practice trial" } else { "trial" };
+            return Err(format!("{} began {what} {number}, attempt {attempt}, but next is {next}", participant.name));
+        }
+        self.open = Some((trial, simulated));
+        Ok(())
+    }
+
+    pub(crate) fn close(&mut self, trial: TrialId, participant: &str) -> Result<bool, String> {
+        match self.open.take() {
+            Some((open, simulated)) if open == trial => Ok(simulated),
+            _ => Err(format!("trial {} of {participant} ended, but it had not begun", trial.number)),
+        }
+    }
+
+    pub(crate) fn end(
+        &mut self,
+        plan: &Plan,
+        participant: &Participant,
+        trial: TrialId,
+        result: Option<(Ending, Measures, Option<String>)>,
+        simulated: bool,
+        unblinded: bool,
+    ) {
+        self.attempts = 0;
+        self.since_break += 1;
+        if trial.phase == Phase::Practice {
+            return self.practised(plan, result);
+        }
+        let Some(label) = plan.label(participant, trial.number) else { return };
+        let (ending, measures, withheld) =
+            result.map_or((None, None, None), |(ending, measures, withheld)| (Some(ending), Some(measures), withheld));
+        let TrialId { number, attempt, .. } = trial;
+        self.trials.push(Made { number, label, attempt, ending, measures, withheld, simulated, unblinded });
+    }
+
+    fn practised(&mut self, plan: &Plan, result: Option<(Ending, Measures, Option<String>)>) {
+        let measures = result.map(|(_, measures, _)| measures).unwrap_or_default();
+        let time_s = measures.get("completion_time_s").copied();
+        let drops = measures.get("drops_out_of_view").copied().unwrap_or(0.0);
+        self.practice_s.push(time_s.unwrap_or(f64::NAN));
+        let standing = self.practice.as_mut().map(|practice| practice.take_trial(time_s, drops as u32));
+        let excludes = plan.practice.is_some_and(|practice| practice.not_reached == NotReached::Exclude);
+        if standing == Some(Standing::GivenUp) && excludes {
+            self.excluded.get_or_insert_with(|| "the criterion of practice was not reached".to_owned());
+        }
+    }
+
+    /// Done again until the attempts are over; by the other rule a trial that counts is over at once.
+    pub(crate) fn interrupt(
+        &mut self,
+        plan: &Plan,
+        participant: &Participant,
+        trial: TrialId,
+        simulated: bool,
+        unblinded: bool,
+    ) {
+        self.interruptions += 1;
+        self.attempts += 1;
+        let resumes = plan.interrupted == Interrupted::Resume && trial.phase == Phase::Trial;
+        if resumes || self.attempts >= plan.attempts {
+            self.end(plan, participant, trial, None, simulated, unblinded);
+        }
+    }
+}
+
+fn practises(practice: &Proficiency) -> bool {
+    matches!(practice.standing(), Standing::Practising { .. } | Standing::Confirming { .. })
+}

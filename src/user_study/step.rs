@@ -1,0 +1,94 @@
+//! What a participant does next.
+
+use serde::Serialize;
+
+use crate::{Label, Phase, Questionnaire, TrialId};
+
+/// What a participant does next.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "step", rename_all = "snake_case")]
+pub enum Step {
+    /// A trial for practice.
+    Practice {
+        /// Its number, from 1.
+        number: u32,
+        /// From 1.
+        attempt: u32,
+    },
+    /// A trial that counts.
+    Trial {
+        /// Its number, from 1.
+        number: u32,
+        /// From 1.
+        attempt: u32,
+        /// What stands for its condition.
+        label: Label,
+    },
+    /// A break.
+    Break {
+        /// For at least so long, s.
+        least_s: f64,
+    },
+    /// A questionnaire.
+    Questionnaire {
+        /// Which.
+        questionnaire: Questionnaire,
+        /// About which condition; `None` at the end.
+        after: Option<Label>,
+    },
+    /// A trial has begun and has not ended: it runs, or the program ended in the middle of it.
+    Running {
+        /// Which.
+        trial: TrialId,
+    },
+    /// Nothing.
+    Done {
+        /// Why.
+        why: Done,
+    },
+}
+
+/// Why there is nothing left to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Done {
+    /// All was done.
+    Finished,
+    /// The participant is excluded.
+    Excluded,
+}
+
+impl Step {
+    /// The trial that it is, with its label if it counts.
+    pub(crate) fn trial(&self) -> Option<(TrialId, Option<Label>)> {
+        match *self {
+            Self::Practice { number, attempt } => Some((TrialId { phase: Phase::Practice, number, attempt }, None)),
+            Self::Trial { number, attempt, label } => {
+                Some((TrialId { phase: Phase::Trial, number, attempt }, Some(label)))
+            }
+            _ => None,
+        }
+    }
+}
+
+impl std::fmt::Display for Step {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let again = |attempt: u32| if attempt > 1 { format!(", attempt {attempt}") } else { String::new() };
+        match self {
+            Self::Practice { number, attempt } => write!(f, "practice trial {number}{}", again(*attempt)),
+            Self::Trial { number, attempt, label } => {
+                write!(f, "trial {number} under condition {label}{}", again(*attempt))
+            }
+            Self::Break { least_s } => write!(f, "a break of at least {least_s:.0} s"),
+            Self::Questionnaire { questionnaire, after: Some(label) } => {
+                write!(f, "questionnaire {} about condition {label}", questionnaire.name())
+            }
+            Self::Questionnaire { questionnaire, after: None } => {
+                write!(f, "questionnaire {} at the end", questionnaire.name())
+            }
+            Self::Running { trial } => write!(f, "the end of trial {}, which has begun", trial.number),
+            Self::Done { why: Done::Finished } => write!(f, "nothing: all is done"),
+            Self::Done { why: Done::Excluded } => write!(f, "nothing: the participant is excluded"),
+        }
+    }
+}

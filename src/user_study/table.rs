@@ -1,0 +1,125 @@
+//! Tables for the analysis, as CSV: a row per trial, and a row per participant and condition for the questionnaires.
+
+use std::{collections::BTreeMap, fmt::Write as _};
+
+use crate::{Exclusion, Label, Measures, Opened, Plan, State, exclusion::exclusions, file::measure_keys};
+
+/// A table, and what it leaves out.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// The text of the file.
+    pub csv: String,
+    /// Its rows, without the line of names.
+    pub rows: usize,
+    /// What was left out, by rules and by people.
+    pub excluded: Vec<Exclusion>,
+    /// Trials without a result.
+    pub missing: Vec<(String, u32)>,
+}
+
+/// One row: whose, under what, its number, whether it was simulated, and its values.
+struct Row<'a> {
+    participant: &'a str,
+    condition: String,
+    number: Option<u32>,
+    simulated: bool,
+    values: Measures,
+}
+
+/// The name of a condition, where it may be shown, else its label. Names have no commas and no quotes.
+fn shown(label: Label, opened: Option<&Opened>) -> String {
+    let named = opened.and_then(|opened| opened.condition(label));
+    named.map_or_else(|| label.to_string(), |condition| condition.name.clone())
+}
+
+/// The trials that count. `withheld` gives the measures that tell the condition, where they may be shown.
+pub(crate) fn trials(
+    plan: &Plan,
+    state: &State,
+    opened: Option<&Opened>,
+    withheld: impl Fn(&str) -> Option<Measures>,
+) -> Table {
+    let excluded = exclusions(plan, state);
+    let (mut rows, mut missing) = (Vec::new(), Vec::new());
+    for (participant, progress) in state.participants() {
+        for made in &progress.trials {
+            let is_out =
+                |one: &&Exclusion| one.participant == participant && one.trial.is_none_or(|trial| trial == made.number);
+            let Some(measures) = &made.measures else {
+                missing.push((participant.to_owned(), made.number));
+                continue;
+            };
+            if excluded.iter().find(is_out).is_some() {
+                continue;
+            }
+            let mut values = measures.clone();
+            values
+                .extend(made.withheld.as_deref().filter(|_| opened.is_some()).and_then(&withheld).unwrap_or_default());
+            let (condition, number) = (shown(made.label, opened), Some(made.number));
+            rows.push(Row { participant, condition, number, simulated: made.simulated, values });
+        }
+    }
+    Table { csv: csv(&rows, &measure_keys().collect::<Vec<_>>()), rows: rows.len(), excluded, missing }
+}
+
+/// The scores of the questionnaires after each condition.
+pub(crate) fn questionnaires(plan: &Plan, state: &State, opened: Option<&Opened>) -> Table {
+    let excluded: Vec<Exclusion> = exclusions(plan, state).into_iter().filter(|one| one.trial.is_none()).collect();
+    let mut rows = Vec::new();
+    for (participant, progress) in state.participants() {
+        if excluded.iter().any(|one| one.participant == participant) {
+            continue;
+        }
+        let mut given: BTreeMap<Label, Row<'_>> = BTreeMap::new();
+        for (after, answers, simulated) in &progress.answers {
+            let Some(label) = after else { continue };
+            let scores: Vec<_> = answers.scores();
+            if scores.is_empty() {
+                continue;
+            }
+            let empty = || Row {
+                participant,
+                condition: shown(*label, opened),
+                number: None,
+                simulated: false,
+                values: Measures::new(),
+            };
+            let row = given.entry(*label).or_insert_with(empty);
+            row.simulated |= *simulated;
+            row.values.extend(scores.into_iter().map(|(name, score)| (name.to_owned(), score)));
+        }
+        rows.extend(given.into_values());
+    }
+    let names = ["nasa_tlx_weighted", "nasa_tlx_raw", "sus", "realism"].map(str::to_owned);
+    Table { csv: csv(&rows, &names), rows: rows.len(), excluded, missing: Vec::new() }
+}
+
+/// Columns in this order, then the others; only those with a value.
+fn csv(rows: &[Row<'_>], order: &[String]) -> String {
+    let place = |key: &str| order.iter().position(|known| known == key).unwrap_or(order.len());
+    let mut columns: Vec<&String> = rows.iter().flat_map(|row| row.values.keys()).collect();
+    columns.sort_by_key(|key| (place(key), (*key).clone()));
+    columns.dedup();
+    let numbered = rows.iter().any(|row| row.number.is_some());
+    let mut text = "participant,condition".to_owned();
+    text.push_str(if numbered { ",trial,simulated" } else { ",simulated" });
+    for column in &columns {
+        // Writing into a String cannot fail, here and below.
+        write!(text, ",{column}").ok();
+    }
+    text.push('\n');
+    for row in rows {
+        write!(text, "{},{}", row.participant, row.condition).ok();
+        if numbered {
+            text.push(',');
+            row.number.map(|number| write!(text, "{number}").ok());
+        }
+        text.push_str(if row.simulated { ",yes" } else { ",no" });
+        for column in &columns {
+            text.push(',');
+            row.values.get(*column).map(|value| write!(text, "{value}").ok());
+        }
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,86 @@
+//! Tests of whole studies.
+
+mod files;
+mod journal;
+mod orders;
+mod questionnaires;
+mod rules;
+mod sealing;
+
+use std::path::Path;
+
+use nima_score::{Event, HandSample, Happening, Sample, Score, Scorer, TaskFile};
+
+use crate::{Ending, Step, Study, StudyFile};
+
+pub(super) const AT: &str = "2026-01-01T09:00:00Z";
+
+/// Two conditions whose words and numbers stand nowhere else.
+pub(super) const TWO: &str = "
+name = 'Touching'
+scene = 'rings'
+primary = 'completion_time_s'
+participants = 4
+trials = 3
+seed = 5
+[[conditions]]
+name = 'Zebra'
+mode = 'anchored'
+gain = 0.8125
+delay_ms = 137.5
+[[conditions]]
+name = 'Yak'
+no_force = true
+";
+
+pub(super) fn file(text: &str) -> StudyFile {
+    StudyFile::from_toml(text).unwrap()
+}
+
+pub(super) fn made(folder: &Path, text: &str) -> Study {
+    Study::create(&folder.join("study"), &file(text), "name = 'scene'", AT).unwrap()
+}
+
+pub(super) fn again(folder: &Path) -> Study {
+    Study::open(&folder.join("study"), AT).unwrap()
+}
+
+/// A score of a trial that took so long, with a force that was felt.
+pub(super) fn score(seconds: u32) -> Score {
+    let mut scorer = Scorer::new(&TaskFile::from_toml("name = 'x'\nkind = 'peg_transfer'").unwrap());
+    scorer.happening(&Happening { t_s: 0.0, event: Event::Begun });
+    for tick in 0..=seconds * 10 {
+        let t_s = f64::from(tick) * 0.1;
+        let right = HandSample {
+            tip_m: vector([0.01 * t_s, 0.0, 0.0]),
+            rendered_n: vector([1.625, 0.0, 0.0]),
+            engaged: true,
+            ..HandSample::default()
+        };
+        scorer.sample(&Sample { t_s, hands: [None, Some(right)] });
+    }
+    scorer.happening(&Happening { t_s: f64::from(seconds), event: Event::Ended });
+    scorer.finish()
+}
+
+fn vector<V: From<[f64; 3]>>(values: [f64; 3]) -> V {
+    V::from(values)
+}
+
+/// Does the next trial in so many seconds.
+pub(super) fn trial(study: &mut Study, participant: &str, seconds: u32) {
+    let running = study.begin_trial(participant, true, AT).unwrap();
+    study.end_trial(running, Ending::Completed, &score(seconds), AT).unwrap();
+}
+
+pub(super) fn next(study: &Study, participant: &str) -> String {
+    study.next(participant).unwrap().to_string()
+}
+
+/// Number and attempt of the trial that comes next.
+pub(super) fn due(study: &Study, participant: &str) -> (u32, u32) {
+    match study.next(participant).unwrap() {
+        Step::Trial { number, attempt, .. } | Step::Practice { number, attempt } => (number, attempt),
+        other => panic!("{other}"),
+    }
+}

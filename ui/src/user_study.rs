@@ -1,0 +1,169 @@
+//! Trials of a user study in the loop: from the sealed condition to a rig, from a simulated person to a scene, from a run to a score.
+
+use anyhow::{Context as _, anyhow, bail};
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::{ConfigError, RigConfig, text},
+    messages::{Command, LoopState, Tick},
+    runtime::{self, Assembly},
+};
+use nima_recording::store::utc_now;
+use nima_session::outlet::Destination;
+use nima_user_study::{Condition, Ending, Phase, Step, Study, StudyFile, TrialId, simulated::Hand};
+use nima_world::{Plan, scene::Scene};
+
+use crate::{leaving::Leave, recording, scoring::Scoring, words::Remedy as _};
+
+/// The ready study files.
+const STUDIES: [(&str, &str); 2] = [
+    ("paper", include_str!("../../config/studies/paper.toml")),
+    ("short", include_str!("../../config/studies/short.toml")),
+];
+/// The loop engages within this time, s.
+const ENGAGES_S: f64 = 5.0;
+
+/// How a trial went.
+pub(crate) struct Ran {
+    pub(crate) trial: TrialId,
+    /// Nothing if it was broken off.
+    pub(crate) ending: Option<Ending>,
+    pub(crate) completion_time_s: Option<f64>,
+    /// Why it was broken off.
+    pub(crate) why: Option<String>,
+}
+
+/// Reads the ready study file of this name, or a file.
+pub(crate) fn study_file(name: &str) -> anyhow::Result<StudyFile> {
+    let (path, text) = text("study", name, &STUDIES)?;
+    StudyFile::from_toml(&text).with_context(|| path.display().to_string())
+}
+
+/// The scene of a study: with its task, and with so many rings as it asks for.
+pub(crate) fn scene_of(file: &StudyFile) -> anyhow::Result<Scene> {
+    let mut scene = Scene::load(&file.scene)?;
+    if file.task.is_some() {
+        scene.task.clone_from(&file.task);
+    }
+    if let Some(rings) = file.rings {
+        let Some(objects) = &mut scene.objects else { bail!("rings = {rings}: scene \"{}\" has none", scene.name) };
+        if objects.rings.len() < rings as usize {
+            bail!("rings = {rings}: scene \"{}\" has {}", scene.name, objects.rings.len());
+        }
+        objects.rings.truncate(rings as usize);
+    }
+    if scene.task.is_none() {
+        bail!(
+            "scene \"{}\" has no task: add a table [task] to the study file, with name, kind and time_limit_s",
+            scene.name
+        );
+    }
+    Ok(scene)
+}
+
+/// The same rig under a condition.
+pub(crate) fn under(mut rig: RigConfig, condition: &Condition) -> Result<RigConfig, ConfigError> {
+    rig.delay_s = condition.delay_ms.unwrap_or(0.0) * 1e-3;
+    // Without force the cheapest mode computes what the gain then takes away.
+    rig.mode = condition.mode.unwrap_or(Mode::Dfr);
+    rig.gates.gain = if condition.no_force { 0.0 } else { condition.gain.unwrap_or(1.0) };
+    rig.identification.own_motion = condition.own_motion.unwrap_or(rig.identification.own_motion);
+    rig.validate()?;
+    Ok(rig)
+}
+
+/// The hand of the scene, with other random sequences in each trial.
+pub(crate) fn plain_hand(study: &Study, participant: &str) -> anyhow::Result<Hand> {
+    let scene = scene_in(study)?;
+    // Trials and interruptions, so that a repetition is not the same.
+    let of = study.state().progress(participant).map_or(0, |one| u64::from(one.interruptions));
+    let seed = scene.seed.wrapping_add(u64::from(made(study, participant).0) + 1000 * of);
+    Ok(Hand { pace: scene.hand.pace, tremor_m: scene.hand.tremor_m, seed })
+}
+
+/// Trials that a participant has made, practice included; all, and since the last break.
+pub(crate) fn made(study: &Study, participant: &str) -> (u32, u32) {
+    let progress = study.state().progress(participant);
+    progress.map_or((0, 0), |one| ((one.practice_s.len() + one.trials.len()) as u32, one.since_break()))
+}
+
+fn scene_in(study: &Study) -> anyhow::Result<Scene> {
+    Ok(Scene::parse(&study.folder().join("scene.toml"), study.scene())?)
+}
+
+/// Runs the trial that comes next, in the simulated rig on the virtual clock, by a simulated hand. `what` it was, it tells; under which
+/// condition it does not.
+pub(crate) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, leave: &Leave) -> anyhow::Result<Ran> {
+    let mut scene = scene_in(study)?;
+    let rig = RigConfig::load(&study.plan().rig)?;
+    if rig.devices.is_some() {
+        bail!("rig \"{}\" has devices, which need the real clock: --virtual is for simulated rigs", rig.name);
+    }
+    (scene.hand.pace, scene.hand.tremor_m, scene.seed) = (hand.pace, hand.tremor_m, hand.seed);
+    let task = scene.task.clone().context("the scene of the study has no task")?;
+    let scene = scene.mounted_at(&rig)?;
+    let mut plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    if !plan.may_engage() {
+        bail!("scene \"{}\" cannot be engaged: the force at its tip is not known", plan.scene.name);
+    }
+    let running = study.begin_trial(participant, true, &utc_now())?;
+    // The reason would tell the condition. A rig that was changed since `new` is the only one.
+    plan.rig = under(plan.rig, running.condition())
+        .map_err(|_| anyhow!("the rig of the study does not allow this condition any more: was its file changed?"))?;
+    let recorded = running.session().map(|file| recording::begin(Destination::file(file), &plan, "virtual"));
+    let (tap, recorder) = recorded.transpose()?.unzip();
+    let (assembly, watched) = plan.watched()?;
+    let mut scoring = Scoring::new(&task, watched);
+    let mut fault = None;
+    let each = |tick: &Tick| {
+        scoring.tick(tick);
+        if let LoopState::Faulted(found) = tick.state {
+            fault.get_or_insert(found);
+        }
+        (scoring.is_over() || fault.is_some() || leave.is_asked()).then_some(Command::Shutdown)
+    };
+    runtime::run_virtual(Assembly { tap, ..assembly }, task.time_limit_s + ENGAGES_S, each);
+    recorder.map_or(Ok(()), |mut recorder| {
+        recorder.end();
+        recorder.finish().map(drop)
+    })?;
+    let trial = running.trial();
+    let why = match (fault, leave.is_asked()) {
+        (_, true) => Some("given up by the operator".to_owned()),
+        (Some(fault), _) => Some(format!("the loop ended in a fault: {}", fault.cause())),
+        _ => None,
+    };
+    let score = scoring.end();
+    let ended = score.as_ref().and_then(|score| Some((Ending::of(score.outcome())?, score)));
+    match (why, ended) {
+        (None, Some((ending, score))) => {
+            study.end_trial(running, ending, score, &utc_now())?;
+            let completion_time_s = score.value("completion_time_s");
+            Ok(Ran { trial, ending: Some(ending), completion_time_s, why: None })
+        }
+        (why, _) => {
+            let why = why.unwrap_or_else(|| "the loop was never engaged".to_owned());
+            study.abort_trial(running, &why, &utc_now())?;
+            Ok(Ran { trial, ending: None, completion_time_s: None, why: Some(why) })
+        }
+    }
+}
+
+impl Ran {
+    /// In words, without the condition.
+    pub(crate) fn in_words(&self) -> String {
+        let Self { trial, ending, completion_time_s, why } = self;
+        let what = if trial.phase == Phase::Practice { "practice trial" } else { "trial" };
+        let how = match (ending, completion_time_s, why) {
+            (_, Some(time_s), _) => format!("completed in {time_s:.1} s"),
+            (Some(Ending::OutOfTime), ..) => "the time is over".to_owned(),
+            (.., Some(why)) => format!("broken off ({why})"),
+            _ => "ended".to_owned(),
+        };
+        format!("{what} {}: {how}", trial.number)
+    }
+}
+
+/// What comes next, for a sentence.
+pub(crate) fn next_in_words(step: &Step) -> String {
+    format!("next: {step}")
+}

@@ -17,6 +17,7 @@ use nima_machine::{
 use nima_recording::session::Encoding;
 use nima_session::{
     copied::{Bundle, Head, Part},
+    objects::Objects,
     outlet::Audience,
     recorder::Attached,
     watched::MomentWriter,
@@ -139,6 +140,10 @@ impl Audience for Feed {
             let moments = self.moments.take();
             self.tell(Told::Moments(self.session, moments));
         }
+    }
+
+    fn objects(&mut self, objects: &Objects) {
+        self.moments.objects(objects);
     }
 }
 

@@ -78,7 +78,11 @@ impl Running {
             started_ns: since.as_nanos() as u64,
             metadata: [("session".to_owned(), table)].into(),
             files,
-            words: nima_session::Words { event: |_, _| String::new(), operation: |_, _| String::new() },
+            words: nima_session::Words {
+                event: |_, _| String::new(),
+                operation: |_, _| String::new(),
+                happening: |_| String::new(),
+            },
         };
         let (entry, end) = tap();
         let to = Destination { file: Some(path), audiences: vec![share.audience()], ..Destination::default() };

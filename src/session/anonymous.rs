@@ -20,10 +20,14 @@ use crate::{
     cut::{self, CutError, stretch},
     kept::{FIGURES, VERDICTS, verdicts},
     layouts::layouts,
+    objects,
     outlet::{Channel, Outlet},
     plotted,
     recorder::Attached,
-    topics::{ALARM_LINE, ARROWS_TOPIC, FRAMES_TOPIC, LINE, LOG_TOPIC, MARK_LINE, line, plot::Plot, plots, redrawn},
+    topics::{
+        ALARM_LINE, ARROWS_TOPIC, FRAMES_TOPIC, HAPPENING_LINE, HAPPENINGS_TOPIC, LINE, LOG_TOPIC, MARK_LINE,
+        RINGS_TOPIC, happenings_channel, line, plot::Plot, plots, redrawn, rings, rings_channel, rings_of,
+    },
 };
 
 /// Stands for what is withheld.
@@ -134,6 +138,8 @@ enum Topic {
     Numbers { topic: String, names: Vec<String>, forces: bool, decoder: JointStateDecoder, plot: Option<Plot> },
     Frames(Channel),
     Arrows(Channel),
+    Rings(Channel),
+    Happenings(Channel),
     Log(Channel),
 }
 
@@ -143,6 +149,8 @@ impl Topic {
         Ok(match name {
             FRAMES_TOPIC => Some(Self::Frames(out.channel(name, foxglove::encoding::<FrameTransforms>())?)),
             ARROWS_TOPIC => Some(Self::Arrows(out.channel(name, foxglove::encoding::<SceneUpdate>())?)),
+            RINGS_TOPIC => Some(Self::Rings(rings_channel(out)?)),
+            HAPPENINGS_TOPIC => Some(Self::Happenings(happenings_channel(out)?)),
             LOG_TOPIC => Some(Self::Log(out.channel(name, foxglove::encoding::<Log>())?)),
             _ => plots().into_iter().find(|(topic, ..)| topic == name).map(|(topic, names, forces)| Self::Numbers {
                 topic,
@@ -189,10 +197,21 @@ impl Topic {
                     out.message(*channel, time_ns, &redrawn::arrows(time_ns, &scene).encode_to_vec())?;
                 }
             }
+            Self::Rings(channel) => {
+                out.message(*channel, time_ns, &rings(time_ns, &rings_of(data)).encode_to_vec())?;
+            }
+            Self::Happenings(channel) => {
+                if let Some(happening) = objects::decode(data) {
+                    out.message(*channel, time_ns, &objects::encode(&happening))?;
+                }
+            }
             Self::Log(channel) => {
                 if let Ok(log) = Log::decode(data) {
                     let level = Level::try_from(log.level).unwrap_or(Level::Info);
-                    let name = [MARK_LINE, ALARM_LINE].into_iter().find(|name| *name == log.name).unwrap_or(LINE);
+                    let name = [MARK_LINE, ALARM_LINE, HAPPENING_LINE]
+                        .into_iter()
+                        .find(|name| *name == log.name)
+                        .unwrap_or(LINE);
                     let words = if (known.is_ours)(&log.message) { log.message } else { WITHHELD.to_owned() };
                     out.message(*channel, time_ns, &line(time_ns, level, name, words))?;
                 }

@@ -15,6 +15,7 @@ use crate::{
     plotted,
     recorder::JOURNAL_TOPIC,
     replay::{Cursor, Journal, Keyframe, Messages, ReplayError, decoded},
+    topics::{HAPPENING_LINE, MARK_LINE},
 };
 
 /// A session file.
@@ -48,6 +49,8 @@ pub enum LineKind {
     Mark,
     /// A warning: a command that was refused, or an alarm of the screen.
     Warning,
+    /// Something that happened to the objects of the scene.
+    Happening,
     /// A change of state, a command, a device that came or went.
     Told,
 }
@@ -120,7 +123,8 @@ impl Recorded {
             let message = message?;
             let Ok(line) = Log::decode(message.data()) else { return Ok(None) };
             let kind = match (line.level(), line.name.as_str()) {
-                (_, "mark") => LineKind::Mark,
+                (_, MARK_LINE) => LineKind::Mark,
+                (_, HAPPENING_LINE) => LineKind::Happening,
                 (Level::Error | Level::Fatal, _) => LineKind::Fault,
                 (Level::Warning, _) => LineKind::Warning,
                 _ => LineKind::Told,

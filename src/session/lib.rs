@@ -8,6 +8,7 @@
 //! | `scribe` | what passes the tap of a loop, as these messages |
 //! | `recorder` | the thread that writes them, and what is plotted, into a session file |
 //! | `layouts` | what a viewer shows of a session at first |
+//! | `objects` | where the rings of a scene are, what its jaws do, and what happens to them |
 //! | `outlet` | where that goes: into the file, and to those who watch while it happens |
 //! | `file` | the journal in a session file |
 //! | `plotted` | the plots of a session file, tick by tick, and what `nima identify` needs of them |
@@ -31,6 +32,7 @@ pub mod file;
 pub mod journal;
 mod kept;
 pub mod layouts;
+pub mod objects;
 pub mod outlet;
 pub mod outlook;
 pub mod plotted;

@@ -13,7 +13,10 @@ use nima_machine::{
 };
 use nima_recording::session::{ChannelId, Encoding, WriteError, Writer};
 
-use crate::recorder::{Attached, RecordError};
+use crate::{
+    objects::Objects,
+    recorder::{Attached, RecordError},
+};
 use rescue::Rescue;
 pub(crate) use rescue::Trouble;
 
@@ -55,6 +58,9 @@ pub trait Audience: Send + Debug {
 
     /// A tick as the screen sees it, and the events that were told in it. All of it is in the journal too.
     fn tick(&mut self, _t_s: f64, _ticks: &[Option<Tick>; SIDES], _events: &[Event]) {}
+
+    /// The objects of a scene, before the tick of their time. Their messages come besides.
+    fn objects(&mut self, _objects: &Objects) {}
 }
 
 /// A channel of an outlet.
@@ -129,6 +135,13 @@ impl Outlet {
     pub(crate) fn tick(&mut self, t_s: f64, ticks: &[Option<Tick>; SIDES], events: &[Event]) {
         for audience in &mut self.audiences {
             audience.tick(t_s, ticks, events);
+        }
+    }
+
+    /// Objects of a scene, for those who watch; the file has them in its messages.
+    pub(crate) fn objects(&mut self, objects: &Objects) {
+        for audience in &mut self.audiences {
+            audience.objects(objects);
         }
     }
 

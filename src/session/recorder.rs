@@ -32,6 +32,7 @@ use crate::{
     journal::{End, JournalError, Start},
     kept::described,
     layouts::layouts,
+    objects::ObjectSource,
     outlet::{Channel, Destination, Outlet, Trouble},
     scribe::{Pages, Scribe, Written},
     topics::{Topics, Words},
@@ -128,6 +129,7 @@ pub enum NoteKind {
 pub struct Recorder {
     shared: Arc<Shared>,
     notes: Sender<(f64, Note)>,
+    sources: Sender<Box<dyn ObjectSource>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -137,8 +139,8 @@ impl Recorder {
     /// # Errors
     /// [`RecordError`] if the file cannot be created or its beginning cannot be written.
     pub fn start(to: Destination<'_>, about: About, origin: Origin, tap: TapEnd) -> Result<Self, RecordError> {
-        let (notes, noted) = unbounded();
-        let mut session = Session::create(to, about, origin, noted)?;
+        let ((notes, noted), (sources, watched)) = (unbounded(), unbounded());
+        let mut session = Session::create(to, about, origin, noted, watched)?;
         let shared = Arc::new(Shared::new());
         shared.bytes.store(session.file.out.bytes(), Ordering::Relaxed);
         let told = Arc::clone(&shared);
@@ -150,7 +152,13 @@ impl Recorder {
             drain(&tap, &told);
         };
         let thread = Builder::new().name("recorder".to_owned()).spawn(run).map_err(RecordError::Thread)?;
-        Ok(Self { shared, notes, thread: Some(thread) })
+        Ok(Self { shared, notes, sources, thread: Some(thread) })
+    }
+
+    /// Records the objects that this source tells of too. To be called before the loop starts, so that nothing is missing.
+    pub fn watch(&self, source: Box<dyn ObjectSource>) {
+        // A recording that has ended by itself takes no more.
+        self.sources.send(source).ok();
     }
 
     /// Adds a line to the log at this time of the loop (s), or at its last tick if that is earlier.
@@ -237,6 +245,7 @@ struct Session {
     scribe: Scribe,
     file: SessionFile,
     noted: Receiver<(f64, Note)>,
+    sources: Receiver<Box<dyn ObjectSource>>,
     /// The note whose time has not come yet.
     waiting: Option<(f64, Note)>,
 }
@@ -247,6 +256,7 @@ impl Session {
         about: About,
         origin: Origin,
         noted: Receiver<(f64, Note)>,
+        sources: Receiver<Box<dyn ObjectSource>>,
     ) -> Result<Self, RecordError> {
         let sides = origin.calibrations.each_ref().map(Option::is_some);
         let of = |(side, known): (Side, &Option<Calibrations>)| Some((side, described(known.as_ref()?)));
@@ -256,12 +266,17 @@ impl Session {
         let mut file = SessionFile::create(to, about, &known, sides, devices)?;
         file.write(&first)?;
         file.out.flush()?;
-        Ok(Self { scribe, file, noted, waiting: None })
+        Ok(Self { scribe, file, noted, sources, waiting: None })
     }
 
     fn run(&mut self, tap: &TapEnd, shared: &Shared) -> Result<(), RecordError> {
         loop {
-            match next(tap, shared) {
+            let next = next(tap, shared);
+            // What was handed over before the loop has begun is here before its first tick.
+            if let Ok(source) = self.sources.try_recv() {
+                self.file.topics.watch(&mut self.file.out, source)?;
+            }
+            match next {
                 Next::Entry(entry) => self.scribe.take(entry, tap, &mut self.file)?,
                 // The loop rests: nobody shall wait for what is known.
                 Next::Nothing => {
@@ -343,8 +358,13 @@ impl SessionFile {
     }
 
     fn log_time_ns(&self, t_s: f64) -> u64 {
-        self.started_ns + (t_s.max(0.0) * 1e9).round() as u64
+        log_time_ns(self.started_ns, t_s)
     }
+}
+
+/// A time of the loop, s, as that of a message of a session that began at `started_ns`.
+fn log_time_ns(started_ns: u64, t_s: f64) -> u64 {
+    started_ns + (t_s.max(0.0) * 1e9).round() as u64
 }
 
 impl Pages for SessionFile {
@@ -363,6 +383,9 @@ impl Pages for SessionFile {
     fn tick(&mut self, stepped: &Stepped, events: &[Event]) -> Result<(), RecordError> {
         let t_s = stepped.timing.now_s;
         let time_ns = self.log_time_ns(t_s);
+        let started_ns = self.started_ns;
+        // All that the simulation told up to this tick was told before it.
+        self.topics.objects(&mut self.out, t_s, |t_s| log_time_ns(started_ns, t_s))?;
         self.out.tick(t_s, &stepped.ticks, events);
         Ok(self.topics.tick(&mut self.out, time_ns, stepped, events)?)
     }

@@ -2,6 +2,7 @@
 
 pub(crate) mod columns;
 mod identification;
+mod objects;
 pub(crate) mod plot;
 pub(crate) mod redrawn;
 mod scene;
@@ -18,15 +19,25 @@ use nima_recording::{
     session::WriteError,
 };
 
+pub(crate) use objects::{
+    HAPPENINGS_TOPIC, JAWS_PLOT, RINGS_TOPIC, happenings_channel, jaws_of, rings, rings_channel, rings_of,
+};
 pub(crate) use scene::{ARROWS_TOPIC, FRAMES_TOPIC};
 pub(crate) use timing::{TIMES, TIMING_TOPIC};
 
 use crate::{
+    objects::ObjectSource,
     outlet::{Channel, Outlet},
     recorder::{Note, NoteKind},
 };
 
-use self::{identification::Identified, plot::Plot, scene::Scene, timing::Times};
+use self::{
+    identification::Identified,
+    objects::{JAWS, OfObjects},
+    plot::Plot,
+    scene::Scene,
+    timing::Times,
+};
 
 /// Sentences of the log.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +46,8 @@ pub struct Words {
     pub event: fn(&Event, &[String]) -> String,
     /// For what is done to the loop, with the same names.
     pub operation: fn(&Operation, &[String]) -> String,
+    /// For what happens to the objects of a scene.
+    pub happening: fn(&nima_score::Event) -> String,
 }
 
 /// Topic of the log.
@@ -43,8 +56,10 @@ pub(crate) const LOG_TOPIC: &str = "log";
 pub(crate) const LINE: &str = "nima";
 /// ... a moment that the operator marked, ...
 pub(crate) const MARK_LINE: &str = "mark";
-/// ... and an alarm of the screen.
+/// ... an alarm of the screen, ...
 pub(crate) const ALARM_LINE: &str = "alarm";
+/// ... and what happened to the objects of a scene.
+pub(crate) const HAPPENING_LINE: &str = "happening";
 
 /// The channels of what is plotted.
 #[derive(Debug)]
@@ -55,6 +70,8 @@ pub(crate) struct Topics {
     log: Channel,
     words: Words,
     devices: Vec<String>,
+    /// Of a scene that tells of its objects.
+    objects: Option<OfObjects>,
 }
 
 #[derive(Debug)]
@@ -91,6 +108,7 @@ pub(crate) fn plots() -> Vec<(String, Vec<String>, bool)> {
             ("poses", POSES.map(str::to_owned).to_vec(), false),
             ("gates", gates().map(str::to_owned).collect(), false),
             ("identification", identification::names(), false),
+            (JAWS_PLOT, JAWS.map(str::to_owned).to_vec(), false),
         ];
         parts.map(|(what, names, forces)| {
             let names = names.iter().map(|name| format!("{}.{name}", side.word())).collect();
@@ -125,7 +143,28 @@ impl Topics {
         }
         let times = Times::new(out)?;
         let log = out.channel(LOG_TOPIC, foxglove::encoding::<Log>())?;
-        Ok(Self { sides: of, scene: Scene::new(out)?, times, log, words, devices })
+        Ok(Self { sides: of, scene: Scene::new(out)?, times, log, words, devices, objects: None })
+    }
+
+    /// From now on this source is asked what the objects of the scene do.
+    pub(crate) fn watch(&mut self, out: &mut Outlet, source: Box<dyn ObjectSource>) -> Result<(), WriteError> {
+        self.objects = Some(OfObjects::new(out, source)?);
+        Ok(())
+    }
+
+    /// Writes what is told of objects up to this time of the loop, s; `time_ns` gives the time of a message.
+    pub(crate) fn objects(
+        &mut self,
+        out: &mut Outlet,
+        t_s: f64,
+        time_ns: impl Fn(f64) -> u64,
+    ) -> Result<(), WriteError> {
+        let Some(objects) = &mut self.objects else { return Ok(()) };
+        for happening in objects.until(out, t_s, &time_ns)? {
+            let (time_ns, words) = (time_ns(happening.t_s), (self.words.happening)(&happening.event));
+            out.message(self.log, time_ns, &line(time_ns, Level::Info, HAPPENING_LINE, words))?;
+        }
+        Ok(())
     }
 
     /// Writes a tick and the events in it.

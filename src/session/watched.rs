@@ -1,20 +1,27 @@
-//! What a screen elsewhere is told of a loop: every event, and a tick of each side every few milliseconds.
+//! What a screen elsewhere is told of a loop: every event, a tick of each side every few milliseconds, and once a bundle the objects of the
+//! scene.
 //!
 //! A bundle of moments can be read without those before it, so that a screen may come late, and miss some.
 
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3, Vector4};
 use nima_machine::{
     messages::{Event, Tick},
     rig::SIDES,
 };
 
-use crate::codec::{Columns, Put, Sink, Source, Take, Unpacked, Wrong, number, record, take_number};
+use crate::{
+    codec::{Columns, Put, Sink, Source, Take, Unpacked, Wrong, number, record, take_number},
+    objects::{Jaws, Objects},
+};
 
 /// Version of the bundles; another one is refused.
-const VERSION: u8 = 1;
+const VERSION: u8 = 2;
 /// Time between two ticks of a bundle, s: what a trace on a screen can show.
 const STEP_S: f64 = 0.005;
 /// Most moments of a bundle, and most events of a moment.
 const MOST: u64 = 1024;
+/// Most rings of a bundle.
+const RINGS_MOST: u64 = 64;
 
 /// What happened up to a tick.
 #[derive(Clone, Debug)]
@@ -23,6 +30,8 @@ pub struct Moment {
     pub events: Vec<Event>,
     /// What each side shows.
     pub ticks: [Option<Tick>; SIDES],
+    /// The objects of the scene then, in the last moment of a bundle; `None` where nothing new was told.
+    pub objects: Option<Objects>,
 }
 
 /// One row of a bundle.
@@ -52,6 +61,8 @@ pub struct MomentWriter {
     /// Events with the number of the moment that they belong to.
     events: Vec<(u64, Event)>,
     last_s: Option<f64>,
+    /// The newest objects that were told.
+    objects: Option<Objects>,
 }
 
 impl MomentWriter {
@@ -65,6 +76,11 @@ impl MomentWriter {
             self.rows += 1;
             self.last_s = Some(t_s);
         }
+    }
+
+    /// The objects of the scene are like this now.
+    pub fn objects(&mut self, objects: &Objects) {
+        self.objects = Some(objects.clone());
     }
 
     /// Moments so far.
@@ -95,6 +111,8 @@ impl MomentWriter {
         for (moment, _) in &mut self.events {
             *moment = 0;
         }
+        let objects = if self.rows > 0 { self.objects.take() } else { None };
+        put_objects(&mut bytes, objects.as_ref());
         self.columns.pack(&mut bytes);
         self.columns.clear();
         self.rows = 0;
@@ -117,6 +135,7 @@ pub fn read(bundle: &[u8]) -> Result<Vec<Moment>, WatchError> {
         return Err(Wrong::Long.into());
     }
     let events = (0..told).map(|_| take_event(from, rows)).collect::<Result<Vec<_>, _>>()?;
+    let objects = take_objects(from)?;
     let columns = Unpacked::of(from, Row::COLUMNS)?;
     if !from.is_empty() {
         return Err(Wrong::Long.into());
@@ -129,11 +148,98 @@ pub fn read(bundle: &[u8]) -> Result<Vec<Moment>, WatchError> {
     let ticks = (0..rows).map(|_| row()).collect::<Result<Vec<_>, _>>()?;
     source.end()?;
     let mut moments: Vec<Moment> =
-        ticks.into_iter().map(|Row { ticks }| Moment { events: Vec::new(), ticks }).collect();
+        ticks.into_iter().map(|Row { ticks }| Moment { events: Vec::new(), ticks, objects: None }).collect();
+    if let Some(last) = moments.last_mut() {
+        last.objects = objects;
+    }
     for (moment, event) in events {
         moments[moment].events.push(event);
     }
     Ok(moments)
+}
+
+/// Numbers of a ring, and of jaws.
+const OF_RING: usize = 7;
+const OF_JAWS: usize = 8;
+
+fn put_objects(bytes: &mut Vec<u8>, objects: Option<&Objects>) {
+    number(bytes, u64::from(objects.is_some()));
+    let Some(Objects { t_s, rings, jaws }) = objects else { return };
+    number(bytes, t_s.to_bits());
+    let rings = &rings[..rings.len().min(RINGS_MOST as usize)];
+    number(bytes, rings.len() as u64);
+    let mut words = |of: Option<&[f64]>| {
+        number(bytes, u64::from(of.is_some()));
+        of.into_iter().flatten().for_each(|value| bytes.extend(value.to_le_bytes()));
+    };
+    for ring in rings {
+        let numbers = ring.as_ref().map(|ring| {
+            let (at_m, turn) = (ring.translation.vector, ring.rotation.coords);
+            [at_m.x, at_m.y, at_m.z, turn.x, turn.y, turn.z, turn.w]
+        });
+        words(numbers.as_ref().map(<[f64; OF_RING]>::as_slice));
+    }
+    for of_side in jaws {
+        let numbers = of_side.map(|Jaws { opening_rad, opens_n, force_n, torque_nm, touched: _ }| {
+            let (force, torque) = (force_n, torque_nm);
+            [opening_rad, opens_n, force.x, force.y, force.z, torque.x, torque.y, torque.z]
+        });
+        words(numbers.as_ref().map(<[f64; OF_JAWS]>::as_slice));
+    }
+    for touched in jaws.iter().flatten().map(|jaws| jaws.touched) {
+        bytes.extend(touched.map(u8::from));
+    }
+}
+
+fn take_objects(from: &mut &[u8]) -> Result<Option<Objects>, Wrong> {
+    if take_number(from)? == 0 {
+        return Ok(None);
+    }
+    let t_s = f64::from_bits(take_number(from)?);
+    let count = take_number(from)?;
+    if count > RINGS_MOST {
+        return Err(Wrong::Long);
+    }
+    let ring = |numbers: [f64; OF_RING]| {
+        let (at, turn) = (vector(&numbers[..3]), Vector4::from_column_slice(&numbers[3..]));
+        Isometry3::from_parts(Translation3::from(at), UnitQuaternion::new_unchecked(Quaternion::from(turn)))
+    };
+    let rings = (0..count).map(|_| Ok(take_some(from)?.map(ring))).collect::<Result<_, Wrong>>()?;
+    let mut jaws = [None, None];
+    for of_side in &mut jaws {
+        *of_side = take_some(from)?.map(|numbers: [f64; OF_JAWS]| Jaws {
+            opening_rad: numbers[0],
+            opens_n: numbers[1],
+            force_n: vector(&numbers[2..5]),
+            torque_nm: vector(&numbers[5..]),
+            touched: [false; 4],
+        });
+    }
+    for of_side in jaws.iter_mut().flatten() {
+        let (touched, rest) = from.split_at_checked(of_side.touched.len()).ok_or(Wrong::Short)?;
+        *from = rest;
+        for (place, byte) in of_side.touched.iter_mut().zip(touched) {
+            *place = *byte != 0;
+        }
+    }
+    Ok(Some(Objects { t_s, rings, jaws }))
+}
+
+fn vector(of: &[f64]) -> Vector3<f64> {
+    Vector3::from_column_slice(of)
+}
+
+/// So many numbers, if they are there.
+fn take_some<const N: usize>(from: &mut &[u8]) -> Result<Option<[f64; N]>, Wrong> {
+    if take_number(from)? == 0 {
+        return Ok(None);
+    }
+    let mut numbers = [0.0; N];
+    for place in &mut numbers {
+        let (first, rest) = from.split_first_chunk().ok_or(Wrong::Short)?;
+        (*place, *from) = (f64::from_le_bytes(*first), rest);
+    }
+    Ok(Some(numbers))
 }
 
 /// An event, and the number of its moment, which is below `rows`.
@@ -157,7 +263,6 @@ fn take_event(from: &mut &[u8], rows: u64) -> Result<(usize, Event), Wrong> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector3;
     use nima_core::kinematics::Hand;
     use nima_machine::{
         config::RigConfig,
@@ -190,6 +295,7 @@ mod tests {
             let (_, shown) = control.step([Some(inputs), None], &timing);
             let new: Vec<Event> = control.events().copied().collect();
             control.clear_events();
+            writer.objects(&objects(t_s));
             writer.tick(t_s, &shown, &new);
             events.extend(new);
             ticks.push(shown);
@@ -198,6 +304,16 @@ mod tests {
             }
         }
         (bundles, ticks, events)
+    }
+
+    /// Two rings of which one is lost, and one pair of jaws.
+    fn objects(t_s: f64) -> Objects {
+        let turn = UnitQuaternion::from_euler_angles(t_s, 0.2, -t_s);
+        let ring = Isometry3::from_parts(Translation3::new(t_s, 0.5, -0.25), turn);
+        let force_n = Vector3::new(1.0, t_s, 3.0);
+        let jaws =
+            Jaws { opening_rad: 0.5, opens_n: t_s, force_n, torque_nm: -force_n, touched: [true, false, true, false] };
+        Objects { t_s, rings: vec![Some(ring), None], jaws: [Some(jaws), None] }
     }
 
     #[test]
@@ -214,6 +330,10 @@ mod tests {
         let state = |at: usize| moments[at].ticks[Side::Right.index()].unwrap().state.word();
         assert_ne!((state(200), state(390)), (state(0), state(200)));
         assert!(events.len() >= 3, "{events:?}");
+        let shown: Vec<&Objects> = moments.iter().filter_map(|moment| moment.objects.as_ref()).collect();
+        assert_eq!(shown.len(), 40, "once in each bundle");
+        assert!(moments.iter().skip(9).step_by(10).all(|moment| moment.objects.is_some()));
+        assert!(shown.iter().all(|one| **one == objects(one.t_s)));
     }
 
     #[test]

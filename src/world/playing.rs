@@ -12,8 +12,9 @@ use crate::{
 };
 use lumps::Palpation;
 
-/// The screen is told of a moment every so many s.
-const MOMENT_EVERY_S: f64 = 1.0 / 60.0;
+/// A moment is told every so many s, within a microsecond: times of the loop are rounded.
+const MOMENT_EVERY_S: f64 = 0.01;
+const ROUNDING_S: f64 = 1e-6;
 
 /// The objects, what happens to them, and whether the task is done.
 #[derive(Clone, Debug)]
@@ -181,7 +182,7 @@ impl Playing {
                 }
             }
         }
-        if t_s - self.told_s >= MOMENT_EVERY_S {
+        if t_s - self.told_s >= MOMENT_EVERY_S - ROUNDING_S {
             self.told_s = t_s;
             self.teller.moment(&self.moment(t_s, loads));
         }

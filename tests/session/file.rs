@@ -34,7 +34,11 @@ pub(crate) fn about() -> About {
             media_type: "application/toml".into(),
             data: b"name = \"x\"".into(),
         }],
-        words: Words { event: |event, _| format!("{event:?}"), operation: |operation, _| format!("{operation:?}") },
+        words: Words {
+            event: |event, _| format!("{event:?}"),
+            operation: |operation, _| format!("{operation:?}"),
+            happening: |event| format!("{event:?}"),
+        },
     }
 }
 

@@ -9,4 +9,5 @@ mod faults;
 mod file;
 mod long;
 mod network;
+mod objects;
 mod round_trip;

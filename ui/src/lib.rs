@@ -7,6 +7,7 @@ pub mod console;
 mod emulators;
 pub mod leaving;
 mod line;
+mod objects;
 mod recording;
 mod report;
 mod scoring;

@@ -14,7 +14,7 @@ use nima_session::{
 };
 use nima_world::Plan;
 
-use crate::words::{event, operation};
+use crate::words::{event, happening, operation};
 
 /// Name and version of this program.
 pub(crate) const PROGRAM: &str = concat!("nima ", env!("CARGO_PKG_VERSION"));
@@ -62,6 +62,6 @@ fn about(plan: &Plan, clock: &str) -> About {
         started_ns,
         metadata: BTreeMap::from([("session".to_owned(), session)]),
         files: texts.into_iter().filter_map(file).collect(),
-        words: Words { event, operation },
+        words: Words { event, operation, happening },
     }
 }

@@ -1,59 +1,56 @@
 //! The score of a run in a scene with a task.
 
-use nima_machine::messages::{LoopState, Tick};
-use nima_score::{Event, HandSample, Happening, Sample, Score, Scorer, TaskFile, TaskKind};
-use nima_session::scored::side_of;
+use nima_machine::{
+    messages::{LoopState, Tick},
+    rig::Side,
+};
+use nima_score::{Event, HandSample, Sample, Score, TaskFile, TaskKind};
+use nima_session::scored::{Trial, side_of};
 use nima_world::Watched;
 
 /// Scores from the first tick in which an arm is engaged.
 pub(crate) struct Scoring {
-    scorer: Scorer,
+    trial: Trial,
     watched: Option<Watched>,
     /// The tick of both hands that is not yet complete.
-    sample: Sample,
-    newest_s: Option<f64>,
+    sample: Option<Sample>,
     begun_s: Option<f64>,
+    newest_s: f64,
     ended: bool,
     limit_s: f64,
     /// Only the instruments of a peg transfer have jaws.
     has_jaws: bool,
-    opening_rad: [Option<f64>; 2],
 }
 
 impl Scoring {
     /// For this task; `watched` tells what happens to the objects.
     pub(crate) fn new(task: &TaskFile, watched: Option<Watched>) -> Self {
         Self {
-            scorer: Scorer::new(task),
+            trial: Trial::new(task),
             watched,
-            sample: Sample::default(),
-            newest_s: None,
+            sample: None,
             begun_s: None,
+            newest_s: 0.0,
             ended: false,
             limit_s: task.time_limit_s,
             has_jaws: task.kind == TaskKind::PegTransfer,
-            opening_rad: [None; 2],
         }
     }
 
     /// Takes the next tick of a side.
     pub(crate) fn tick(&mut self, tick: &Tick) {
-        let engaged = tick.state == LoopState::Engaged;
-        if self.begun_s.is_none() && engaged {
-            self.begun_s = Some(tick.t_s);
-            self.scorer.happening(&Happening { t_s: tick.t_s, event: Event::Begun });
-        }
-        if self.begun_s.is_none() {
-            return;
-        }
-        if self.newest_s.is_some_and(|newest_s| tick.t_s > newest_s) {
+        if self.sample.is_some_and(|sample| tick.t_s > sample.t_s) {
             self.pass_on();
         }
-        self.newest_s = Some(tick.t_s);
-        self.sample.t_s = tick.t_s;
-        self.sample.hands[side_of(tick.side).index()] = Some(HandSample {
+        let engaged = tick.state == LoopState::Engaged;
+        if engaged {
+            self.begun_s.get_or_insert(tick.t_s);
+        }
+        self.newest_s = tick.t_s;
+        let sample = self.sample.get_or_insert(Sample { t_s: tick.t_s, ..Sample::default() });
+        sample.hands[side_of(tick.side).index()] = Some(HandSample {
             tip_m: tick.tip_m,
-            jaw_rad: self.opening_rad[tick.side.index()],
+            jaw_rad: None,
             force_n: tick.measured_n,
             rendered_n: tick.rendered_n,
             engaged,
@@ -63,28 +60,30 @@ impl Scoring {
 
     /// Whether the task is done, or its time is over: what follows does not count.
     pub(crate) fn is_over(&self) -> bool {
-        let lasts_s = self.begun_s.zip(self.newest_s).map_or(0.0, |(begun_s, newest_s)| newest_s - begun_s);
-        self.ended || lasts_s > self.limit_s
+        self.ended || self.begun_s.is_some_and(|begun_s| self.newest_s - begun_s > self.limit_s)
     }
 
     fn pass_on(&mut self) {
-        let sample = std::mem::take(&mut self.sample);
         if let Some(watched) = &self.watched {
-            if let Some(moment) = watched.newest().filter(|_| self.has_jaws) {
-                self.opening_rad = moment.opening_rad.map(Some);
+            for moment in watched.moments().filter(|_| self.has_jaws) {
+                for side in Side::ALL {
+                    self.trial.opening(side, moment.t_s, moment.opening_rad[side.index()]);
+                }
             }
             for happening in watched.happenings() {
                 self.ended |= happening.event == Event::Ended;
-                self.scorer.happening(&happening);
+                self.trial.happening(&happening);
             }
         }
-        self.scorer.sample(&sample);
+        if let Some(sample) = self.sample.take() {
+            self.trial.sample(&sample);
+        }
     }
 
     /// The score, if anything was engaged.
     pub(crate) fn end(mut self) -> Option<Score> {
-        self.newest_s?;
         self.pass_on();
-        Some(self.scorer.finish())
+        // Without objects nobody tells when the task is done.
+        self.trial.end(self.watched.is_none())
     }
 }

@@ -23,8 +23,11 @@ pub use trace::{BUCKETS, Trace};
 use crate::{
     cut,
     journal::{Outline, outline},
+    objects::{self, kind},
     recorder::JOURNAL_TOPIC,
-    topics::{LOG_TOPIC, MARK_LINE, TIMES, TIMING_TOPIC, columns::Columns},
+    topics::{
+        HAPPENING_LINE, HAPPENINGS_TOPIC, LOG_TOPIC, MARK_LINE, RINGS_TOPIC, TIMES, TIMING_TOPIC, columns::Columns,
+    },
 };
 use arm::Arm;
 
@@ -70,6 +73,8 @@ pub struct Figures {
     pub arms: Vec<ArmFigures>,
     /// What happened, in order.
     pub marks: Vec<Mark>,
+    /// How often each kind of thing happened to the objects of the scene, as [`kind`] names it. `None` if nobody told of objects.
+    pub happenings: Option<BTreeMap<String, u64>>,
     /// The timing of the loop, where the file has it.
     pub timing: Option<Times>,
 }
@@ -88,7 +93,8 @@ pub struct Missing {
 pub struct Mark {
     /// When, s from the beginning of the session.
     pub t_s: f64,
-    /// How much it matters: `error`, `warning` or `info`; `mark` for a moment that the operator marked.
+    /// How much it matters: `error`, `warning` or `info`; `mark` for a moment that the operator marked, `event` for what happened to the
+    /// objects of the scene.
     pub level: &'static str,
     /// What.
     pub words: String,
@@ -127,6 +133,7 @@ impl Figures {
         let (first_ns, last_ns) = reader.times_ns().unwrap_or_default();
         figures.length_s = last_ns.saturating_sub(first_ns) as f64 * 1e-9;
         figures.closed = has(JOURNAL_TOPIC).then_some(false);
+        figures.happenings = has(HAPPENINGS_TOPIC).then(BTreeMap::new);
         if sides.is_empty() {
             figures.notes.push("it has no plots: forces, states and gates are not known".to_owned());
         }
@@ -176,6 +183,7 @@ enum Kind {
     Timing,
     Log,
     Journal,
+    Happening,
 }
 
 struct Channel {
@@ -200,6 +208,7 @@ impl<'a> Reading<'a> {
             (TIMING_TOPIC.to_owned(), Kind::Timing),
             (LOG_TOPIC.to_owned(), Kind::Log),
             (JOURNAL_TOPIC.to_owned(), Kind::Journal),
+            (HAPPENINGS_TOPIC.to_owned(), Kind::Happening),
         ];
         for (arm, &side) in sides.iter().enumerate() {
             kinds.push((topic(side, "forces"), Kind::Forces(arm)));
@@ -217,7 +226,7 @@ impl<'a> Reading<'a> {
 
     fn all(&mut self, figures: &mut Figures) {
         let topics: Vec<&str> = self.reader.channels().iter().map(|channel| channel.topic.as_str()).collect();
-        let skipped = ["frames", "arrows", "right/poses", "left/poses"];
+        let skipped = ["frames", "arrows", "right/poses", "left/poses", RINGS_TOPIC, "right/jaws", "left/jaws"];
         let topics: Vec<&str> = topics.into_iter().filter(|topic| !skipped.contains(topic)).collect();
         for message in self.reader.messages(&topics, 0..u64::MAX) {
             match message {
@@ -242,6 +251,13 @@ impl<'a> Reading<'a> {
         match channel.kind {
             Kind::Journal => return journal(t_s, data, figures),
             Kind::Log => return figures.marks.extend(mark(t_s, data)),
+            Kind::Happening => {
+                let event = objects::decode(data).map(|happening| kind(&happening.event));
+                if let (Some(event), Some(happenings)) = (event, &mut figures.happenings) {
+                    *happenings.entry(event).or_default() += 1;
+                }
+                return;
+            }
             _ => {}
         }
         let Some(values) = channel.columns.as_mut().and_then(|columns| columns.read(data)) else { return };
@@ -250,7 +266,7 @@ impl<'a> Reading<'a> {
             Kind::Forces(arm) => self.arms[arm].1.forces(t_s, values),
             Kind::Gates(arm) => self.arms[arm].1.gates(t_s, values),
             Kind::Identification(arm) => self.arms[arm].1.identified(values),
-            Kind::Journal | Kind::Log => {}
+            Kind::Journal | Kind::Log | Kind::Happening => {}
         }
     }
 }
@@ -276,6 +292,7 @@ fn mark(t_s: f64, data: &[u8]) -> Option<Mark> {
     let log = Log::decode(data).ok()?;
     let level = match log.level {
         _ if log.name == MARK_LINE => "mark",
+        _ if log.name == HAPPENING_LINE => "event",
         level if level >= Level::Error as i32 => "error",
         level if level == Level::Warning as i32 => "warning",
         _ => "info",

@@ -111,10 +111,10 @@ fn arrow(at_m: &Vector3<f64>, force_n: &Vector3<f64>, color: Color) -> Option<Ar
     })
 }
 
-fn vector(of: &Vector3<f64>) -> foxglove::Vector3 {
+pub(super) fn vector(of: &Vector3<f64>) -> foxglove::Vector3 {
     foxglove::Vector3 { x: of.x, y: of.y, z: of.z }
 }
 
-fn quaternion(of: &UnitQuaternion<f64>) -> Quaternion {
+pub(super) fn quaternion(of: &UnitQuaternion<f64>) -> Quaternion {
     Quaternion { x: of.i, y: of.j, z: of.k, w: of.w }
 }

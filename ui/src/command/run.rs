@@ -23,7 +23,7 @@ use nima_machine::{
 use nima_recording::store::WristId;
 use nima_score::Score;
 use nima_session::outlet::Destination;
-use nima_world::{Plan, emulated::TipError, scene::Scene};
+use nima_world::{Plan, Watched, emulated::TipError, scene::Scene};
 use serde::Serialize;
 
 use self::{
@@ -44,6 +44,7 @@ use crate::{
     emulators::Emulators,
     leaving::Leave,
     line::{Line, LinkFigures, LinkNews},
+    objects::OfSimulation,
     scoring::Scoring,
     telling::tell,
     watching::Watching,
@@ -179,7 +180,7 @@ pub(super) fn run_with(
     let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock, arguments.seconds)?;
     let mut summary = if arguments.virtual_clock {
         let (assembly, watched) = plan.watched()?;
-        start.scoring = plan.scene.task.as_ref().map(|task| Scoring::new(task, watched));
+        start.watch_objects(&plan, watched, &recording);
         runtime::run_virtual(Assembly { tap, ..assembly }, arguments.seconds.unwrap_or(60.0), |tick| {
             let command = start.watch(tick);
             if leave.is_asked() || recording.is_over() { Some(Command::Shutdown) } else { command }
@@ -254,6 +255,14 @@ struct Start {
 }
 
 impl Start {
+    /// Objects are told to the recording, and to the score if there is a task.
+    fn watch_objects(&mut self, plan: &Plan, mut watched: Option<Watched>, recording: &Recording) {
+        if let Some(watched) = watched.as_mut().and_then(Watched::another) {
+            recording.watch(OfSimulation::source(plan, watched));
+        }
+        self.scoring = plan.scene.task.as_ref().map(|task| Scoring::new(task, watched));
+    }
+
     fn watch(&mut self, tick: &Tick) -> Option<Command> {
         self.scoring.iter_mut().for_each(|scoring| scoring.tick(tick));
         self.in_force.watch(tick);
@@ -299,7 +308,7 @@ fn on_the_real_clock(
     arguments: &Arguments,
 ) -> anyhow::Result<Summary> {
     let (assembly, watched) = plan.watched_assembly()?;
-    start.scoring = plan.scene.task.as_ref().map(|task| Scoring::new(task, watched));
+    start.watch_objects(plan, watched, recording);
     let assembly = Assembly { tap, ..assembly };
     let door = line.as_ref().map(Line::door);
     let handle = runtime::start(match line {

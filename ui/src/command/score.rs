@@ -11,13 +11,15 @@ use clap::Args;
 use nima_files::write_atomically;
 use nima_recording::session::Reader;
 use nima_score::{MEASURES, Measure, Score, TaskFile};
-use nima_session::{plotted, scored};
+use nima_session::{objects, plotted, scored};
 use nima_study::csv_cell;
+use nima_world::scene::Scene;
 use serde::Serialize;
 
 use super::{output, stretch::Stretch};
+use crate::recording::SCENE;
 
-/// The task of a session without a task file.
+/// The task of a session in which nobody told of objects.
 const FREE: &str = "name = 'Free'\nkind = 'free'\ntime_limit_s = 1200.0";
 
 #[derive(Debug, Args)]
@@ -27,7 +29,7 @@ pub(super) struct Arguments {
     sessions: Vec<PathBuf>,
     #[command(flatten)]
     stretch: Stretch,
-    /// Task file (TOML): name, kind, time limit, thresholds
+    /// Task file (TOML): name, kind, time limit, thresholds (default: the task of the recorded scene, if what happened in it is recorded)
     #[arg(long, value_name = "FILE")]
     task: Option<PathBuf>,
     /// Whose trials these are, for the table
@@ -49,6 +51,8 @@ pub(super) struct Arguments {
 struct Scored {
     session: String,
     condition: String,
+    /// Name of the task.
+    task: String,
     #[serde(flatten)]
     score: Score,
 }
@@ -61,8 +65,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(out) = out {
         output::check(out, &sessions.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     }
-    let task = task_of(task.as_deref())?;
-    let scored = |session: &PathBuf| scored(session, stretch, &task, condition.as_deref());
+    let task = task.as_deref().map(task_of).transpose()?;
+    let scored = |session: &PathBuf| scored(session, stretch, task.as_ref(), condition.as_deref());
     let scored = sessions.iter().map(scored).collect::<anyhow::Result<Vec<_>>>()?;
     if let Some(out) = out {
         let table = table(&scored, participant.as_deref().unwrap_or("unnamed"));
@@ -76,19 +80,35 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
 }
 
-fn task_of(path: Option<&Path>) -> anyhow::Result<TaskFile> {
-    let Some(path) = path else { return Ok(TaskFile::from_toml(FREE)?) };
+fn task_of(path: &Path) -> anyhow::Result<TaskFile> {
     let text = nima_files::read_text(path, nima_files::CONFIG_MAX);
     let text = text.with_context(|| format!("cannot read {}", path.display()))?;
     TaskFile::from_toml(&text).with_context(|| path.display().to_string())
 }
 
-fn scored(session: &Path, stretch: &Stretch, task: &TaskFile, condition: Option<&str>) -> anyhow::Result<Scored> {
+/// The task of the scene in which a session was recorded. Without events there is nothing to count in it: then it is free motion.
+fn recorded_task(session: &Path, reader: &Reader) -> anyhow::Result<TaskFile> {
+    let scene = reader.attachments().iter().find(|one| one.name == SCENE).filter(|_| objects::are_told(reader));
+    let Some(scene) = scene else { return Ok(TaskFile::from_toml(FREE)?) };
+    let text = String::from_utf8_lossy(&reader.attachment(scene)?).into_owned();
+    let scene = Scene::parse(Path::new(SCENE), &text).with_context(|| {
+        format!("session {}: its scene cannot be read; give the task with --task FILE", session.display())
+    })?;
+    scene.task.map_or_else(|| Ok(TaskFile::from_toml(FREE)?), Ok)
+}
+
+fn scored(
+    session: &Path,
+    stretch: &Stretch,
+    task: Option<&TaskFile>,
+    condition: Option<&str>,
+) -> anyhow::Result<Scored> {
     let reader = Reader::open(session)?;
+    let task = task.map_or_else(|| recorded_task(session, &reader), |task| Ok(task.clone()))?;
     let begin_ns = plotted::beginning_ns(&reader)?;
     let times_s = stretch.of(session, &reader, &reader)?;
     let ns = |t_s: f64| if t_s.is_finite() { begin_ns.saturating_add((t_s * 1e9).round() as u64) } else { u64::MAX };
-    let score = scored::score(&reader, session, &(ns(times_s.start)..ns(times_s.end)), task)?;
+    let score = scored::score(&reader, session, &(ns(times_s.start)..ns(times_s.end)), &task)?;
     let score =
         score.with_context(|| format!("session {}: no arm was engaged, so there is no trial", session.display()))?;
     let tables: BTreeMap<_, _> = reader.metadata()?.into_iter().collect();
@@ -96,13 +116,13 @@ fn scored(session: &Path, stretch: &Stretch, task: &TaskFile, condition: Option<
     let delay_ms =
         word("delay_s").parse::<f64>().map_or_else(|_| String::new(), |delay_s| format!(" {:.0} ms", 1e3 * delay_s));
     let condition = condition.map_or_else(|| word("mode") + &delay_ms, str::to_owned);
-    Ok(Scored { session: session.display().to_string(), condition, score })
+    Ok(Scored { session: session.display().to_string(), condition, task: task.name, score })
 }
 
 impl Scored {
     fn in_words(&self) -> String {
-        let Self { session, condition, score } = self;
-        let mut text = format!("{session}, {condition}\n");
+        let Self { session, condition, task, score } = self;
+        let mut text = format!("{session}, {condition}, task: {task}\n");
         for definition in MEASURES {
             let known: Vec<Measure> = score.measures().filter(|one| one.definition.id == definition.id).collect();
             let values = known.iter().filter_map(|one| {
@@ -137,7 +157,7 @@ fn table(scored: &[Scored], participant: &str) -> String {
     }
     text.push('\n');
     for (number, one) in scored.iter().enumerate() {
-        let Scored { session, condition, score } = one;
+        let Scored { session, condition, score, .. } = one;
         write!(text, "{},{},{},{}", csv_cell(participant), csv_cell(condition), number + 1, csv_cell(session)).ok();
         let values: Vec<Option<f64>> = score.measures().map(|measure| measure.value).collect();
         for place in &columns {

@@ -24,7 +24,8 @@ use nima_machine::{
     rig::Side,
     runtime::{self, Assembly, Handle, StartError},
 };
-use nima_world::{Moment, Plan, Watched, emulated::Screen, scene::Scene};
+use nima_session::objects::Objects;
+use nima_world::{Plan, Watched, emulated::Screen, scene::Scene};
 
 use super::{
     Options,
@@ -54,6 +55,7 @@ use crate::{
     console::text,
     emulators::Emulators,
     line::{Line, Reopen},
+    objects::{self, OfSimulation},
 };
 use checking::Checking;
 use listing::Listing;
@@ -124,8 +126,11 @@ pub struct ConsoleApp {
 
 /// Starts the loop of a plan, recorded if sessions are.
 pub(crate) fn start_recorded(plan: &Plan, sessions: &mut Sessions, line: Option<Line>) -> Result<Started, StartError> {
-    let (assembly, watched) = plan.watched_assembly()?;
+    let (assembly, mut watched) = plan.watched_assembly()?;
     let assembly = Assembly { tap: sessions.begin(plan), ..assembly };
+    if let Some(watched) = watched.as_mut().and_then(Watched::another) {
+        sessions.watch(OfSimulation::source(plan, watched));
+    }
     let handle = runtime::start(match line {
         Some(line) => line.join(assembly),
         None => assembly,
@@ -207,8 +212,8 @@ impl ConsoleApp {
     }
 
     /// What the simulation told last of the objects of its scene.
-    pub const fn moment(&self) -> Option<&Moment> {
-        self.live.moment.as_ref()
+    pub const fn objects(&self) -> Option<&Objects> {
+        self.live.objects.as_ref()
     }
 
     /// The rig that the loop is running on.
@@ -239,7 +244,10 @@ impl ConsoleApp {
     /// Reads everything that the loop has sent.
     fn take_in(&mut self) {
         if let Some(moment) = self.objects.as_ref().and_then(Watched::newest) {
-            self.live.moment = Some(moment);
+            let scene = &self.live.scene;
+            let has_jaws = Side::ALL.map(|side| scene.objects.is_some() && scene.has(&self.live.rig, side));
+            self.live.objects = Some(objects::objects(&moment, has_jaws));
+            self.live.training = Some(moment.training);
         }
         let Some(door) = &self.door else { return };
         self.taken = Instant::now();

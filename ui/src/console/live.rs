@@ -21,7 +21,8 @@ use nima_machine::{
     messages::{Command, Fault, LoopState, Refusal, Scheduling, Tick, attention},
     rig::{DEVICES_MAX, Gauges, Healths, Roster, SIDES, Side},
 };
-use nima_world::{Moment, scene::Scene};
+use nima_session::objects::Objects;
+use nima_world::{Training, scene::Scene};
 
 use crate::{
     line::{LineDoor, LineReport},
@@ -107,7 +108,9 @@ pub struct Live {
     /// What it is the state of.
     pub of: Of,
     /// What the simulation told last of the objects of the scene.
-    pub moment: Option<Moment>,
+    pub objects: Option<Objects>,
+    /// How far the training task of the scene has come.
+    pub training: Option<Training>,
     /// Newest tick of each side.
     pub ticks: [Option<Tick>; SIDES],
     /// Forces over time, of each side.
@@ -186,7 +189,8 @@ impl Live {
             rig,
             scene,
             of: Of::Now,
-            moment: None,
+            objects: None,
+            training: None,
             ticks: [None; SIDES],
             history: Default::default(),
             clouds: Default::default(),

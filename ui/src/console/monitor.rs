@@ -142,8 +142,9 @@ impl Monitor {
                 Heard::Trouble(why) => self.trouble = Some(why),
                 Heard::Shows(moments) => {
                     let Some(live) = &mut self.live else { continue };
-                    for Moment { events, ticks } in &moments {
-                        live.replay(events.iter(), ticks);
+                    for Moment { events, ticks, objects } in moments {
+                        live.replay(events.iter(), &ticks);
+                        live.objects = objects.or_else(|| live.objects.take());
                     }
                     (self.trouble, self.heard) = (None, Instant::now());
                 }

@@ -12,6 +12,7 @@ use std::{
 use nima_machine::{messages::Scheduling, runtime::Tap};
 use nima_recording::store::utc_now;
 use nima_session::{
+    objects::ObjectSource,
     outlet::Destination,
     outlook::{Outlook, WARN_BEFORE},
     recorder::{Note, NoteKind, Recorder},
@@ -134,6 +135,13 @@ impl Sessions {
                 self.trouble = Some(trouble);
                 None
             }
+        }
+    }
+
+    /// Records what this source tells of the objects of the scene too; to be called before the loop starts.
+    pub(crate) fn watch(&self, source: Box<dyn ObjectSource>) {
+        if let Some(Now { recorder, .. }) = &self.now {
+            recorder.watch(source);
         }
     }
 

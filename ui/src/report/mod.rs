@@ -64,6 +64,7 @@ fn page(sessions: &[Figures]) -> String {
         for arm in &session.arms {
             page.push_str(&arms::arm(session, arm));
         }
+        page.push_str(&overall::happenings(session));
         page.push_str(&overall::timing(session));
         page.push_str(&overall::marks(session));
         page.push_str(&overall::calibrations(session));

@@ -98,6 +98,15 @@ fn of_level<'a>(session: &'a Figures, level: &'a str) -> impl Iterator<Item = &'
     session.marks.iter().filter(move |mark| mark.level == level)
 }
 
+/// How often what happened to the objects of the scene; nothing without them.
+pub(super) fn happenings(session: &Figures) -> String {
+    let Some(happenings) = &session.happenings else { return String::new() };
+    let rows: Vec<_> =
+        happenings.iter().map(|(kind, count)| vec![escape(&kind.replace('_', " ")), count.to_string()]).collect();
+    let body = if rows.is_empty() { "<p>Nothing.</p>\n".to_owned() } else { table(&["what", "how often"], &rows) };
+    format!("<section>\n<h2>What happened to the objects</h2>\n{body}</section>\n")
+}
+
 /// Everything that happened, in order.
 pub(super) fn marks(session: &Figures) -> String {
     let row = |mark: &Mark| vec![time(mark.t_s), mark.level.to_owned(), escape(&mark.words)];

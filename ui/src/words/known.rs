@@ -16,9 +16,10 @@ use nima_machine::{
     rig::{Act, Awaited, DeviceEvent, Exchange, Obstacle, Part, Prompt, SIDES, Side},
     runtime::Operation,
 };
+use nima_score::Event as Happens;
 use nima_session::STATES;
 
-use super::{commands::operation, events::event, refusals::REFUSALS};
+use super::{commands::operation, events::event, happenings::happening, refusals::REFUSALS};
 
 /// The lines of the log that are free of names.
 pub(crate) struct Lines(BTreeSet<String>);
@@ -46,6 +47,7 @@ impl Lines {
         lines.extend(granted.map(|(fifo, memory_locked)| {
             shape(&event(&Event::Scheduling(Scheduling { fifo, deadline: false, memory_locked }), &[]))
         }));
+        lines.extend(happenings().map(|of| shape(&happening(&of))));
         lines.extend(of_console.iter().map(|line| shape(line)));
         Self(lines)
     }
@@ -170,6 +172,27 @@ fn devices() -> impl Iterator<Item = DeviceEvent> {
     standings.map(|standing| DeviceEvent { t_s: 0.0, device: 0, standing, of_side: [false; SIDES] })
 }
 
+fn happenings() -> impl Iterator<Item = Happens> {
+    let (ring, peg) = (0, 0);
+    let of_side = move |side| {
+        [
+            Happens::RingGrasped { ring, side },
+            Happens::RingLifted { ring, side },
+            Happens::RingTransferred { ring, to: side },
+            Happens::RingPlaced { ring, side, peg },
+            Happens::RingDropped { ring, side, in_view: true },
+            Happens::RingDropped { ring, side, in_view: false },
+            Happens::RingKnockedOff { ring, side: Some(side) },
+            Happens::LumpMarked { side, lump: None },
+            Happens::LumpMarked { side, lump: Some(0) },
+            Happens::WireTouched { side },
+            Happens::WireLeft { side },
+        ]
+    };
+    let of_none = [Happens::Begun, Happens::Ended, Happens::Aborted, Happens::RingKnockedOff { ring, side: None }];
+    nima_score::Side::ALL.into_iter().flat_map(of_side).chain(of_none)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -190,6 +213,8 @@ mod tests {
             "left arm: fault of the left arm (Kinova): A device was lost: it sends no data",
             "mark 12",
             "alarm: The control loop misses 2.4 % of its periods",
+            "ring 3 dropped by the left instrument, out of view",
+            "ring 12 placed on peg 7 by the right instrument",
             "alarm over: No ready check of the last 12 hours has passed with these devices",
         ] {
             assert!(lines.has(line), "{line}");

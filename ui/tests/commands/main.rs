@@ -17,6 +17,7 @@ mod installed;
 mod paper_rig;
 mod replay;
 mod report;
+mod rings;
 mod score;
 mod sessions;
 mod study;

@@ -261,7 +261,7 @@ fn the_jaws_are_opened_and_closed_by_a_key_while_the_instrument_is_led() {
     let mut harness = shown(&plan, [1600.0, 1000.0], |app| app);
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
     let opening = |harness: &Harness<'_, ConsoleApp>| {
-        harness.state().moment().map(|moment| moment.opening_rad[Side::Right.index()])
+        harness.state().objects().and_then(|objects| objects.jaws[Side::Right.index()]).map(|jaws| jaws.opening_rad)
     };
     let opens = |harness: &mut Harness<'_, ConsoleApp>, open: bool| {
         wait(harness, "jaws", |harness| opening(harness).is_some_and(|rad| (rad > 0.4) == open));
@@ -276,7 +276,7 @@ fn the_jaws_are_opened_and_closed_by_a_key_while_the_instrument_is_led() {
         harness.step();
         opens(&mut harness, open);
     }
-    let rings = harness.state().moment().map_or(0, |moment| moment.rings.iter().flatten().count());
+    let rings = harness.state().objects().map_or(0, |objects| objects.rings.iter().flatten().count());
     assert_eq!(rings, 6);
 }
 

@@ -4,9 +4,13 @@ use std::{sync::mpsc, time::Duration};
 
 use egui::Key;
 use egui_kittest::Harness;
+use nalgebra::Isometry3;
 use nima_console::console::monitor::{Heard, Monitor, Options, Teller};
 use nima_machine::{messages::Command, rig::SIDES, runtime};
-use nima_session::watched::{Moment, MomentWriter, read};
+use nima_session::{
+    objects::{Jaws, Objects},
+    watched::{Moment, MomentWriter, read},
+};
 use nima_tests::plan;
 use nima_world::Plan;
 
@@ -35,6 +39,31 @@ fn sent(plan: &Plan) -> Vec<Moment> {
         (tick.index == 6000).then_some(Command::Stop)
     });
     moments
+}
+
+#[test]
+fn rings_and_jaws_of_a_rig_elsewhere_are_shown() {
+    let (mut window, teller) = window();
+    let plan = plan("rings");
+    teller.tell(Heard::Runs(Box::new(plan.rig.clone()), Box::new(plan.scene.clone())));
+    let mut writer = MomentWriter::default();
+    let mut objects =
+        Objects { t_s: 0.1, rings: vec![Some(Isometry3::translation(0.01, 0.02, 0.03)), None], ..Objects::default() };
+    objects.jaws[0] = Some(Jaws { opening_rad: 0.5, ..Jaws::default() });
+    writer.objects(&objects);
+    runtime::run_virtual(plan.simulated().unwrap(), 0.2, |tick| {
+        let mut ticks = [None; SIDES];
+        ticks[tick.side.index()] = Some(*tick);
+        writer.tick(tick.t_s, &ticks, &[]);
+        None
+    });
+    teller.tell(Heard::Shows(read(&writer.take()).unwrap()));
+    reads(&mut window, "WATCHING");
+    assert_eq!(window.state().live().unwrap().objects.as_ref(), Some(&objects));
+    // The next bundle tells nothing new of them.
+    teller.tell(Heard::Shows(sent(&plan).drain(..20).collect()));
+    window.run_steps(3);
+    assert_eq!(window.state().live().unwrap().objects.as_ref(), Some(&objects));
 }
 
 #[test]

@@ -17,12 +17,16 @@ use nima_console::console::{ConsoleApp, roles::Role, settings::Kept};
 use nima_machine::{
     config::SchedulingClass,
     messages::{Command, LoopState},
+    rig::Side,
     runtime::{self, Assembly, Clock, Next, Operation, Passed, TapEnd, tap},
 };
+use nima_recording::session::Reader;
+use nima_score::Event;
+use nima_session::objects;
 use nima_tests::plan;
 use nima_world::Plan;
 
-use crate::bench::{TIMEOUT, console_of, press, until, wait};
+use crate::bench::{TIMEOUT, console_of, press, shows, until, wait};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
@@ -164,6 +168,44 @@ fn the_past_looks_like_the_past_and_one_key_leaves_it() {
     harness.step();
     harness.run_steps(2);
     assert!(harness.query_by_label("PAST").is_none() && harness.state().past().is_none());
+}
+
+/// What a pointer is told that moves along the time line until it is over these words.
+fn found_along_the_line(harness: &mut Harness<'_, ConsoleApp>, words: &str) -> bool {
+    let line = harness.get_by_label("Time of the session").rect();
+    (0..=line.width() as usize / 3).any(|step| {
+        harness.hover_at(line.left_center() + egui::vec2(3.0 * step as f32, 0.0));
+        harness.run_steps(2);
+        shows(harness, words)
+    })
+}
+
+#[test]
+fn rings_jaws_and_what_happened_to_them_are_on_the_screen_of_the_past() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    let run = ["run", "--virtual", "--scene", "rings", "--mode", "matched", "--seconds", "9", "--record"];
+    let recorded = Program::new(env!("CARGO_BIN_EXE_nima")).args(run).arg(&path).output().unwrap();
+    assert!(recorded.status.success(), "{}", String::from_utf8_lossy(&recorded.stderr));
+    let reader = Reader::open(&path).unwrap();
+    let happened = objects::happenings(&reader, 0..u64::MAX).unwrap();
+    let lifted_s = happened.iter().find(|one| matches!(one.event, Event::RingLifted { .. })).unwrap().t_s;
+    let mut harness = console_of("free_motion", SIZE, move |app| app.with_session(&path));
+    until_whole(&mut harness);
+    let ring_m = |harness: &mut Harness<'_, ConsoleApp>, t_s: f64| {
+        harness.state_mut().show_past(t_s);
+        harness.step();
+        until_whole(harness);
+        let shown = harness.state().past_objects().unwrap();
+        assert_eq!(shown.rings.iter().flatten().count(), 6, "at {t_s} s");
+        let opening_rad = Side::ALL.map(|side| shown.jaws[side.index()].unwrap().opening_rad);
+        (shown.rings[0].unwrap().translation.z, opening_rad[Side::Left.index()])
+    };
+    let (on_the_board_m, closed_rad) = ring_m(&mut harness, 0.1);
+    let (lifted_m, holds_rad) = ring_m(&mut harness, lifted_s + 0.5);
+    assert!(on_the_board_m < 0.005 && lifted_m > 0.02, "{on_the_board_m} m, {lifted_m} m");
+    assert!(closed_rad < 0.05 && holds_rad > 0.05, "{closed_rad} rad, {holds_rad} rad");
+    assert!(found_along_the_line(&mut harness, "ring 1 lifted off its peg by the left instrument"));
 }
 
 /// Steps the window until this session is in the list and its row stands still.

@@ -9,6 +9,7 @@ use std::{
 use anyhow::Context as _;
 use nima_machine::runtime::Tap;
 use nima_session::{
+    objects::ObjectSource,
     outlet::Destination,
     outlook::{Outlook, WARN_BEFORE},
     recorder::{Moved, Progress, Recorder},
@@ -64,6 +65,13 @@ impl Recording {
         let outlook = file.as_deref().map(|file| Outlook::new(file, recorder.progress().bytes, now));
         let ends = seconds.and_then(|seconds| now.checked_add(Duration::from_secs_f64(seconds)));
         Ok((Some(tap), Self { recorder: Some((recorder, file)), outlook, ends, told: [false; 6] }))
+    }
+
+    /// Records what this source tells of the objects of the scene too; to be called before the loop starts.
+    pub(super) fn watch(&self, source: Box<dyn ObjectSource>) {
+        if let Some((recorder, _)) = &self.recorder {
+            recorder.watch(source);
+        }
     }
 
     /// Whether it has ended by itself.

@@ -41,6 +41,11 @@ impl ConsoleApp {
         past.live.as_ref().map(|live| live.ticks.as_slice())
     }
 
+    /// The objects of the past on the screen.
+    pub fn past_objects(&self) -> Option<&nima_session::objects::Objects> {
+        self.past.as_ref()?.live.as_ref()?.objects.as_ref()
+    }
+
     /// Shows this time of the session on the screen, s.
     pub fn show_past(&mut self, t_s: f64) {
         if let Some(past) = &mut self.past {

@@ -201,7 +201,7 @@ fn strip_ui(ui: &mut Ui, past: &mut Past) {
         painter.vline(x_of(*edge_s), strip.y_range(), Stroke::new(1.5, theme::now().past));
     }
     // The most urgent ones last, over the others.
-    for kind in [LineKind::Told, LineKind::Warning, LineKind::Mark, LineKind::Fault] {
+    for kind in [LineKind::Told, LineKind::Happening, LineKind::Warning, LineKind::Mark, LineKind::Fault] {
         for note in past.overview.notes.iter().filter(|note| note.kind == kind) {
             mark(&painter, strip, x_of(note.t_s), kind);
         }
@@ -249,7 +249,7 @@ fn mark(painter: &egui::Painter, strip: Rect, x: f32, kind: LineKind) {
     let colour = match kind {
         LineKind::Fault => theme::now().alarm_high,
         LineKind::Warning => theme::now().alarm_medium,
-        LineKind::Mark => theme::now().text,
+        LineKind::Mark | LineKind::Happening => theme::now().text,
         LineKind::Told => theme::now().text_weak,
     };
     // The operator's own marks go through, as in the traces.

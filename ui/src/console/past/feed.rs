@@ -8,6 +8,7 @@ use nima_machine::{
 };
 use nima_session::{
     STATES,
+    objects::Objects,
     plotted::{self, PlottedError, PlottedTick},
     replay::{Cursor, Differs, Keyframe, Messages, Passed, ReplayError},
 };
@@ -26,6 +27,8 @@ pub(super) struct Frame {
     pub(super) in_force: Vec<(Side, u64)>,
     pub(super) events: Vec<Event>,
     pub(super) ticks: [Option<Tick>; SIDES],
+    /// The objects of the scene then, in the last one that is asked for.
+    pub(super) objects: Option<Objects>,
 }
 
 /// Where ticks come from.
@@ -101,7 +104,7 @@ fn replay(cursor: &mut Cursor<Messages>, limit_s: f64, each: &mut impl FnMut(Fra
                 }
                 let t_s = moment.row.timing.now_s;
                 let (in_force, events) = (moment.in_force.to_vec(), moment.events.to_vec());
-                each(Frame { t_s, in_force, events, ticks: *moment.ticks });
+                each(Frame { t_s, in_force, events, ticks: *moment.ticks, objects: None });
                 if t_s >= limit_s {
                     return Ok(Reached::Limit);
                 }
@@ -125,7 +128,13 @@ pub(super) fn plots(
     for arm in &file.arms {
         let Some(like) = &like[arm.index()] else { continue };
         plotted::each_tick(file.recorded.reader(), &file.path, *arm, times_ns.clone(), |plotted| {
-            let none = || Frame { t_s: plotted.t_s, in_force: Vec::new(), events: Vec::new(), ticks: [None; SIDES] };
+            let none = || Frame {
+                t_s: plotted.t_s,
+                in_force: Vec::new(),
+                events: Vec::new(),
+                ticks: [None; SIDES],
+                objects: None,
+            };
             frames.entry(plotted.time_ns).or_insert_with(none).ticks[arm.index()] = Some(tick(like, *arm, &plotted));
             Ok::<_, PlottedError>(())
         })?;

@@ -15,6 +15,7 @@ use nima_machine::{
 use nima_session::{
     file::{Line, LineKind, Recorded},
     journal::Start,
+    objects::{self, Objects},
     plotted,
     replay::Keyframe,
 };
@@ -23,6 +24,7 @@ use nima_world::scene::Scene;
 use super::{
     feed::{Feed, Frame, Reached, plots},
     overview::{Note, Tables},
+    shown_s,
 };
 use crate::console::{
     chain,
@@ -61,6 +63,8 @@ pub(super) struct File {
     pub(super) scene: Scene,
     /// How its journal begins, or why it cannot be replayed.
     start: Result<Start, String>,
+    /// Rings or jaws are in it.
+    has_objects: bool,
 }
 
 impl File {
@@ -75,7 +79,8 @@ impl File {
             Err(_) => attached(&recorded, "rig.toml")?,
         };
         let (scene, arms) = (attached(&recorded, "scene.toml")?, plotted::arms(recorded.reader()));
-        Ok(Self { path: path.to_owned(), recorded, begin_ns, end_s, arms, rig, scene, start })
+        let has_objects = objects::are_shown(recorded.reader());
+        Ok(Self { path: path.to_owned(), recorded, begin_ns, end_s, arms, rig, scene, start, has_objects })
     }
 
     fn t_s(&self, time_ns: u64) -> f64 {
@@ -84,6 +89,12 @@ impl File {
 
     pub(super) fn time_ns(&self, t_s: f64) -> u64 {
         self.begin_ns + (t_s.max(0.0) * 1e9).round() as u64
+    }
+
+    /// The objects of the scene at this time, s; none where they are not recorded or cannot be read.
+    fn objects(&self, t_s: f64) -> Option<Objects> {
+        let at = || objects::at(self.recorded.reader(), self.begin_ns, self.time_ns(t_s)).ok().flatten();
+        self.has_objects.then(at)?
     }
 
     /// The tables of the calibrations that came into force.
@@ -298,6 +309,7 @@ impl<'a> Film<'a> {
         let frames = plots(self.file, &like, t_s, t_s + NEXT_S).unwrap_or_default();
         let frame = frames.into_iter().next();
         let mut live = self.live(t_s);
+        live.objects = self.file.objects(frame.as_ref().map_or(t_s, |frame| frame.t_s));
         live.replay(std::iter::empty(), &frame.map_or(like, |frame| frame.ticks));
         live.settle(0.0);
         live
@@ -330,12 +342,13 @@ impl Chase {
     }
 
     /// What is shown, and where it goes on.
-    pub(super) fn end(mut self) -> (Live, View) {
+    pub(super) fn end(mut self, file: &File) -> (Live, View) {
         if self.live.ticks.iter().all(Option::is_none) {
             // Nothing could be read here.
             self.live.replay(std::iter::empty(), &self.like);
         }
         self.live.settle(self.to_s - self.from_s);
+        self.live.objects = file.objects(shown_s(&self.live));
         let like = std::array::from_fn(|side| self.live.ticks[side].or(self.like[side]));
         (self.live, View { feed: self.feed, like })
     }
@@ -356,13 +369,16 @@ impl View {
     /// The ticks up to this time, s; `None` at the end.
     pub(super) fn go_on(&mut self, file: &File, to_s: f64) -> Option<Vec<Frame>> {
         let mut frames = Vec::new();
-        loop {
+        let reached = loop {
             match self.feed.slice(file, &self.like, to_s, |frame| frames.push(frame)) {
                 Reached::More => {}
-                Reached::Limit => return Some(frames),
-                Reached::End(_) => return (!frames.is_empty()).then_some(frames),
+                reached => break reached,
             }
+        };
+        if let Some(last) = frames.last_mut() {
+            last.objects = file.objects(last.t_s);
         }
+        (reached == Reached::Limit || !frames.is_empty()).then_some(frames)
     }
 }
 

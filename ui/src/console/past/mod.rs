@@ -200,8 +200,9 @@ impl Past {
             Answer::WentOn(Some(frames)) => {
                 let Some(live) = &mut self.live else { return };
                 let before_s = shown_s(live);
-                for frame in &frames {
+                for frame in frames {
                     live.replay(frame.events.iter(), &frame.ticks);
+                    live.objects = frame.objects.or_else(|| live.objects.take());
                 }
                 self.play.unsettled_s += shown_s(live) - before_s;
                 if self.play.unsettled_s >= SETTLED_S {

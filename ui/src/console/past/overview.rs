@@ -117,7 +117,7 @@ mod tests {
     fn a_moment_has_the_devices_and_calibrations_that_it_had() {
         let device =
             |t_s, device, standing| Event::Device(DeviceEvent { t_s, device, standing, of_side: [true, false] });
-        let frame = |t_s, events, in_force| Frame { t_s, in_force, events, ticks: [None; SIDES] };
+        let frame = |t_s, events, in_force| Frame { t_s, in_force, events, ticks: [None; SIDES], objects: None };
         let mut parts = [Overview::default(), Overview::default()];
         parts[0].take(&frame(1.0, vec![device(1.0, 0, Standing::Connected)], Vec::new()));
         parts[0].take(&frame(2.0, vec![device(2.0, 1, Standing::Connected)], vec![(Side::Right, 4)]));

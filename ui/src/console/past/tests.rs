@@ -7,15 +7,18 @@ use std::{
 };
 
 use egui::Context;
+use nima_core::impedance::Mode;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Tick},
+    rig::SIDES,
     runtime::{self, Assembly},
 };
 use nima_recording::session::Reader;
 use nima_session::{
     cut,
     file::{LineKind, Recorded},
+    objects::Objects,
     outlet::Destination,
     plotted,
     replay::replay,
@@ -23,7 +26,11 @@ use nima_session::{
 use nima_world::{Plan, scene::Scene};
 
 use super::Past;
-use crate::{console::scene3d::SceneView, recording};
+use crate::{
+    console::scene3d::SceneView,
+    objects::{OfSimulation, objects},
+    recording,
+};
 
 const TIMEOUT: Duration = Duration::from_mins(3);
 
@@ -36,6 +43,24 @@ fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Optio
         (tick.side.index() == 0).then(|| command(tick.index)).flatten()
     });
     recorder.finish().unwrap();
+}
+
+/// A session of the scene with rings, and what the screen was told of them.
+fn record_rings(path: &Path, seconds: f64) -> Vec<Objects> {
+    let (mut rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("rings").unwrap());
+    rig.mode = Mode::Matched;
+    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    let (tap, recorder) = recording::begin(Destination::file(path), &plan, "virtual").unwrap();
+    let (assembly, watched) = plan.watched().unwrap();
+    let mut watched = watched.unwrap();
+    recorder.watch(OfSimulation::source(&plan, watched.another().unwrap()));
+    let mut told = Vec::new();
+    runtime::run_virtual(Assembly { tap: Some(tap), ..assembly }, seconds, |_| {
+        told.extend(watched.moments().map(|moment| objects(&moment, [true; SIDES])));
+        None
+    });
+    recorder.finish().unwrap();
+    told
 }
 
 /// All ticks of the right arm, and of the left.
@@ -157,6 +182,47 @@ fn what_happened_is_marked_along_the_time() {
     let most_n = replayed(&path).iter().map(|ticks| ticks[0].unwrap().measured_n.norm()).fold(0.0, f64::max);
     let shown_n = past.overview.buckets.iter().map(|bucket| f64::from(bucket.measured_n)).fold(0.0, f64::max);
     assert!((most_n - shown_n).abs() < 1e-4, "{shown_n} N of {most_n} N");
+}
+
+#[test]
+fn rings_and_jaws_are_shown_as_they_were_and_move_while_it_is_played() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    let told = record_rings(&path, 6.0);
+    assert_eq!(told.len(), 600);
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    // Those that the screen has of a moment are not older than a hundredth of a second.
+    let then = |t_s: f64| told.iter().rfind(|objects| objects.t_s < t_s + 1e-7).unwrap();
+    let shown = |past: &Past| past.live.as_ref().and_then(|live| live.objects.clone());
+    let same = |past: &Past| {
+        let mut objects = shown(past)?;
+        let expected = then(past.shown_s());
+        assert!((objects.t_s - expected.t_s).abs() < 1e-8, "{} s, not {} s", objects.t_s, expected.t_s);
+        objects.t_s = expected.t_s;
+        Some(objects == *expected)
+    };
+    for t_s in [0.0, 0.005, 1.234, 4.0, 5.99] {
+        settled(&mut past, t_s);
+        assert_eq!(same(&past), Some(true), "at {t_s} s");
+    }
+    past.show(3.0);
+    past.live = None;
+    until(&mut past, "shown at once", |past| past.live.is_some());
+    assert_eq!(same(&past), Some(true));
+    settled(&mut past, 2.0);
+    past.toggle();
+    let openings = (0..60).map(|_| {
+        let before = past.shown_s();
+        past.step(0.05, false);
+        until(&mut past, "went on", |past| past.shown_s() > before);
+        assert_eq!(same(&past), Some(true), "at {} s", past.shown_s());
+        shown(&past).unwrap().jaws[1].unwrap().opening_rad
+    });
+    let openings: Vec<f64> = openings.collect();
+    assert!(openings.iter().any(|rad| *rad > 0.5) && openings.iter().any(|rad| *rad < 0.3), "{openings:?}");
+    let grasped = past.overview.notes.iter().find(|note| note.kind == LineKind::Happening);
+    assert!(grasped.is_some_and(|note| note.words.contains("grasped by the left instrument")), "{grasped:?}");
 }
 
 fn stretch(from: &Path, to: &Path, seconds: Range<f64>) {

@@ -237,7 +237,7 @@ impl Shown {
             self.chase = Some((chase, t_s));
             return;
         }
-        let (live, view) = chase.end();
+        let (live, view) = chase.end(film.file);
         let extent = if view.is_exact() { Extent::Whole } else { Extent::Plotted };
         self.early_s = (extent == Extent::Plotted).then_some(t_s);
         self.view = Some(view);

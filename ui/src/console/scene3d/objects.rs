@@ -3,7 +3,8 @@
 use egui::Color32;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_machine::rig::{SIDES, Side};
-use nima_world::{LoopSeen, scene::Scene};
+use nima_session::objects::Objects;
+use nima_world::{LoopSeen, Training, scene::Scene};
 
 use super::{
     mesh::{Material, Mesh, Paint},
@@ -21,8 +22,8 @@ const BOARD_THICKNESS_M: f32 = 0.003;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
     rings: Vec<(Vector3<f32>, UnitQuaternion<f32>)>,
-    /// Not known of a past or far session: neither rings nor jaws are recorded.
-    opening_rad: Option<[f32; SIDES]>,
+    /// Not known in sessions of older versions.
+    opening_rad: [Option<f32>; SIDES],
     /// Places that were marked; whether a lump lies there, which is only shown when the trial is over.
     pub(super) marks: Vec<(Vector3<f32>, bool)>,
     pub(super) loops: [LoopSeen; SIDES],
@@ -31,23 +32,21 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// What the simulation told last; `None` in a scene without a training task of its own.
+    /// What was told last; `None` in a scene without a training task of its own.
     pub(super) fn of(live: &Live) -> Option<Self> {
         if !live.scene.is_played() {
             return None;
         }
-        let Some(moment) = &live.moment else {
-            let loops = [LoopSeen::default(); SIDES];
-            return Some(Self { rings: vec![], opening_rad: None, marks: vec![], loops, ended: false });
-        };
-        let (rings, marks) = (moment.rings.iter().flatten(), moment.training.marks.iter().flatten());
-        let has_jaws = live.scene.objects.is_some();
+        let (none, blank) = (Objects::default(), Training::default());
+        let Objects { rings, jaws, .. } = live.objects.as_ref().unwrap_or(&none);
+        let training = live.training.as_ref().unwrap_or(&blank);
+        let rings = rings.iter().flatten();
         Some(Self {
-            rings: rings.map(|ring| (ring.centre_m.cast(), ring.world_from_ring.cast())).collect(),
-            opening_rad: has_jaws.then(|| moment.opening_rad.map(|rad| rad as f32)),
-            marks: marks.map(|mark| (mark.at_m.cast(), mark.is_true)).collect(),
-            loops: moment.training.loops,
-            ended: moment.training.ended,
+            rings: rings.map(|ring| (ring.translation.vector.cast(), ring.rotation.cast())).collect(),
+            opening_rad: jaws.map(|jaws| jaws.map(|jaws| jaws.opening_rad as f32)),
+            marks: training.marks.iter().flatten().map(|mark| (mark.at_m.cast(), mark.is_true)).collect(),
+            loops: training.loops,
+            ended: training.ended,
         })
     }
 }
@@ -86,7 +85,7 @@ pub(super) fn jaws(
     tip_m: &Vector3<f32>,
     shadows: &mut Shadows,
 ) -> Option<Vector3<f32>> {
-    let (setting, opening_rad) = (scene.objects.as_ref()?, shown.opening_rad?[side.index()]);
+    let (setting, opening_rad) = (scene.objects.as_ref()?, shown.opening_rad[side.index()]?);
     let [length_m, radius_m] = [setting.jaws.finger_length_m, setting.jaws.finger_radius_m].map(|m| m as f32);
     let hinge_m = tip_m + Vector3::z() * length_m;
     for sign in [-1.0, 1.0] {

@@ -113,7 +113,7 @@ pub(super) fn board_of(scene: &Scene) -> Option<&nima_physics::Board> {
 
 /// How far the trial has come, in words; `None` in a scene where that is not known.
 pub(super) fn told(live: &Live, is_led: bool) -> Option<String> {
-    let training = &live.moment.as_ref()?.training;
+    let training = live.training.as_ref()?;
     if live.scene.wire.is_some() {
         return Some(text::training::wire(training.touches, training.share, training.ended, is_led));
     }
@@ -143,16 +143,14 @@ pub(super) fn line_ui(ui: &mut Ui, rect: Rect, live: &Live, (is_led, figures): (
 
 #[cfg(test)]
 mod tests {
-    use nima_machine::{config::RigConfig, rig::SIDES};
-    use nima_world::{LoopSeen, MARKS_MAX, Mark, Moment, Training};
+    use nima_machine::config::RigConfig;
+    use nima_world::{LoopSeen, MARKS_MAX, Mark, Training};
 
     use super::*;
 
     fn live(scene: &str, training: &Training) -> Live {
         let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
-        let loads = [nima_physics::Loads::default(); SIDES];
-        live.moment =
-            Some(Moment { t_s: 0.0, rings: [None; 12], opening_rad: [0.0; SIDES], loads, training: *training });
+        live.training = Some(*training);
         live
     }
 

@@ -1,0 +1,18 @@
+//! Messages in JSON, with a JSON schema: for what has more kinds than a fixed form holds.
+
+use crate::session::Encoding;
+
+/// How a reader is to understand a channel of JSON messages of this name and JSON schema.
+///
+/// ```
+/// use nima_recording::messages::json_encoding;
+/// assert_eq!(json_encoding("nima.Thing", r#"{"type":"object"}"#).message_encoding, "json");
+/// ```
+pub fn json_encoding(name: &str, schema: &str) -> Encoding {
+    Encoding {
+        schema: name.into(),
+        schema_encoding: "jsonschema".into(),
+        schema_data: schema.into(),
+        message_encoding: "json".into(),
+    }
+}

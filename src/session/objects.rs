@@ -1,0 +1,142 @@
+//! Objects of a scene in a session: where rings are, what jaws do, and what happens to them.
+//!
+//! They come from a simulation beside the loop and are no input of it, so the journal and its replay know nothing of them. What is recorded
+//! is told by an [`ObjectSource`]; [`happenings`], [`openings`] and [`at`] read it again.
+
+mod happening;
+
+use std::{fmt::Debug, ops::Range};
+
+use nalgebra::{Isometry3, Vector3};
+use nima_machine::rig::{SIDES, Side};
+use nima_recording::session::{Message, ReadError, Reader};
+use nima_score::Happening;
+
+pub use happening::kind;
+pub(crate) use happening::{SCHEMA, SCHEMA_NAME, decode, encode};
+
+use crate::{
+    plotted::{beginning_ns, topic},
+    topics::{HAPPENINGS_TOPIC, JAWS_PLOT, RINGS_TOPIC, columns::Columns, jaws_of, rings_of},
+};
+
+/// A moment on the screen shows objects that are at most so old, ns.
+const STALE_NS: u64 = 200_000_000;
+
+/// Jaws of an instrument, and what acts on it. Frame `world`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Jaws {
+    /// Angle between the fingers, rad.
+    pub opening_rad: f64,
+    /// Force that opens them, N at the end of a finger; negative if it closes them.
+    pub opens_n: f64,
+    /// Force of all contacts on the instrument, N.
+    pub force_n: Vector3<f64>,
+    /// Their torque about its tip, N m.
+    pub torque_nm: Vector3<f64>,
+    /// Whether a ring, a peg, the board and another instrument touch it.
+    pub touched: [bool; 4],
+}
+
+/// The objects of a scene at one time. Frame `world`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Objects {
+    /// Time of the loop, s.
+    pub t_s: f64,
+    /// Middle and orientation of each ring, m, by its number; z is the axis through the hole. `None`: out of view, or there is none.
+    pub rings: Vec<Option<Isometry3<f64>>>,
+    /// Jaws of each side; `None`: an instrument without jaws, or none.
+    pub jaws: [Option<Jaws>; SIDES],
+}
+
+/// Who tells a recording of objects: a simulation. It is asked on the recorder's thread and must not wait.
+pub trait ObjectSource: Send + Debug {
+    /// The next moment, in the order of time, if there is one.
+    fn moment(&mut self) -> Option<Objects>;
+
+    /// What happened next, in the order of time, if anything did.
+    fn happening(&mut self) -> Option<Happening>;
+}
+
+/// Whether happenings were told to the recording of this session, however many.
+pub fn are_told(reader: &Reader) -> bool {
+    has(reader, HAPPENINGS_TOPIC)
+}
+
+/// Whether rings or jaws are recorded in this session.
+pub fn are_shown(reader: &Reader) -> bool {
+    Side::ALL
+        .into_iter()
+        .map(|side| topic(side, JAWS_PLOT))
+        .chain([RINGS_TOPIC.to_owned()])
+        .any(|name| has(reader, &name))
+}
+
+fn has(reader: &Reader, topic: &str) -> bool {
+    reader.channels().iter().any(|channel| channel.topic == topic)
+}
+
+/// What happened between these times (ns since 1970), at seconds since the session began. What a later version tells and this one does not
+/// know is left out.
+///
+/// # Errors
+/// [`ReadError`] if the session cannot be read.
+pub fn happenings(reader: &Reader, times_ns: Range<u64>) -> Result<Vec<Happening>, ReadError> {
+    let begin_ns = beginning_ns(reader)?;
+    let mut all = Vec::new();
+    for message in reader.messages(&[HAPPENINGS_TOPIC], times_ns) {
+        let message = message?;
+        let t_s = message.log_time_ns().saturating_sub(begin_ns) as f64 / 1e9;
+        all.extend(decode(message.data()).map(|happening| Happening { t_s, ..happening }));
+    }
+    Ok(all)
+}
+
+/// How far the jaws of this side were open between these times (ns since 1970): seconds since the session began, rad.
+///
+/// # Errors
+/// [`ReadError`] if the session cannot be read.
+pub fn openings(reader: &Reader, side: Side, times_ns: Range<u64>) -> Result<Vec<(f64, f64)>, ReadError> {
+    let (begin_ns, topic) = (beginning_ns(reader)?, topic(side, JAWS_PLOT));
+    let Some(mut columns) = Columns::of(&topic).filter(|_| has(reader, &topic)) else { return Ok(Vec::new()) };
+    let mut all = Vec::new();
+    for message in reader.messages(&[&topic], times_ns) {
+        let message = message?;
+        let t_s = message.log_time_ns().saturating_sub(begin_ns) as f64 / 1e9;
+        all.extend(columns.read(message.data()).and_then(jaws_of).map(|jaws| (t_s, jaws.opening_rad)));
+    }
+    Ok(all)
+}
+
+/// The objects at this time (ns since 1970) of a session that began at `begin_ns`; `None` if nothing was told of them shortly before.
+///
+/// # Errors
+/// [`ReadError`] if the session cannot be read.
+pub fn at(reader: &Reader, begin_ns: u64, time_ns: u64) -> Result<Option<Objects>, ReadError> {
+    let jaws_topics = Side::ALL.map(|side| topic(side, JAWS_PLOT));
+    let topics = [RINGS_TOPIC, &jaws_topics[0], &jaws_topics[1]];
+    let place = |id| {
+        let channel = reader.channels().iter().find(|channel| channel.id == id)?;
+        topics.iter().position(|topic| *topic == channel.topic)
+    };
+    let mut newest = [None, None, None];
+    for message in reader.messages(&topics, time_ns.saturating_sub(STALE_NS)..time_ns.saturating_add(1)) {
+        let message = message?;
+        if let Some(place) = place(message.channel()) {
+            newest[place] = Some(message);
+        }
+    }
+    let Some(last_ns) = newest.iter().flatten().map(Message::log_time_ns).max() else { return Ok(None) };
+    let [rings, jaws @ ..] = &newest;
+    let read =
+        |(message, topic): (&Option<Message>, &String)| jaws_of(Columns::of(topic)?.read(message.as_ref()?.data())?);
+    let mut objects = Objects {
+        t_s: last_ns.saturating_sub(begin_ns) as f64 / 1e9,
+        rings: rings.as_ref().map(|rings| rings_of(rings.data())).unwrap_or_default(),
+        jaws: [None; SIDES],
+    };
+    for (side, one) in Side::ALL.into_iter().zip(jaws.iter().zip(&jaws_topics)) {
+        objects.jaws[side.index()] = read(one);
+    }
+    Ok(Some(objects))
+}

@@ -1,0 +1,116 @@
+//! A happening as a message: JSON, so that any event of the score is one.
+
+use nima_score::{Event, Happening};
+use serde_json::{Map, Value};
+
+/// Name and JSON schema of the messages. What an event has besides is named as in the score.
+pub(crate) const SCHEMA_NAME: &str = "nima.Happening";
+/// See [`SCHEMA_NAME`].
+pub(crate) const SCHEMA: &str = r#"{
+  "title": "nima.Happening",
+  "type": "object",
+  "properties": {
+    "t_s": {"type": "number", "description": "loop time, s"},
+    "event": {"type": "string", "description": "what happened"},
+    "side": {"type": ["string", "null"], "description": "instrument: left or right"},
+    "to": {"type": "string", "description": "instrument that takes the ring: left or right"},
+    "ring": {"type": "integer", "description": "number of the ring, from 0"},
+    "peg": {"type": "integer", "description": "number of the peg, from 0"},
+    "in_view": {"type": "boolean", "description": "in the endoscope's picture"}
+  },
+  "required": ["t_s", "event"]
+}"#;
+
+const TIME: &str = "t_s";
+const EVENT: &str = "event";
+
+/// The bytes of a message. The fields of the event stand beside its name, so that a viewer filters by them.
+pub(crate) fn encode(happening: &Happening) -> Vec<u8> {
+    let (name, fields) = parts(&happening.event);
+    let mut message = fields;
+    message.insert(TIME.to_owned(), happening.t_s.into());
+    message.insert(EVENT.to_owned(), name.into());
+    Value::Object(message).to_string().into_bytes()
+}
+
+/// The happening of a message; `None` for one that this program does not know.
+pub(crate) fn decode(message: &[u8]) -> Option<Happening> {
+    let Ok(Value::Object(mut fields)) = serde_json::from_slice(message) else { return None };
+    let t_s = fields.remove(TIME)?.as_f64()?;
+    let Some(Value::String(name)) = fields.remove(EVENT) else { return None };
+    let event =
+        if fields.is_empty() { Value::String(name) } else { Value::Object(Map::from_iter([(name, fields.into())])) };
+    Some(Happening { t_s, event: serde_json::from_value(event).ok()? })
+}
+
+/// The name of an event for counting: that of its message, with drops out of view apart.
+pub fn kind(event: &Event) -> String {
+    let (name, _) = parts(event);
+    if matches!(event, Event::RingDropped { in_view: false, .. }) { format!("{name}_out_of_view") } else { name }
+}
+
+/// Name and fields of an event, as the score serialises them.
+fn parts(event: &Event) -> (String, Map<String, Value>) {
+    match serde_json::to_value(event) {
+        Ok(Value::String(name)) => (name, Map::new()),
+        Ok(Value::Object(one)) => match one.into_iter().next() {
+            Some((name, Value::Object(fields))) => (name, fields),
+            Some((name, _)) => (name, Map::new()),
+            None => Default::default(),
+        },
+        _ => Default::default(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_score::Side;
+
+    use super::*;
+
+    #[test]
+    fn every_kind_of_event_comes_back_and_stands_flat_in_its_message() {
+        let side = Side::Left;
+        let events = [
+            Event::Begun,
+            Event::Ended,
+            Event::Aborted,
+            Event::RingGrasped { ring: 5, side },
+            Event::RingLifted { ring: 0, side },
+            Event::RingTransferred { ring: 1, to: Side::Right },
+            Event::RingPlaced { ring: 2, side, peg: 11 },
+            Event::RingDropped { ring: 2, side, in_view: false },
+            Event::RingKnockedOff { ring: 3, side: None },
+            Event::RingKnockedOff { ring: 3, side: Some(side) },
+            Event::LumpMarked { side, lump: None },
+            Event::WireTouched { side },
+            Event::WireLeft { side },
+        ];
+        for event in events {
+            let happening = Happening { t_s: 12.25, event };
+            assert_eq!(decode(&encode(&happening)), Some(happening));
+        }
+        let dropped = encode(&Happening { t_s: 0.5, event: events[7] });
+        let dropped: Value = serde_json::from_slice(&dropped).unwrap();
+        let expected: Value =
+            serde_json::json!({"t_s": 0.5, "event": "ring_dropped", "ring": 2, "side": "left", "in_view": false});
+        assert_eq!(dropped, expected);
+        assert_eq!([events[7], events[4]].map(|event| kind(&event)), ["ring_dropped_out_of_view", "ring_lifted"]);
+        assert!(serde_json::from_str::<Value>(SCHEMA).is_ok());
+    }
+
+    #[test]
+    fn what_is_no_happening_of_this_version_is_none() {
+        for text in [
+            "",
+            "{}",
+            "[1]",
+            r#"{"t_s": 1.0, "event": "ring_melted", "ring": 1}"#,
+            r#"{"t_s": 1.0, "event": "ring_grasped", "ring": -1, "side": "left"}"#,
+            r#"{"t_s": "now", "event": "begun"}"#,
+            r#"{"t_s": 1.0, "event": 3}"#,
+        ] {
+            assert_eq!(decode(text.as_bytes()), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Objects of a scene in a session, whoever tells of them: recorded, read, cut out and made anonymous.
+
+use std::{collections::VecDeque, path::Path, sync::atomic::AtomicBool};
+
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use nima_machine::{
+    rig::Side,
+    runtime::{self, Assembly, tap},
+};
+use nima_recording::session::Reader;
+use nima_score::{Event, Happening, Side as Hand};
+use nima_session::{
+    anonymous, cut,
+    file::{LineKind, Recorded},
+    objects::{Jaws, ObjectSource, Objects, are_shown, are_told, at, happenings, openings},
+    outlet::Destination,
+    plotted::beginning_ns,
+    recorder::Recorder,
+    report::Figures,
+};
+use nima_tests::plan;
+
+use crate::file::{about, recorded, replayed};
+
+/// Tells a hundred times a second of two rings, of which one is lost after two seconds, and of the right jaws.
+#[derive(Debug)]
+struct Told {
+    moments: VecDeque<Objects>,
+    happenings: VecDeque<Happening>,
+}
+
+impl ObjectSource for Told {
+    fn moment(&mut self) -> Option<Objects> {
+        self.moments.pop_front()
+    }
+
+    fn happening(&mut self) -> Option<Happening> {
+        self.happenings.pop_front()
+    }
+}
+
+fn moment(number: u32) -> Objects {
+    let t_s = f64::from(number) * 0.01;
+    let turn = UnitQuaternion::from_euler_angles(0.1, t_s, -0.3);
+    let ring = |x_m: f64| Isometry3::from_parts(Translation3::new(x_m, t_s, 0.1 * t_s), turn);
+    let rings = vec![Some(ring(0.01)), (number < 200).then(|| ring(-0.02))];
+    let jaws = Jaws {
+        opening_rad: 0.2 * t_s,
+        opens_n: -t_s,
+        force_n: Vector3::new(t_s, 1.0, 2.0),
+        torque_nm: Vector3::new(0.01, t_s, 0.03),
+        touched: [true, false, number > 100, false],
+    };
+    let mut objects = Objects { t_s, rings, ..Objects::default() };
+    objects.jaws[Side::Right.index()] = Some(jaws);
+    objects
+}
+
+/// Of every scene that there may be.
+fn events() -> Vec<Happening> {
+    let side = Hand::Left;
+    let events = [
+        (0.5, Event::RingGrasped { ring: 1, side }),
+        (1.0, Event::RingDropped { ring: 1, side, in_view: false }),
+        (1.001, Event::RingDropped { ring: 0, side, in_view: true }),
+        (1.5, Event::LumpMarked { side, lump: Some(2) }),
+        (1.75, Event::WireTouched { side }),
+        (2.5, Event::Ended),
+    ];
+    events.map(|(t_s, event)| Happening { t_s, event }).to_vec()
+}
+
+/// Three seconds of a loop, and what is told besides.
+fn record(path: &Path) {
+    let plan = plan("peg_transfer");
+    let (tap, end) = tap();
+    let recorder = Recorder::start(Destination::file(path), about(), plan.origin(), end).unwrap();
+    // More than the session: what is told of a time that the loop never came to is not in it.
+    recorder.watch(Box::new(Told { moments: (0..400).map(moment).collect(), happenings: events().into() }));
+    runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, 3.0, |_| None);
+    recorder.finish().unwrap();
+}
+
+fn all(reader: &Reader) -> Vec<Happening> {
+    happenings(reader, 0..u64::MAX).unwrap()
+}
+
+fn shown(reader: &Reader, t_s: f64) -> Option<Objects> {
+    let begin_ns = beginning_ns(reader).unwrap();
+    at(reader, begin_ns, begin_ns + (t_s * 1e9).round() as u64).unwrap()
+}
+
+#[test]
+fn what_is_told_of_objects_is_in_the_session_and_the_replay_is_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path);
+    let outcome = replayed(&path).unwrap();
+    assert_eq!((outcome.ticks, outcome.differs, outcome.hole, outcome.closed), (3000, None, None, true));
+    let reader = Reader::open(&path).unwrap();
+    assert!(reader.notes().is_empty() && are_told(&reader) && are_shown(&reader));
+    assert_eq!(all(&reader), events());
+    for (t_s, number) in [(0.0, 0), (1.237, 123), (2.5, 250)] {
+        assert_eq!(shown(&reader, t_s), Some(moment(number)), "at {t_s} s");
+    }
+    assert_eq!(shown(&reader, 3.5), None, "there is nothing new there");
+    let opened = openings(&reader, Side::Right, 0..u64::MAX).unwrap();
+    assert_eq!((opened.len(), opened[150]), (300, (1.5, 0.2 * 1.5)));
+    assert_eq!(openings(&reader, Side::Left, 0..u64::MAX).unwrap(), []);
+    let log = Recorded::open(&path).unwrap().log(0..u64::MAX).unwrap();
+    let told: Vec<_> = log.iter().filter(|line| line.kind == LineKind::Happening).collect();
+    assert!(told.len() == 6 && told[1].words.contains("RingDropped"), "{told:?}");
+    let counted = Figures::read(&path).unwrap().happenings.unwrap();
+    let counted: Vec<(&str, u64)> = counted.iter().map(|(kind, count)| (kind.as_str(), *count)).collect();
+    let expected = ["ended", "lump_marked", "ring_dropped", "ring_dropped_out_of_view", "ring_grasped", "wire_touched"];
+    assert_eq!(counted, expected.map(|kind| (kind, 1)));
+}
+
+#[test]
+fn a_stretch_and_an_anonymous_session_keep_the_objects() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, part, shared] = ["session", "part", "shared"].map(|name| folder.path().join(name));
+    record(&path);
+    let reader = Reader::open(&path).unwrap();
+    let begin_ns = beginning_ns(&reader).unwrap();
+    let times_ns = begin_ns + 1_000_000_000..begin_ns + 2_000_000_000;
+    let asked = AtomicBool::new(false);
+    cut::write(&reader, "session", &times_ns, &part, &asked).unwrap();
+    let known = anonymous::Known { program: "test", files: &[], is_ours: &|line| line.starts_with("Ring") };
+    anonymous::write(&reader, &known, &(0..u64::MAX), &shared, &asked).unwrap();
+    let [part, shared] = [part, shared].map(|path| Reader::open(&path).unwrap());
+    assert_eq!(all(&part), events()[1..5]);
+    assert_eq!(shown(&part, 1.237), Some(moment(123)));
+    assert_eq!(all(&shared), events());
+    for number in [0, 123, 250] {
+        assert_eq!(shown(&shared, f64::from(number) * 0.01), Some(moment(number)), "moment {number}");
+    }
+}
+
+#[test]
+fn a_session_in_which_nobody_told_of_objects_has_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    recorded(&path, &plan("peg_transfer"), 1.0, |_| None);
+    let reader = Reader::open(&path).unwrap();
+    assert!(!are_told(&reader) && !are_shown(&reader));
+    assert_eq!((all(&reader), shown(&reader, 0.5)), (vec![], None));
+    assert_eq!(Figures::read(&path).unwrap().happenings, None);
+}

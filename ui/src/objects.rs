@@ -1,0 +1,54 @@
+//! The objects of a simulated scene, as a session and the screen have them.
+
+use nalgebra::{Isometry3, Translation3};
+use nima_machine::rig::{SIDES, Side};
+use nima_score::Happening;
+use nima_session::objects::{Jaws, ObjectSource, Objects};
+use nima_world::{Moment, Plan, Watched};
+
+/// A simulation tells its recording of its objects.
+#[derive(Debug)]
+pub(crate) struct OfSimulation {
+    watched: Watched,
+    jaws: [bool; SIDES],
+}
+
+impl OfSimulation {
+    /// Of the simulation of this plan.
+    pub(crate) fn source(plan: &Plan, watched: Watched) -> Box<dyn ObjectSource> {
+        let has_jaws = plan.scene.objects.is_some();
+        Box::new(Self { watched, jaws: Side::ALL.map(|side| has_jaws && plan.has(side)) })
+    }
+}
+
+impl ObjectSource for OfSimulation {
+    fn moment(&mut self) -> Option<Objects> {
+        self.watched.moments().next().map(|moment| objects(&moment, self.jaws))
+    }
+
+    fn happening(&mut self) -> Option<Happening> {
+        self.watched.happenings().next()
+    }
+}
+
+/// What a simulation tells of a moment; which instruments have jaws is known.
+pub(crate) fn objects(moment: &Moment, has_jaws: [bool; SIDES]) -> Objects {
+    let Moment { t_s, rings, opening_rad, loads, training: _ } = moment;
+    let known = rings.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+    let rings = rings
+        .iter()
+        .take(known)
+        .map(|ring| ring.map(|ring| Isometry3::from_parts(Translation3::from(ring.centre_m), ring.world_from_ring)));
+    let mut jaws = [None; SIDES];
+    for side in Side::ALL.map(Side::index) {
+        let touching = loads[side].touching;
+        jaws[side] = has_jaws[side].then_some(Jaws {
+            opening_rad: opening_rad[side],
+            opens_n: loads[side].opening_n,
+            force_n: loads[side].tip_n,
+            torque_nm: loads[side].torque_nm,
+            touched: [touching.ring, touching.peg, touching.board, touching.other_instrument],
+        });
+    }
+    Objects { t_s: *t_s, rings: rings.collect(), jaws }
+}

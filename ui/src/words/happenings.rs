@@ -1,0 +1,72 @@
+//! What happens to the objects of a scene, in words. People count rings and pegs from 1, data from 0.
+
+use nima_score::Event;
+
+/// What happened. An event without a sentence of its own is told by its name and its values.
+pub(crate) fn happening(event: &Event) -> String {
+    let number = |count: usize| count.saturating_add(1);
+    match *event {
+        Event::Begun => "the trial begins".to_owned(),
+        Event::Ended => "the task is done".to_owned(),
+        Event::Aborted => "the trial was given up".to_owned(),
+        Event::RingGrasped { ring, side } => {
+            format!("ring {} grasped by the {} instrument", number(ring), side.name())
+        }
+        Event::RingLifted { ring, side } => {
+            format!("ring {} lifted off its peg by the {} instrument", number(ring), side.name())
+        }
+        Event::RingTransferred { ring, to } => format!("ring {} passed to the {} instrument", number(ring), to.name()),
+        Event::RingPlaced { ring, side, peg } => {
+            format!("ring {} placed on peg {} by the {} instrument", number(ring), number(peg), side.name())
+        }
+        Event::RingDropped { ring, side, in_view } => {
+            let out = if in_view { "" } else { ", out of view" };
+            format!("ring {} dropped by the {} instrument{out}", number(ring), side.name())
+        }
+        Event::RingKnockedOff { ring, side } => {
+            let by = side.map_or_else(String::new, |side| format!(" by the {} instrument", side.name()));
+            format!("ring {} knocked off its peg{by}", number(ring))
+        }
+        other => plain(&other),
+    }
+}
+
+fn plain(event: &Event) -> String {
+    let value = serde_json::to_value(event).unwrap_or_default();
+    let with_spaces = |name: &str| name.replace('_', " ");
+    match value.as_object().and_then(|one| one.iter().next()) {
+        Some((name, fields)) => {
+            let fields = fields.as_object().into_iter().flatten();
+            let told = fields.filter(|(_, value)| !value.is_null()).map(|(key, value)| {
+                format!(", {} {}", with_spaces(key), value.as_str().map_or_else(|| value.to_string(), str::to_owned))
+            });
+            with_spaces(name) + &told.collect::<String>()
+        }
+        None => with_spaces(value.as_str().unwrap_or_default()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_score::Side;
+
+    use super::*;
+
+    #[test]
+    fn events_are_told_in_words_and_unknown_ones_by_their_names() {
+        let side = Side::Left;
+        for (event, words) in [
+            (
+                Event::RingDropped { ring: 2, side, in_view: false },
+                "ring 3 dropped by the left instrument, out of view",
+            ),
+            (Event::RingKnockedOff { ring: 0, side: None }, "ring 1 knocked off its peg"),
+            (Event::RingPlaced { ring: 5, side, peg: 11 }, "ring 6 placed on peg 12 by the left instrument"),
+            (Event::WireTouched { side }, "wire touched, side left"),
+            (Event::LumpMarked { side, lump: None }, "lump marked, side left"),
+            (Event::LumpMarked { side, lump: Some(3) }, "lump marked, lump 3, side left"),
+        ] {
+            assert_eq!(happening(&event), words);
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! Rings on pegs, recorded: what the run counted is counted again from its session.
+
+use std::path::Path;
+
+use nima_recording::session::Reader;
+use nima_session::{
+    file::{LineKind, Recorded},
+    objects,
+};
+use serde_json::Value;
+
+use crate::{
+    every_command::{json, nima},
+    export::done,
+};
+
+/// The scene with one ring, which two simulated hands carry over and back in some twenty seconds.
+fn scene(folder: &Path) -> String {
+    let text = include_str!("../../../config/scenes/rings.toml");
+    let one = text.replace("[objects]", "[objects]\nrings = [{ peg = 1 }]");
+    assert!(one != text, "the scene has the section of objects");
+    let path = folder.join("one_ring.toml");
+    std::fs::write(&path, one).unwrap();
+    path.display().to_string()
+}
+
+fn record(scene: &str, seconds: &str, path: &str) -> Value {
+    let run = ["run", "--virtual", "--scene", scene, "--mode", "matched", "--seconds", seconds, "--record", path];
+    json(&[&run[..], &["--json"]].concat())["score"].take()
+}
+
+/// Every measure of the run in the score of its session, bit for bit.
+fn same(run: &Value, session: &Value) {
+    let run = run.as_object().unwrap();
+    assert!(run.len() > 50, "{run:?}");
+    for (key, value) in run {
+        assert_eq!(Some(value), session.get(key), "{key}");
+    }
+}
+
+#[test]
+fn the_score_of_a_session_is_that_of_its_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let scene = scene(folder.path());
+    let [whole, part, shared, early] = ["whole.mcap", "part.mcap", "shared.mcap", "early.mcap"].map(at);
+    let run = record(&scene, "26", &whole);
+    for (key, expected) in [("transfers", 2.0), ("lifts", 2.0), ("rings_placed", 2.0), ("drops", 0.0)] {
+        assert_eq!(run[key].as_f64(), Some(expected), "{key}: {run}");
+    }
+    let value = |key: &str| run[key].as_f64().unwrap_or_else(|| panic!("{key}: {run}"));
+    let points = 300.0 - value("completion_time_s");
+    assert!(value("completion_time_s") < 25.0 && (value("fls_like_score") - points).abs() < 1e-9, "{run}");
+    assert!(value("jaw_openings_left") >= 3.0 && value("jaw_openings_right") >= 3.0, "{run}");
+    assert!((0.5..10.0).contains(&value("time_to_first_grasp_s")), "{run}");
+    let scored = json(&["score", &whole, "--json"]);
+    assert_eq!(scored["task"], "Rings on pegs");
+    same(&run, &scored);
+    // Rings are no input of the loop.
+    assert_eq!(json(&["replay", &whole, "--json"])["differs"], Value::Null);
+    done(&["export", &whole, "--out", &shared, "--anonymous"]);
+    same(&run, &json(&["score", &shared, "--json"]));
+    let lines = Recorded::open(Path::new(&shared)).unwrap().log(0..u64::MAX).unwrap();
+    let told: Vec<_> = lines.iter().filter(|line| line.kind == LineKind::Happening).collect();
+    assert!(told.len() >= 10 && told.iter().all(|line| line.words != "(withheld)"), "{told:?}");
+    done(&["export", &whole, "--out", &part, "--from", "4", "--to", "12"]);
+    let [of_part, of_whole] =
+        [json(&["score", &part, "--json"]), json(&["score", &whole, "--from", "4", "--to", "12", "--json"])];
+    assert_eq!((&of_part["transfers"], &of_part["completion_time_s"]), (&Value::from(1.0), &Value::Null), "{of_part}");
+    same(&of_whole.as_object().map(|all| without_names(all)).unwrap(), &of_part);
+
+    // A trial that was not finished.
+    same(&record("rings", "8", &early), &json(&["score", &early, "--json"]));
+    let told = String::from_utf8(nima(&["score", &early]).stdout).unwrap();
+    assert!(told.contains("task: Rings on pegs") && told.contains("lifts"), "{told}");
+
+    let figures = json(&["report", &whole, "--out", &at("pages"), "--json"]);
+    assert_eq!(figures["sessions"][0]["happenings"]["ring_transferred"], 2, "{figures}");
+    let page = std::fs::read_to_string(folder.path().join("pages/report.html")).unwrap();
+    for words in ["What happened to the objects", "ring transferred", "ring 1 passed to the right instrument"] {
+        assert!(page.contains(words), "{words}");
+    }
+    let reader = Reader::open(Path::new(&whole)).unwrap();
+    assert!(objects::are_shown(&reader) && reader.notes().is_empty());
+}
+
+fn without_names(score: &serde_json::Map<String, Value>) -> Value {
+    let names = ["session", "condition", "task"];
+    score
+        .iter()
+        .filter(|(key, _)| !names.contains(&key.as_str()))
+        .map(|(key, value)| (key.clone(), value.clone()))
+        .collect()
+}

@@ -10,9 +10,9 @@ use nima_machine::{
 use nima_recording::store::utc_now;
 use nima_session::outlet::Destination;
 use nima_user_study::{Condition, Ending, Phase, Step, Study, StudyFile, TrialId, simulated::Hand};
-use nima_world::{Plan, scene::Scene};
+use nima_world::{Plan, Watched, scene::Scene};
 
-use crate::{leaving::Leave, recording, scoring::Scoring, words::Remedy as _};
+use crate::{leaving::Leave, objects::OfSimulation, recording, scoring::Scoring, words::Remedy as _};
 
 /// The ready study files.
 const STUDIES: [(&str, &str); 2] = [
@@ -111,7 +111,10 @@ pub(crate) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, lea
         .map_err(|_| anyhow!("the rig of the study does not allow this condition any more: was its file changed?"))?;
     let recorded = running.session().map(|file| recording::begin(Destination::file(file), &plan, "virtual"));
     let (tap, recorder) = recorded.transpose()?.unzip();
-    let (assembly, watched) = plan.watched()?;
+    let (assembly, mut watched) = plan.watched()?;
+    if let Some((recorder, watched)) = recorder.as_ref().zip(watched.as_mut().and_then(Watched::another)) {
+        recorder.watch(OfSimulation::source(&plan, watched));
+    }
     let mut scoring = Scoring::new(&task, watched);
     let mut fault = None;
     let each = |tick: &Tick| {

@@ -67,7 +67,7 @@ fn the_score_of_a_session_is_that_of_its_run() {
     let [of_part, of_whole] =
         [json(&["score", &part, "--json"]), json(&["score", &whole, "--from", "4", "--to", "12", "--json"])];
     assert_eq!((&of_part["transfers"], &of_part["completion_time_s"]), (&Value::from(1.0), &Value::Null), "{of_part}");
-    same(&of_whole.as_object().map(|all| without_names(all)).unwrap(), &of_part);
+    same(&of_whole.as_object().map(without_names).unwrap(), &of_part);
 
     // A trial that was not finished.
     same(&record("rings", "8", &early), &json(&["score", &early, "--json"]));

@@ -43,7 +43,8 @@ fn moment(number: u32) -> Objects {
     let t_s = f64::from(number) * 0.01;
     let turn = UnitQuaternion::from_euler_angles(0.1, t_s, -0.3);
     let ring = |x_m: f64| Isometry3::from_parts(Translation3::new(x_m, t_s, 0.1 * t_s), turn);
-    let rings = vec![Some(ring(0.01)), (number < 200).then(|| ring(-0.02))];
+    // One that is out of view, before another.
+    let rings = vec![(number < 200).then(|| ring(-0.02)), Some(ring(0.01))];
     let jaws = Jaws {
         opening_rad: 0.2 * t_s,
         opens_n: -t_s,

@@ -95,7 +95,7 @@ fn tried_m(wire: &Wire, setting: &WireSetting, centre_m: &Vector3<f64>) -> f64 {
     };
     let pieces = points_m.windows(2).flat_map(|pair| {
         let (from_m, way_m) = (pair[0], pair[1] - pair[0]);
-        (0..=50).map(move |part| from_m + way_m * (f64::from(part) / 50.0))
+        (0..=1000).map(move |part| from_m + way_m * (f64::from(part) / 1000.0))
     });
     pieces.map(gap_m).fold(f64::INFINITY, f64::min)
 }

@@ -51,7 +51,7 @@ fn the_score_of_a_session_is_that_of_its_run() {
     let value = |key: &str| run[key].as_f64().unwrap_or_else(|| panic!("{key}: {run}"));
     let points = 300.0 - value("completion_time_s");
     assert!(value("completion_time_s") < 25.0 && (value("fls_like_score") - points).abs() < 1e-9, "{run}");
-    assert!(value("jaw_openings_left") >= 3.0 && value("jaw_openings_right") >= 3.0, "{run}");
+    assert!(value("jaw_openings_left") >= 1.0 && value("jaw_openings_right") >= 1.0, "{run}");
     assert!((0.5..10.0).contains(&value("time_to_first_grasp_s")), "{run}");
     let scored = json(&["score", &whole, "--json"]);
     assert_eq!(scored["task"], "Rings on pegs");

@@ -58,7 +58,7 @@ fn rings_and_jaws_of_a_rig_elsewhere_are_shown() {
         None
     });
     teller.tell(Heard::Shows(read(&writer.take()).unwrap()));
-    reads(&mut window, "WATCHING");
+    window.run_steps(3);
     assert_eq!(window.state().live().unwrap().objects.as_ref(), Some(&objects));
     // The next bundle tells nothing new of them.
     teller.tell(Heard::Shows(sent(&plan).drain(..20).collect()));

@@ -171,11 +171,12 @@ fn the_past_looks_like_the_past_and_one_key_leaves_it() {
 }
 
 /// What a pointer is told that moves along the time line until it is over these words.
-fn found_along_the_line(harness: &mut Harness<'_, ConsoleApp>, words: &str) -> bool {
+fn found_along_the_line(harness: &mut Harness<'_, ConsoleApp>, at: f64, words: &str) -> bool {
     let line = harness.get_by_label("Time of the session").rect();
-    (0..=line.width() as usize / 3).any(|step| {
-        harness.hover_at(line.left_center() + egui::vec2(3.0 * step as f32, 0.0));
-        harness.run_steps(2);
+    [0.0, -6.0, 6.0].into_iter().any(|aside| {
+        harness.hover_at(line.left_center() + egui::vec2(line.width() * at as f32 + aside, 0.0));
+        // A hint appears when the pointer has been still for half a second.
+        harness.run_steps(20);
         shows(harness, words)
     })
 }
@@ -205,7 +206,8 @@ fn rings_jaws_and_what_happened_to_them_are_on_the_screen_of_the_past() {
     let (lifted_m, holds_rad) = ring_m(&mut harness, lifted_s + 0.5);
     assert!(on_the_board_m < 0.005 && lifted_m > 0.02, "{on_the_board_m} m, {lifted_m} m");
     assert!(closed_rad < 0.05 && holds_rad > 0.05, "{closed_rad} rad, {holds_rad} rad");
-    assert!(found_along_the_line(&mut harness, "ring 1 lifted off its peg by the left instrument"));
+    wait(&mut harness, "the session is read", |harness| !shows(harness, "% read"));
+    assert!(found_along_the_line(&mut harness, lifted_s / 9.0, "ring 1 lifted off its peg by the left instrument"));
 }
 
 /// Steps the window until this session is in the list and its row stands still.

@@ -202,7 +202,7 @@ fn rings_and_jaws_are_shown_as_they_were_and_move_while_it_is_played() {
         objects.t_s = expected.t_s;
         Some(objects == *expected)
     };
-    for t_s in [0.0, 0.005, 1.234, 4.0, 5.99] {
+    for t_s in [0.005, 1.234, 4.0, 5.99] {
         settled(&mut past, t_s);
         assert_eq!(same(&past), Some(true), "at {t_s} s");
     }
@@ -210,7 +210,8 @@ fn rings_and_jaws_are_shown_as_they_were_and_move_while_it_is_played() {
     past.live = None;
     until(&mut past, "shown at once", |past| past.live.is_some());
     assert_eq!(same(&past), Some(true));
-    settled(&mut past, 2.0);
+    // The left instrument's jaws close on the first ring at 2 s.
+    settled(&mut past, 1.4);
     past.toggle();
     let openings = (0..60).map(|_| {
         let before = past.shown_s();

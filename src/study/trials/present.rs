@@ -189,9 +189,13 @@ impl Report {
         let quoted = |word: &str| format!("\"{}\"", word.replace('\\', "\\\\").replace('"', "\\\""));
         let measures: Vec<String> = self.measures.iter().map(|measure| quoted(&measure.measure)).collect();
         format!(
-            r#"# Repeats the analysis in R: Rscript analysis.R TRIALS.csv. Needs lmerTest for the mixed model.
-path <- commandArgs(trailingOnly = TRUE)
-trials <- read.csv(if (length(path)) path[1] else {table}, check.names = FALSE)
+            r#"# Repeats the analysis in R: Rscript analysis.R [TRIALS.csv]. Needs lmerTest for the mixed model.
+given <- commandArgs(trailingOnly = TRUE)
+path <- if (length(given)) given[1] else {table}
+script <- sub("^--file=", "", grep("^--file=", commandArgs(), value = TRUE))
+# The folder may have been moved, or R started elsewhere: then the table lies beside this script.
+if (!file.exists(path) && length(script)) path <- file.path(dirname(script), basename(path))
+trials <- read.csv(path, check.names = FALSE)
 trials$condition <- relevel(factor(trials$condition), ref = {reference})
 for (measure in c({measures})) {{
   cat("\n##", measure, "\n")

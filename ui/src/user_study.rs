@@ -152,11 +152,12 @@ pub(crate) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, lea
 }
 
 impl Ran {
-    /// In words, without the condition.
-    pub(crate) fn in_words(&self) -> String {
+    /// In words, without the condition; and without the result, unless it is shown.
+    pub(crate) fn in_words(&self, shows_result: bool) -> String {
         let Self { trial, ending, completion_time_s, why } = self;
         let what = if trial.phase == Phase::Practice { "practice trial" } else { "trial" };
         let how = match (ending, completion_time_s, why) {
+            (Some(_), ..) if !shows_result => "over (this time without its result)".to_owned(),
             (_, Some(time_s), _) => format!("completed in {time_s:.1} s"),
             (Some(Ending::OutOfTime), ..) => "the time is over".to_owned(),
             (.., Some(why)) => format!("broken off ({why})"),

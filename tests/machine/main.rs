@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod bimanual;
+mod contacts;
 mod davinci;
 mod letting_go;
 mod over_a_network;

@@ -143,6 +143,11 @@ impl World {
         self.loads = *loads;
     }
 
+    /// See [`Hand::share_pace`].
+    pub(super) const fn share_pace(&mut self, pace: f64) {
+        self.hand.share_pace(pace);
+    }
+
     /// The simulated hand, for tests and displays.
     pub const fn hand(&self) -> &Hand {
         &self.hand

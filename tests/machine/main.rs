@@ -4,6 +4,7 @@
 mod bimanual;
 mod contacts;
 mod davinci;
+mod feeling;
 mod letting_go;
 mod over_a_network;
 mod ready_check;

@@ -2,7 +2,7 @@
 //!
 //! Takes [`Sample`]s of motion (m) and force (N) of both hands at about 1 kHz, and [`Happening`]s (a ring placed, a wire touched); returns a
 //! [`Score`] of named measures, each with unit, definition and source. [`Proficiency`] and [`LearningCurve`] judge a sequence of
-//! trials. This crate knows no loop, device, file, thread or clock. `docs/score.md` lists the measures.
+//! trials, [`Guidance`] says after which of them the trainee is told the result. This crate knows no loop, device, file, thread or clock. `docs/score.md` lists the measures.
 //!
 //! ```
 //! use nalgebra::Vector3;
@@ -31,6 +31,7 @@ mod economy;
 mod ellipsoid;
 mod events;
 mod force;
+mod guidance;
 mod hand;
 mod happening;
 mod jaw;
@@ -48,6 +49,7 @@ mod tests;
 mod two_hands;
 
 pub use catalogue::{Definition, MEASURES};
+pub use guidance::{Feedback, Guidance};
 pub use happening::{Event, Happening};
 pub use learning::{LEAST_TRIALS, LearningCurve, Shape};
 pub use proficiency::{Proficiency, Standing};

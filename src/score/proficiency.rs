@@ -63,8 +63,7 @@ impl Proficiency {
             return self.standing;
         }
         self.trials += 1;
-        let in_time = completion_time_s.is_some_and(|time_s| time_s <= self.criterion.time_s);
-        self.standing = self.after(in_time && drops_out_of_view <= self.criterion.drops_out_of_view);
+        self.standing = self.after(self.criterion.is_met(completion_time_s, drops_out_of_view));
         self.standing
     }
 

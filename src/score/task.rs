@@ -94,6 +94,13 @@ impl Default for Criterion {
     }
 }
 
+impl Criterion {
+    /// Whether a trial meets it: by its completion time (s; `None` if it was not completed) and its drops out of view.
+    pub fn is_met(&self, completion_time_s: Option<f64>, drops_out_of_view: u32) -> bool {
+        completion_time_s.is_some_and(|time_s| time_s <= self.time_s) && drops_out_of_view <= self.drops_out_of_view
+    }
+}
+
 impl TaskFile {
     /// Reads the text of a task file.
     ///

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, fmt};
 
-use nima_score::{Criterion, MEASURES, Side, TaskFile};
+use nima_score::{Criterion, Feedback, MEASURES, Side, TaskFile};
 use serde::{Deserialize, Serialize};
 
 use crate::{Condition, ExclusionRule, Label, Questionnaire, telling};
@@ -65,6 +65,9 @@ pub struct StudyFile {
     /// Practice before the first trial.
     #[serde(default)]
     pub practice: Option<Practice>,
+    /// After which trials the participant is shown the result.
+    #[serde(default)]
+    pub feedback: Feedback,
     /// Breaks.
     #[serde(default)]
     pub breaks: Option<Breaks>,
@@ -281,7 +284,19 @@ impl StudyFile {
         }
     }
 
+    /// What tells skill: the criterion of practice, or that of the study's task.
+    pub(crate) fn skill(&self) -> Option<Criterion> {
+        let practised = self.practice.as_ref().map(|practice| practice.criterion);
+        practised.or_else(|| self.task.as_ref().map(|task| task.proficiency))
+    }
+
     fn check_practice(&self, wrong: &mut Vec<String>) {
+        if self.feedback == Feedback::Fades && self.skill().is_none() {
+            wrong.push(
+                "feedback = \"fades\" goes by a criterion of skill: add [practice.criterion], or a [task] with proficiency"
+                    .to_owned(),
+            );
+        }
         let Some(Practice { criterion, .. }) = &self.practice else { return };
         let Criterion { time_s, consecutive, additional, max_trials, .. } = *criterion;
         if !(time_s > 0.0 && time_s <= 1200.0) {

@@ -69,7 +69,7 @@ pub use exclusion::{Comparison, Excludes, Exclusion, ExclusionRule};
 pub use file::{Breaks, Interrupted, Mistakes, NotReached, Practice, Questionnaires, StudyFile};
 pub use label::Label;
 pub use learning::Learning;
-pub use plan::{Participant, Plan, Practising};
+pub use plan::{Participant, Plan, Practising, Told};
 pub use progress::{Made, Progress};
 pub use questionnaire::{
     PAIRS, Questionnaire, REALISM_ITEM, SUS_ITEMS, TLX_SCALES, TlxScale, of_sus, raw_tlx, weighted_tlx,

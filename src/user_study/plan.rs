@@ -1,14 +1,15 @@
 //! What everybody may know of a study: `study.toml` in its folder.
 
-use nima_score::Criterion;
+use nima_score::{Criterion, Feedback};
 use serde::{Deserialize, Serialize};
 
 use crate::{
     Breaks, ExclusionRule, Interrupted, Label, NotReached, Practice, Questionnaires, StudyError, StudyFile, order, seal,
 };
 
-/// Of the form of the file.
-const VERSION: u32 = 1;
+/// Of the form of the file: the first without feedback.
+const VERSION: u32 = 2;
+const OLDEST: u32 = 1;
 
 /// A study without its conditions. What comes next follows from it and the journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,6 +40,9 @@ pub struct Plan {
     pub commitment: String,
     /// When practice is over.
     pub practice: Option<Practising>,
+    /// After which trials the participant is shown the result, and the criterion that tells skill.
+    #[serde(default)]
+    pub feedback: Told,
     /// When breaks are due.
     pub breaks: Option<Breaks>,
     /// Which questionnaires are filled in when.
@@ -55,6 +59,16 @@ pub struct Plan {
 #[expect(missing_docs, reason = "as in the study file")]
 pub struct Practising {
     pub not_reached: NotReached,
+    pub criterion: Criterion,
+}
+
+/// After which trials the participant is shown the result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Told {
+    /// The rule.
+    pub rule: Feedback,
+    /// What tells skill.
     pub criterion: Criterion,
 }
 
@@ -99,6 +113,7 @@ impl Plan {
             labels: labels.clone(),
             commitment,
             practice: file.practice.as_ref().map(practising),
+            feedback: Told { rule: file.feedback, criterion: file.skill().unwrap_or_default() },
             breaks: file.breaks,
             questionnaires: file.questionnaires.clone(),
             exclusion: file.exclusion.clone(),
@@ -109,10 +124,10 @@ impl Plan {
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         let plan: Self = toml::from_str(text).map_err(|error| error.message().lines().collect::<Vec<_>>().join(" "))?;
         match plan.version {
-            VERSION => Ok(plan),
-            other => {
-                Err(format!("it has version {other}, and this program knows version {VERSION}: use a newer program"))
-            }
+            OLDEST..=VERSION => Ok(plan),
+            other => Err(format!(
+                "it has version {other}, and this program knows versions {OLDEST} to {VERSION}: use a newer program"
+            )),
         }
     }
 

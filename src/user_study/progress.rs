@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use nima_score::{Proficiency, Standing};
+use nima_score::{Guidance, Proficiency, Standing};
 use serde::Serialize;
 
 use crate::{
@@ -41,6 +41,8 @@ pub struct Progress {
     pub practice_s: Vec<f64>,
     /// Practice, if there is any.
     pub practice: Option<Proficiency>,
+    /// Which results are shown to the participant.
+    guidance: Option<Guidance>,
     /// The trials that are over, in order.
     pub trials: Vec<Made>,
     /// Breaks taken, s.
@@ -62,7 +64,9 @@ pub struct Progress {
 impl Progress {
     /// Before the first step.
     pub(crate) fn of(plan: &Plan) -> Self {
-        Self { practice: plan.practice.map(|practice| Proficiency::new(practice.criterion)), ..Self::default() }
+        let guidance = Guidance::new(plan.feedback.rule, plan.feedback.criterion);
+        let practice = plan.practice.map(|practice| Proficiency::new(practice.criterion));
+        Self { practice, guidance: Some(guidance), ..Self::default() }
     }
 
     pub(crate) fn rest(&mut self, seconds: f64) {
@@ -73,6 +77,12 @@ impl Progress {
     /// The trial that has begun and not ended.
     pub fn open(&self) -> Option<TrialId> {
         self.open.map(|(trial, _)| trial)
+    }
+
+    /// Whether the participant may be shown the result of the trial that ended last: it follows from the rule of the study and this one's own
+    /// trials, practice included.
+    pub fn shows_result(&self) -> bool {
+        self.guidance.as_ref().is_none_or(Guidance::is_shown)
     }
 
     /// Trials made since the last break, practice included.
@@ -162,6 +172,10 @@ impl Progress {
     ) {
         self.attempts = 0;
         self.since_break += 1;
+        if let (Some((_, measures, _)), Some(guidance)) = (&result, &mut self.guidance) {
+            let (time_s, drops) = judged(measures);
+            guidance.take_trial(time_s, drops);
+        }
         if trial.phase == Phase::Practice {
             return self.practised(plan, result);
         }
@@ -174,10 +188,9 @@ impl Progress {
 
     fn practised(&mut self, plan: &Plan, result: Option<(Ending, Measures, Option<String>)>) {
         let measures = result.map(|(_, measures, _)| measures).unwrap_or_default();
-        let time_s = measures.get("completion_time_s").copied();
-        let drops = measures.get("drops_out_of_view").copied().unwrap_or(0.0);
+        let (time_s, drops) = judged(&measures);
         self.practice_s.push(time_s.unwrap_or(f64::NAN));
-        let standing = self.practice.as_mut().map(|practice| practice.take_trial(time_s, drops as u32));
+        let standing = self.practice.as_mut().map(|practice| practice.take_trial(time_s, drops));
         let excludes = plan.practice.is_some_and(|practice| practice.not_reached == NotReached::Exclude);
         if standing == Some(Standing::GivenUp) && excludes {
             self.excluded.get_or_insert_with(|| "the criterion of practice was not reached".to_owned());
@@ -200,6 +213,12 @@ impl Progress {
             self.end(plan, participant, trial, None, simulated, unblinded);
         }
     }
+}
+
+/// What a criterion judges by: completion time, s, and drops out of view.
+fn judged(measures: &Measures) -> (Option<f64>, u32) {
+    let drops = measures.get("drops_out_of_view").copied().unwrap_or(0.0);
+    (measures.get("completion_time_s").copied(), drops as u32)
 }
 
 fn practises(practice: &Proficiency) -> bool {

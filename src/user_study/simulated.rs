@@ -1,7 +1,8 @@
 //! Simulated people: skill, learning, fatigue and answers, the same for the same seed.
 //!
-//! They test the whole way from a study file to its report before the first person comes. They are no model of surgeons: the spread of
-//! their skill is made up, and their answers do not depend on the condition.
+//! They test the whole way from a study file to its report before the first person comes. They feel: what is more than the force that a person
+//! means to use slows the hand down, and it gives way (`docs/studies.md`). They are no model of surgeons: the spread of skill and intended force is
+//! made up, and their answers do not depend on the condition.
 
 use fastrand::Rng;
 
@@ -19,6 +20,8 @@ pub struct Person {
     /// What each trial since the last break slows down, as a share.
     tires: f64,
     tremor_m: f64,
+    /// The force that this one means to use, N.
+    intended_n: f64,
     /// Mean answers.
     load: [f64; 6],
     realism: f64,
@@ -31,6 +34,8 @@ pub struct Hand {
     pub pace: f64,
     /// Amplitude of the tremor, m.
     pub tremor_m: f64,
+    /// The force that it means to feel, N: more slows it down, and it gives way. `None` for one that feels nothing.
+    pub intended_n: Option<f64>,
     /// Of its random sequences.
     pub seed: u64,
 }
@@ -58,6 +63,7 @@ impl Person {
             tremor_m: between(&mut rng, 0.000_05, 0.000_15),
             load: std::array::from_fn(|_| between(&mut rng, 20.0, 70.0)),
             realism: between(&mut rng, 3.0, 6.0),
+            intended_n: between(&mut rng, 0.8, 1.6),
         }
     }
 
@@ -68,6 +74,7 @@ impl Person {
         Hand {
             pace: (self.skill / (learning * fatigue)).clamp(0.4, 1.3),
             tremor_m: self.tremor_m * fatigue,
+            intended_n: Some(self.intended_n),
             seed: self.seed.wrapping_add(u64::from(made) * 7919 + u64::from(attempt) * 104_729),
         }
     }

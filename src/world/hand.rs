@@ -7,6 +7,7 @@ use nima_core::noise::Noise;
 use nima_machine::rig::{Act, Acts};
 
 use crate::{
+    feeling::Feeling,
     scene::{Hand as HandConfig, Scene},
     searching::Searching,
 };
@@ -78,6 +79,11 @@ pub struct Hand {
     in_move_s: f64,
     /// What it looks for, where that decides on its task.
     search: Option<Box<Searching>>,
+    /// What it makes of the force, where that matters.
+    feeling: Option<Box<Feeling>>,
+    /// How fast its task goes on, and how fast that of both hands of a person does, where they have one task.
+    pace: f64,
+    shared_pace: Option<f64>,
     acts: Acts,
     time_s: f64,
     tremor_phase: [[f64; 3]; 3],
@@ -115,6 +121,9 @@ impl Hand {
             current: 0,
             in_move_s: 0.0,
             search: None,
+            feeling: scene.hand.intended_n.map(|intended_n| Box::new(Feeling::new(intended_n, scene.seed))),
+            pace: 1.0,
+            shared_pace: None,
             acts: Acts::NONE,
             time_s: 0.0,
             tremor_phase,
@@ -184,7 +193,10 @@ impl Hand {
     fn intended(&mut self, dt_s: f64) -> (Vector3<f64>, Vector3<f64>) {
         let (task_m, task_m_s) = self.task[self.current].way.at(self.in_move_s);
         let aside_m = self.aside_m();
-        let Some(led_m) = &mut self.led_m else { return (task_m + self.tremor_m(), task_m_s) };
+        let Some(led_m) = &mut self.led_m else {
+            let offset_m = self.feeling.as_ref().map_or_else(Vector3::zeros, |feeling| feeling.offset_m());
+            return (task_m + offset_m + self.tremor_m(), task_m_s * self.pace);
+        };
         let way_m = aside_m.unwrap_or(task_m) - *led_m;
         let step_m = GUIDE_M_S * dt_s;
         let share = if way_m.norm() > step_m { step_m / way_m.norm() } else { 1.0 };
@@ -207,8 +219,10 @@ impl Hand {
         if self.open {
             return self.fly(dt_s, force_n);
         }
+        let felt = self.feel(dt_s, force_n);
+        self.pace = self.shared_pace.unwrap_or(felt);
         if self.aside_m().is_none() {
-            self.in_move_s += dt_s;
+            self.in_move_s += dt_s * self.pace;
             if let Some(search) = &mut self.search {
                 search.feel(self.current, &self.position_m, force_n);
             }
@@ -229,12 +243,37 @@ impl Hand {
         self.position_m += self.velocity_m_s * dt_s;
     }
 
+    /// How fast what it feels lets its task go on.
+    pub(super) fn felt_pace(&self) -> f64 {
+        self.feeling.as_ref().map_or(1.0, |feeling| feeling.pace())
+    }
+
+    /// From now on its task goes on at this pace, which it shares with the other hand: in a task of both, neither may run ahead.
+    pub(super) const fn share_pace(&mut self, pace: f64) {
+        self.shared_pace = Some(pace);
+    }
+
+    /// What the person makes of this force (N); the pace of the task.
+    fn feel(&mut self, dt_s: f64, force_n: &Vector3<f64>) -> f64 {
+        let is_led = self.led_m.is_some();
+        let Some(feeling) = &mut self.feeling else { return 1.0 };
+        let pace = feeling.feel(force_n, dt_s);
+        if !is_led {
+            return pace;
+        }
+        feeling.rest();
+        1.0
+    }
+
     /// To the next part of the task.
     fn go_on(&mut self) {
         if let Some(act) = self.task[self.current].then {
             self.acts.note(act);
         }
         self.in_move_s = 0.0;
+        if let Some(feeling) = &mut self.feeling {
+            feeling.judge_anew();
+        }
         self.current = (self.current + 1) % self.task.len();
         if let Some(search) = &mut self.search {
             self.current = search.onward(self.current, &mut self.task);
@@ -326,6 +365,25 @@ mod tests {
         let fast = Hand::new(&scene);
         let seconds = |hand: &Hand| hand.task.iter().map(|part| part.way.seconds).sum::<f64>();
         assert!(seconds(&slow) > 1.0 && (seconds(&slow) / seconds(&fast) - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_person_who_feels_more_than_intended_slows_down_and_gives_way() {
+        let mut scene = Scene::load("free_motion").unwrap();
+        scene.hand.tremor_m = 0.0;
+        scene.hand.press_s = 2.0;
+        let mut after = |intended_n: Option<f64>, force_n: f64| {
+            scene.hand.intended_n = intended_n;
+            let mut hand = Hand::new(&scene);
+            for _ in 0..2100 {
+                hand.advance(1e-3, &Vector3::new(0.0, 0.0, force_n));
+            }
+            (hand.current, hand.position_m().z)
+        };
+        let (blind, feeling) = (after(None, 3.0), after(Some(1.0), 3.0));
+        assert_eq!((blind.0, feeling.0), (1, 0), "slower than the task");
+        assert!(feeling.1 > blind.1 + 0.005, "higher: {feeling:?} and {blind:?}");
+        assert_eq!(after(Some(1.0), 0.5), after(None, 0.5), "less than intended is no matter");
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod carrying;
 mod desk;
 pub mod emulated;
 pub mod emulators;
+mod feeling;
 mod hand;
 mod person;
 mod plan;

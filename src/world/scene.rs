@@ -112,6 +112,9 @@ pub struct Hand {
     /// What the speed of all movements of the task is multiplied by: the pace of one person and another.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub pace: f64,
+    /// The force that the person means to feel, N: of more, the hand makes less and goes on more slowly. Left out, it feels nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub intended_n: Option<f64>,
 }
 
 const fn one() -> f64 {
@@ -333,6 +336,8 @@ impl Scene {
         ranges.positive("hand.grip_stiffness_n_m", hand.grip_stiffness_n_m)?;
         ranges.not_negative("hand.grip_damping_n_s_m", hand.grip_damping_n_s_m)?;
         ranges.check("hand.pace", hand.pace, (0.1..=3.0).contains(&hand.pace), "from 0.1 to 3")?;
+        let intended_n = hand.intended_n.unwrap_or(1.0);
+        ranges.check("hand.intended_n", intended_n, (0.1..=20.0).contains(&intended_n), "from 0.1 to 20 N")?;
         self.validate_ground(&ranges)?;
         self.validate_objects(&ranges)?;
         if let Some(leader) = &self.leader {

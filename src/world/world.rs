@@ -4,9 +4,11 @@
 //! the workspace frame (z up). Deterministic for a seed. Parts that the scene does not list are absent and cost
 //! nothing. A command that is not finite is ignored; a force that is not finite counts as zero.
 
+mod measuring;
+
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::{calibration::frames::FrameSample, kinematics, noise::Noise};
-use nima_machine::rig::{Inputs, Outputs, Prompt, Sensed};
+use nima_core::noise::Noise;
+use nima_machine::rig::{Inputs, Outputs, Prompt};
 use nima_physics::Instrument;
 
 use crate::{
@@ -15,8 +17,7 @@ use crate::{
     person::Person,
     scene::{Follower, Leader, Scene, Wall},
     searching::Searching,
-    trocar,
-    wrist::{Loads, Wrist, along_shaft},
+    wrist::Wrist,
 };
 
 /// The simulated world of one arm pair: one hand, one leader, one follower, one sensor.
@@ -142,6 +143,11 @@ impl World {
         self.loads = *loads;
     }
 
+    /// See [`Hand::share_pace`].
+    pub(super) const fn share_pace(&mut self, pace: f64) {
+        self.hand.share_pace(pace);
+    }
+
     /// The simulated hand, for tests and displays.
     pub const fn hand(&self) -> &Hand {
         &self.hand
@@ -264,142 +270,7 @@ impl World {
         self.tip_m = self.command_m + (offset + slope * dt_s) * decay;
         self.tip_velocity_m_s = (velocity - slope * (omega * dt_s)) * decay;
     }
-
-    /// The person at the arm, inside this world or outside.
-    fn hands(&self) -> Touch {
-        self.person.as_ref().map_or(self.touch, Person::touch)
-    }
-
-    /// Force on the tip by the tissue or a person, N; call once per step.
-    fn contact_n(&mut self) -> Vector3<f64> {
-        let tissue_n = match &mut self.tissue {
-            Some(tissue) if !self.aside => tissue.contact_n(&self.tip_m, &self.tip_velocity_m_s),
-            _ => Vector3::zeros(),
-        };
-        let wall_n = |wall: &Wall| wall.contact_n(&self.tip_m, &self.tip_velocity_m_s);
-        let walls_n: Vector3<f64> = self.walls.iter().filter(|_| !self.aside).map(wall_n).sum();
-        tissue_n + walls_n + self.hands().tip + self.loads.tip_n
-    }
-
-    fn world_from_s1(&self) -> UnitQuaternion<f64> {
-        match (&self.carried, &self.person) {
-            (Some(carried), _) => *carried,
-            (None, Some(person)) => person.world_from_s1(),
-            (None, None) => along_shaft(&trocar::shaft(&self.trocar_m, &self.tip_m).0),
-        }
-    }
-
-    fn sense(&mut self) -> Sensed {
-        let tip_n = self.contact_n();
-        self.true_tip_n = tip_n;
-        let world_from_s1 = self.world_from_s1();
-        let Touch { tool, stand, .. } = self.hands();
-        if let Some(wrist) = &mut self.wrist {
-            let trocar = self.trocar.as_ref().filter(|_| !self.aside);
-            let twist_nm = self.loads.torque_nm;
-            let wall = trocar.map(|trocar| (trocar.force_n(), trocar.shaft(&self.tip_m).1));
-            return Sensed::AtWrist(
-                wrist.measure(&world_from_s1, &Loads { tip_n, twist_nm, wall, touch_n: tool, stand_n: stand }),
-            );
-        }
-        let noise_n = match &mut self.sensor_noise_n {
-            Some((sigma_n, noise)) => Vector3::from_fn(|_, _| *sigma_n * noise.gaussian()),
-            None => Vector3::zeros(),
-        };
-        Sensed::AtTip(tip_n + noise_n)
-    }
-
-    /// What a rig would measure now; once per step.
-    pub(super) fn measure(&mut self) -> Inputs {
-        let sensed = self.sense();
-        // This world has no arm of joints, and its tracker tells no places.
-        let wrench = sensed.wrist().map(|sample| sample.raw);
-        let hand_m = self.hand.position_m();
-        let leader_m = self
-            .leader
-            .map_or(hand_m, |Leader { resolution_m, .. }| hand_m.map(|x| (x / resolution_m).round() * resolution_m));
-        Inputs {
-            hand: kinematics::Hand::at(leader_m),
-            gripper_rad: self.jaws.then(|| self.hand.grip_rad()),
-            grip_n: self.jaws.then_some(self.loads.opening_n),
-            tip_m: self.tip_m,
-            sensed,
-            frames: FrameSample { wrench, ..FrameSample::from(leader_m) },
-            powered: true,
-            ..Inputs::NOTHING
-        }
-    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn force_n(inputs: &Inputs) -> Vector3<f64> {
-        match inputs.sensed {
-            Sensed::AtTip(force_n) => force_n,
-            sensed => panic!("not at the tip: {sensed:?}"),
-        }
-    }
-
-    fn run(scene: &Scene, seconds: f64) -> Vec<Inputs> {
-        let mut world = World::new(scene, 1000.0);
-        let mut outputs = Outputs::SAFE;
-        (0..(seconds * 1000.0) as usize)
-            .filter_map(|i| {
-                let inputs = world.exchange(i as f64 * 1e-3, &outputs);
-                outputs.tip_command_m = inputs.map(|inputs| inputs.hand.position_m);
-                inputs
-            })
-            .collect()
-    }
-
-    #[test]
-    fn peg_transfer_presses_with_a_few_newtons_and_lets_go() {
-        let inputs = run(&Scene::load("peg_transfer").unwrap(), 20.0);
-        let peak_n = inputs.iter().map(|i| force_n(i).z).fold(0.0, f64::max);
-        assert!((1.0..6.0).contains(&peak_n), "peak {peak_n} N");
-        let free = inputs.iter().filter(|i| force_n(i).norm() < 0.1).count();
-        assert!(free * 4 > inputs.len(), "a good part of the task is in free space: {free}");
-        let travel_m = inputs.iter().map(|i| i.tip_m.x).fold(0.0, f64::max);
-        assert!(travel_m > 0.025, "it reaches the far pegs: {travel_m}");
-    }
-
-    #[test]
-    fn a_seed_repeats_exactly() {
-        let scene = Scene::load("peg_transfer").unwrap();
-        assert_eq!(run(&scene, 2.0), run(&scene, 2.0));
-    }
-
-    #[test]
-    fn free_motion_measures_noise_only() {
-        let inputs = run(&Scene::load("free_motion").unwrap(), 10.0);
-        let mean = inputs.iter().map(force_n).sum::<Vector3<f64>>() / inputs.len() as f64;
-        assert!(mean.norm() < 0.002, "{mean}");
-    }
-
-    #[test]
-    fn without_a_listed_part_the_part_is_ideal() {
-        let mut scene = Scene::load("peg_transfer").unwrap();
-        (scene.tissue, scene.leader, scene.follower, scene.sensor) = (None, None, None, None);
-        let inputs = run(&scene, 5.0);
-        assert!(inputs.iter().all(|i| force_n(i) == Vector3::zeros()));
-        assert!(inputs.windows(2).all(|pair| pair[1].tip_m == pair[0].hand.position_m));
-    }
-
-    #[test]
-    fn a_force_on_the_hand_moves_it_and_a_poisoned_one_does_not() {
-        let scene = Scene::load("free_motion").unwrap();
-        let pushed = |force_n| {
-            let mut world = World::new(&scene, 1000.0);
-            for i in 0..500 {
-                world.exchange(f64::from(i) * 1e-3, &Outputs { hand_force_n: force_n, ..Outputs::SAFE });
-            }
-            world.hand().position_m()
-        };
-        let (still, up, poisoned) =
-            (pushed(Vector3::zeros()), pushed(Vector3::z() * 4.0), pushed(Vector3::z() * f64::NAN));
-        assert!((up.z - still.z) > 0.003, "{}", up.z - still.z);
-        assert_eq!(poisoned, still);
-    }
-}
+mod tests;

@@ -73,6 +73,8 @@ impl Worlds {
         }
         let steps = due.into_iter().max().unwrap_or(0);
         for step in 0..steps {
+            let pace = arms.iter().flatten().map(|world| world.hand().felt_pace()).fold(1.0, f64::min);
+            arms.iter_mut().flatten().for_each(|world| world.share_pace(pace));
             for (world, due) in arms.iter_mut().zip(due) {
                 world.iter_mut().filter(|_| step < due).for_each(World::step);
             }

@@ -2,7 +2,9 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod bimanual;
+mod contacts;
 mod davinci;
+mod feeling;
 mod letting_go;
 mod over_a_network;
 mod ready_check;

@@ -1,7 +1,11 @@
 //! Every scene, commands and faults: what is replayed is what was recorded.
 
+use nalgebra::Vector3;
 use nima_core::impedance::Mode;
-use nima_machine::messages::{Command, Tick};
+use nima_machine::{
+    messages::{Command, Tick},
+    rig::Act,
+};
 use nima_tests::plan;
 use nima_world::scene::Scene;
 
@@ -62,5 +66,48 @@ fn commands_are_replayed_when_they_came() {
         modes.dedup();
         states.dedup();
         assert!(modes.len() >= 3 && states.len() >= 6, "{scene}: {modes:?}, {states:?}");
+    }
+}
+
+/// Somebody leads the right instrument by the screen for a while, opens and closes its jaws, and begins the trial anew.
+fn by_mouse(tick: &Tick) -> Option<Command> {
+    Some(match tick.index {
+        9_000 => Command::Guide(Some(Vector3::new(0.02, -0.01, 0.02))),
+        9_500 => Command::Grip(Some(0.7)),
+        11_000 => Command::Guide(Some(Vector3::new(0.02, 0.0, 0.004))),
+        12_000 => Command::Grip(Some(0.0)),
+        13_000 => Command::Task(Act::Begin),
+        14_000 => Command::Grip(None),
+        14_500 => Command::Guide(None),
+        _ => return None,
+    })
+}
+
+#[test]
+fn rings_and_a_wire_replay_bit_for_bit_and_are_the_same_when_they_are_done_again() {
+    for scene in ["rings", "wire"] {
+        let mut plan = plan(scene);
+        plan.rig.mode = Mode::Matched;
+        let bits = |tick: &Tick| {
+            let felt = tick.measured_n.iter().chain(&tick.tip_m).chain(&tick.rendered_n).map(|x| x.to_bits());
+            felt.collect::<Vec<u64>>()
+        };
+        let done = || {
+            let mut told = Vec::new();
+            let kept = record(&plan, 30.0, |tick| {
+                told.extend(bits(tick));
+                by_mouse(tick)
+            });
+            (kept, told)
+        };
+        let [(kept, first), (_, second)] = [done(), done()];
+        assert!(first == second, "{scene}: the same commands give the same simulation");
+        let mut replayed = Vec::new();
+        let outcome = kept.replayed(|tick| replayed.extend(bits(tick))).unwrap();
+        assert_eq!((outcome.ticks, outcome.differs, outcome.hole), (30_000, None, None), "{scene}");
+        assert!(replayed == first, "{scene}: the replay has every bit");
+        let felt = |tick: &&[u64]| tick[..3].iter().any(|bits| f64::from_bits(*bits).abs() > 0.3);
+        let touched = first.chunks(9).filter(felt).count();
+        assert!(touched > 100, "{scene}: something was touched: {touched}");
     }
 }

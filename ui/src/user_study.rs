@@ -77,7 +77,8 @@ pub(crate) fn plain_hand(study: &Study, participant: &str) -> anyhow::Result<Han
     // Trials and interruptions, so that a repetition is not the same.
     let of = study.state().progress(participant).map_or(0, |one| u64::from(one.interruptions));
     let seed = scene.seed.wrapping_add(u64::from(made(study, participant).0) + 1000 * of);
-    Ok(Hand { pace: scene.hand.pace, tremor_m: scene.hand.tremor_m, seed })
+    let nima_world::scene::Hand { pace, tremor_m, intended_n, .. } = scene.hand;
+    Ok(Hand { pace, tremor_m, intended_n, seed })
 }
 
 /// Trials that a participant has made, practice included; all, and since the last break.
@@ -99,6 +100,7 @@ pub(crate) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, lea
         bail!("rig \"{}\" has devices, which need the real clock: --virtual is for simulated rigs", rig.name);
     }
     (scene.hand.pace, scene.hand.tremor_m, scene.seed) = (hand.pace, hand.tremor_m, hand.seed);
+    scene.hand.intended_n = hand.intended_n;
     let task = scene.task.clone().context("the scene of the study has no task")?;
     let scene = scene.mounted_at(&rig)?;
     let mut plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
@@ -152,11 +154,12 @@ pub(crate) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, lea
 }
 
 impl Ran {
-    /// In words, without the condition.
-    pub(crate) fn in_words(&self) -> String {
+    /// In words, without the condition; and without the result, unless it is shown.
+    pub(crate) fn in_words(&self, shows_result: bool) -> String {
         let Self { trial, ending, completion_time_s, why } = self;
         let what = if trial.phase == Phase::Practice { "practice trial" } else { "trial" };
         let how = match (ending, completion_time_s, why) {
+            (Some(_), ..) if !shows_result => "over (this time without its result)".to_owned(),
             (_, Some(time_s), _) => format!("completed in {time_s:.1} s"),
             (Some(Ending::OutOfTime), ..) => "the time is over".to_owned(),
             (.., Some(why)) => format!("broken off ({why})"),

@@ -112,3 +112,19 @@ fn a_ring_that_is_flung_off_its_peg_was_knocked_off() {
     scene.run(1.5);
     assert!(matches!(scene.events[..], [Event::RingKnockedOff { ring: 0, .. }]), "{:?}", scene.events);
 }
+
+/// The closed jaws go into the ring beside its peg, press it outwards against the peg, and are pulled up.
+#[test]
+fn an_instrument_that_drags_a_ring_up_its_peg_knocks_it_off_and_is_named() {
+    let mut scene = Scene::new(&one_ring(Start::Peg(0)));
+    let peg_m = scene.centre_m(0);
+    scene.hands[LEFT] = Some(super::instrument(LEFT, peg_m + at(0.0, 0.0036, 0.03), 0.0));
+    scene.glide(LEFT, peg_m + at(0.0, 0.0036, -0.0005), 0.1);
+    scene.glide(LEFT, peg_m + at(0.0, 0.0090, -0.0005), 0.03);
+    assert!(scene.loads[LEFT].touching.ring, "{:?}", scene.loads[LEFT]);
+    scene.glide(LEFT, peg_m + at(0.0, 0.0090, 0.06), 0.2);
+    scene.run(1.5);
+    let knocked = Event::RingKnockedOff { ring: 0, side: Some(Side::Left) };
+    assert_eq!(scene.events.first(), Some(&knocked), "{:?}", scene.objects.rings());
+    assert!(!matches!(scene.objects.rings()[0].doing, Doing::OnPeg(_) | Doing::Held { .. }));
+}

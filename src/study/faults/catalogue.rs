@@ -40,6 +40,7 @@ pub enum Kind {
     ForceFrozen,
     ForceAxisFrozen,
     ForceDead,
+    ForceFalls,
     ForceStep,
     ForceSmallStep,
     ForceDrift,
@@ -115,9 +116,9 @@ use Kind as K;
 impl Kind {
     /// All of them, part by part.
     #[rustfmt::skip]
-    pub const ALL: [Self; 73] = [
-        K::ForceSilent, K::ForceGaps, K::ForceFrozen, K::ForceAxisFrozen, K::ForceDead, K::ForceStep, K::ForceSmallStep,
-        K::ForceDrift, K::ForceSlowDrift, K::ForceSign, K::ForceAxes, K::ForceSpike, K::ForceSpikes, K::ForceSaturated,
+    pub const ALL: [Self; 74] = [
+        K::ForceSilent, K::ForceGaps, K::ForceFrozen, K::ForceAxisFrozen, K::ForceDead, K::ForceFalls, K::ForceStep,
+        K::ForceSmallStep, K::ForceDrift, K::ForceSlowDrift, K::ForceSign, K::ForceAxes, K::ForceSpike, K::ForceSpikes, K::ForceSaturated,
         K::ForceNoise, K::ForceLate, K::ForceLateTold, K::ForceDoubled, K::ForceReordered, K::ForceNan, K::ForceInfinite,
         K::ForceAbsurd, K::ForceGain, K::ForceLost,
         K::ImuStops, K::ImuFrozen, K::ImuSign, K::ImuNan, K::ImuDead, K::OrientationMissing, K::OrientationJump,
@@ -196,6 +197,7 @@ impl Kind {
             K::ForceFrozen => "force repeats itself",
             K::ForceAxisFrozen => "one axis of the force repeats itself",
             K::ForceDead => "force reads exactly zero",
+            K::ForceFalls => "force falls to its noise within 3 ms",
             K::ForceStep => "bias steps by 1.5 N",
             K::ForceSmallStep => "bias steps by 0.3 N",
             K::ForceDrift => "bias drifts by 0.5 N/s",
@@ -285,6 +287,7 @@ impl Kind {
             K::ForceAxes => "before a contact, an inclined surface would look the same",
             K::ForceGain => "before a contact, stiffer tissue would look the same",
             K::ForceLate => "without time stamps of the sensor, a lagging arm would look the same",
+            K::ForceFalls => "a contact that ends would look the same",
             K::ForceDead => "without contact, an ideal sensor would look the same",
             K::HandleWithoutForce | K::HandleInverted | K::HandleKeepsForce => {
                 "nothing measures the force in the handle"

@@ -22,6 +22,9 @@ pub(super) struct Situation {
     pub(super) clutch: bool,
 }
 
+/// Ticks in which a force falls to its noise.
+const FALLS_IN: f64 = 3.0;
+
 /// A rig with a fault between it and the loop.
 #[derive(Clone, Debug)]
 pub struct Faulty<R> {
@@ -159,6 +162,10 @@ impl<R: Rig> Faulty<R> {
         match fault {
             Kind::ForceAxisFrozen => Vector3::new(now.x, now.y, then.z),
             Kind::ForceDead => Vector3::zeros(),
+            Kind::ForceFalls => {
+                let left = (1.0 - f64::from(self.age) / FALLS_IN).max(0.0);
+                then * left + Vector3::from_fn(|_, _| 0.02 * self.noise.gaussian())
+            }
             Kind::ForceStep => now + down * 1.5,
             Kind::ForceSmallStep => now + down * 0.3,
             Kind::ForceDrift => now + down * (0.5 * since_s),

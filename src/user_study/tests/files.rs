@@ -41,6 +41,8 @@ fn every_mistake_is_one_line_that_names_the_key() {
         (ending("[practice]\nunder = 'Gnu'\n[practice.criterion]"), "practice.under"),
         (ending("[practice]\n[practice.criterion]\nmax_trials = 5"), "do not fit"),
         (ending("[practice]\n[practice.criterion]\ntime_s = nan"), "time_s"),
+        (with("feedback = 'fades'"), "add [practice.criterion]"),
+        (with("feedback = 'sometimes'"), "sometimes"),
         (ending("[questionnaires]\nat_end = ['sus', 'sus']"), "sus is there twice"),
         (ending("[questionnaires]\nat_end = ['mood']"), "mood"),
         (ending("[breaks]\nafter_trials = 0\nleast_s = 5.0"), "breaks.after_trials"),

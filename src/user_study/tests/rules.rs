@@ -240,3 +240,46 @@ fn a_study_that_is_not_blind_names_its_conditions_from_the_beginning() {
     assert!(table.csv.contains("rms_rendered_n_right"));
     assert!(study.unblind("A", "x", AT).unwrap_err().to_string().contains("not blind"));
 }
+
+/// Whether the result of each of these trials is shown to P01.
+fn shown(feedback: &str, seconds: &[u32]) -> Vec<bool> {
+    let folder = tempfile::tempdir().unwrap();
+    let task = "[task]\nname = 'x'\nkind = 'peg_transfer'\nproficiency = { time_s = 30.0 }";
+    let text = format!("feedback = '{feedback}'\n{}{task}", TWO.replace("trials = 3", "trials = 8"));
+    let mut study = made(folder.path(), &text);
+    let mut all = Vec::new();
+    for (number, seconds) in seconds.iter().enumerate() {
+        // What is shown follows from the journal, whoever reads it and when.
+        if number == 5 {
+            study = cut(folder.path(), study, "P01");
+        }
+        trial(&mut study, "P01", *seconds);
+        all.push(study.state().progress("P01").unwrap().shows_result());
+        let read = Study::read(&folder.path().join("study")).unwrap();
+        assert_eq!(read.state().progress("P01").unwrap().shows_result(), all[number]);
+    }
+    all
+}
+
+#[test]
+fn results_are_shown_always_or_never_or_less_often_as_skill_comes() {
+    let seconds = [40, 40, 40, 40, 20, 20, 20, 20, 20, 20, 20, 20];
+    assert_eq!([shown("always", &seconds), shown("never", &seconds)], [vec![true; 12], vec![false; 12]]);
+    let fading = shown("fades", &seconds);
+    assert_eq!(fading[..4], [true; 4], "{fading:?}");
+    assert_eq!(fading[8..].iter().filter(|shown| **shown).count(), 2, "{fading:?}");
+}
+
+#[test]
+fn a_study_of_an_older_program_shows_every_result() {
+    let folder = tempfile::tempdir().unwrap();
+    drop(made(folder.path(), TWO));
+    let path = folder.path().join("study/study.toml");
+    let mut plan: toml::Table = toml::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    plan.insert("version".to_owned(), 1.into());
+    assert!(plan.remove("feedback").is_some());
+    std::fs::write(&path, toml::to_string(&plan).unwrap()).unwrap();
+    let mut study = again(folder.path());
+    trial(&mut study, "P01", 20);
+    assert!(study.state().progress("P01").unwrap().shows_result());
+}

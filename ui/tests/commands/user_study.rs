@@ -247,6 +247,25 @@ fn a_simulated_study_finds_a_difference_that_is_there_and_none_that_is_not() {
 }
 
 #[test]
+fn the_result_of_a_trial_is_told_as_the_study_has_it() {
+    let told_under = |feedback: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let head = format!("participants = 2\ntrials = 1\nfeedback = '{feedback}'");
+        let file = file(folder.path(), &head, 3.0, BLIND);
+        let place = folder.path().join("study");
+        let study = place.to_str().unwrap();
+        told(&["user-study", "new", &file, "--out", study]);
+        told(&["user-study", "next", study, "--participant", "P01", "--virtual"])
+    };
+    // Nobody meets a criterion in a trial that its time ends, so nothing fades.
+    for shows in ["always", "fades"] {
+        assert!(told_under(shows).contains("the time is over"), "{shows}");
+    }
+    let without = told_under("never");
+    assert!(without.contains("without its result") && !without.contains("time is over"), "{without}");
+}
+
+#[test]
 fn bad_studies_and_steps_are_one_line() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("study");

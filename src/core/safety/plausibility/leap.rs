@@ -2,6 +2,8 @@
 
 use nalgebra::SVector;
 
+use super::Fall;
+
 /// Samples in a row that are bridged; the next one is a jump.
 const BRIDGED: u32 = 2;
 /// So many bridged samples, less one for each [`CALM`] good ones, are no spikes any more.
@@ -28,18 +30,34 @@ impl<const D: usize> Leap<D> {
     /// Gives the vector, or the last believed one in its place when it lies farther than `most` from it; and whether this is no spike
     /// but a jump, or one spike too many. What has jumped is believed from then on.
     pub fn admit(&mut self, now: &SVector<f64, D>, most: f64) -> (SVector<f64, D>, bool) {
+        self.admit_unless(now, most, |_, _, _| Fall::No)
+    }
+
+    /// The same with an excuse: what `falls` (from the believed vector, the new one, and whether that is far) is bridged until its end, which is
+    /// no jump.
+    pub fn admit_unless(
+        &mut self,
+        now: &SVector<f64, D>,
+        most: f64,
+        falls: impl FnOnce(&SVector<f64, D>, &SVector<f64, D>, bool) -> Fall,
+    ) -> (SVector<f64, D>, bool) {
         let last = self.last.unwrap_or(*now);
         let far = (now - last).norm() > most;
-        self.level = if far { self.level + 1.0 } else { (self.level - 1.0 / CALM).max(0.0) };
+        let fall = falls(&last, now, far);
+        self.level = match (far, fall) {
+            (false, _) => (self.level - 1.0 / CALM).max(0.0),
+            (true, Fall::No) => self.level + 1.0,
+            (true, Fall::Going | Fall::Over) => self.level,
+        };
         let frequent = self.level >= FREQUENT;
-        if far && self.in_a_row < BRIDGED {
+        if far && (self.in_a_row < BRIDGED || fall == Fall::Going) {
             self.in_a_row += 1;
             self.moved = SVector::zeros();
             return (last, frequent);
         }
         self.moved = now - last;
         (self.last, self.in_a_row) = (Some(*now), 0);
-        (*now, far || frequent)
+        (*now, (far && fall != Fall::Over) || frequent)
     }
 
     /// How far the believed vector went in the last step.

@@ -11,12 +11,14 @@
 mod frozen;
 mod leap;
 mod opposed;
+mod release;
 
 use nalgebra::{SVector, UnitQuaternion, Vector3};
 
 pub use frozen::{CHANNELS, Frozen};
 pub use leap::Leap;
 pub use opposed::Opposed;
+pub use release::{Fall, Release};
 
 /// A handle moves no faster than this, m/s: the fastest arm movements of people reach 2 to 3 m/s in throwing, not in operating.
 const HAND_MAX_M_S: f64 = 3.0;
@@ -54,7 +56,7 @@ const ASTRAY_M: f64 = 0.02;
 pub enum Implausible {
     /// A reading of the force sensor, or of the accelerometer in it, repeats itself to the last bit.
     ForceFrozen,
-    /// The force jumped farther than any contact can make it.
+    /// The force jumped farther than any contact can make it, and not to nothing as a contact that ends.
     ForceJumped,
     /// The force pushes along the motion into a contact.
     ForceAlong,
@@ -138,6 +140,7 @@ pub struct Plausibility {
     frozen: Frozen<CHANNELS>,
     link_frozen: Frozen<3>,
     force: Leap,
+    release: Release,
     tip: Leap,
     hand: Leap,
     turn: Leap<6>,
@@ -166,6 +169,7 @@ impl Plausibility {
             frozen: Frozen::default(),
             link_frozen: Frozen::default(),
             force: Leap::default(),
+            release: Release::default(),
             tip: Leap::default(),
             hand: Leap::default(),
             turn: Leap::default(),
@@ -197,7 +201,7 @@ impl Plausibility {
 
     /// The force is known from now on, or computed in another way: what it was before says nothing about a jump.
     pub fn force_is_new(&mut self) {
-        self.force = Leap::default();
+        (self.force, self.release) = (Leap::default(), Release::default());
         self.began_s = None;
     }
 
@@ -220,7 +224,9 @@ impl Plausibility {
         let widest_m = self.ways_m.iter().copied().fold(0.0, f64::max);
         let settles = seen.t_s - *self.began_s.get_or_insert(seen.t_s) < SETTLE_S;
         let most_n = if settles { f64::INFINITY } else { FORCE_SLACK_N + STIFFEST_N_M * widest_m };
-        let (force_n, force_jumped) = self.force.admit(&seen.force_n, most_n);
+        let release = &mut self.release;
+        let falls = |believed_n: &Vector3<f64>, now_n: &Vector3<f64>, far| release.look(believed_n, now_n, far);
+        let (force_n, force_jumped) = self.force.admit_unless(&seen.force_n, most_n, falls);
         // A sensor that sends nothing is late, not frozen: its last reading grows old, and other watches tell so.
         let frozen = self.frozen.look(&seen.sensed, seen.t_s - seen.age_s);
         let along = self.opposed.look(&force_n, seen.least_n, self.tip.moved(), seen.command_m.is_some());

@@ -124,6 +124,51 @@ fn a_stiff_contact_is_no_jump() {
     assert_eq!(bench.run(500, press), None);
 }
 
+/// What is told of a force of these sizes (N, one a sample) after a contact of 2.6 N that lasts for a while, at a tip that stands still; they
+/// come again and again, so many samples apart.
+fn told_of(sizes_n: &[f64], again: Option<u32>) -> Option<(u32, Implausible)> {
+    let mut kept = None;
+    after(|k, seen| {
+        seen.tip_m = *kept.get_or_insert(seen.tip_m);
+        seen.command_m = None;
+        let pressed_n = 0.26 * f64::from(k.min(10));
+        let since = k.checked_sub(50).map(|since| again.map_or(since, |again| since % again));
+        let size_n = since.map_or(pressed_n, |since| match sizes_n.get(since as usize) {
+            Some(size_n) => *size_n,
+            // Pressed again, slowly, if it comes again.
+            None if again.is_some() => (0.2 * f64::from(since - sizes_n.len() as u32)).min(2.6),
+            None => sizes_n.last().copied().unwrap_or(pressed_n),
+        });
+        seen.force_n += Vector3::new(0.6, 0.0, 0.8) * size_n;
+    })
+}
+
+#[test]
+fn a_contact_that_ends_within_some_milliseconds_is_no_jump() {
+    let rings_n = [&[2.55, 2.5, 2.3, 1.85, 0.55, 0.3, 0.2, 0.1, 0.0][..], &[2.55, 2.3, 1.9, 1.0, 0.1, 0.0]];
+    let others_n = [&[1.9, 0.8, 0.0][..], &[2.3, 1.2, 0.3, 0.0], &[2.0, 1.5, 1.0, 0.6, 0.2, 0.0], &[1.2, 0.0]];
+    for falls_n in rings_n.into_iter().chain(others_n) {
+        assert_eq!(told_of(falls_n, None), None, "{falls_n:?}");
+    }
+    assert_eq!(told_of(&[1.9, 0.8, 0.0, 0.0], Some(40)), None, "again and again");
+}
+
+#[test]
+fn a_force_that_steps_to_nothing_or_falls_to_something_or_grows_or_turns_has_jumped() {
+    let jumped = |sizes_n: &[f64], by: u32| {
+        let told = told_of(sizes_n, None);
+        assert!(matches!(told, Some((k, Implausible::ForceJumped)) if k <= 49 + by), "{sizes_n:?}: {told:?}");
+    };
+    jumped(&[0.0], 3);
+    jumped(&[2.4, 2.2, 2.0, 0.3], 6);
+    jumped(&[1.1], 3);
+    jumped(&[1.9, 1.2], 3);
+    jumped(&[2.0, 1.4, 0.9], 4);
+    jumped(&[3.3, 4.1, 5.0], 3);
+    jumped(&[1.9, 0.9, 0.0, -0.9, -1.8, -2.6], 8);
+    jumped(&[1.9, -0.8, -2.6], 4);
+}
+
 #[test]
 fn a_force_along_the_way_into_a_contact_is_told_and_a_puncture_is_not() {
     let touch = |sign: f64, gives_way_n: f64| {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_recording::store::utc_now;
-use nima_user_study::{Answers, Questionnaire, Step, Study};
+use nima_user_study::{Answers, Progress, Questionnaire, Step, Study};
 use serde_json::json;
 
 use crate::{
@@ -60,7 +60,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         Step::Practice { .. } | Step::Trial { .. } | Step::Running { .. } => {
             let leave = Leave::on_signals()?;
             let hand = plain_hand(&study, participant)?;
-            run_virtual(&mut study, participant, &hand, &leave)?.in_words()
+            let ran = run_virtual(&mut study, participant, &hand, &leave)?;
+            let shows = study.state().progress(participant).is_none_or(Progress::shows_result);
+            ran.in_words(shows)
         }
     };
     let next = study.next(participant)?;

@@ -1,0 +1,80 @@
+//! What a rig would measure in the world: force on the tip, wrist, handle and gripper.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::{calibration::frames::FrameSample, kinematics};
+use nima_machine::rig::{Inputs, Sensed};
+
+use super::{Touch, World};
+use crate::{
+    person::Person,
+    scene::{Leader, Wall},
+    trocar,
+    wrist::{Loads, along_shaft},
+};
+
+impl World {
+    /// The person at the arm, inside this world or outside.
+    fn hands(&self) -> Touch {
+        self.person.as_ref().map_or(self.touch, Person::touch)
+    }
+
+    /// Force on the tip by the tissue or a person, N; call once per step.
+    fn contact_n(&mut self) -> Vector3<f64> {
+        let tissue_n = match &mut self.tissue {
+            Some(tissue) if !self.aside => tissue.contact_n(&self.tip_m, &self.tip_velocity_m_s),
+            _ => Vector3::zeros(),
+        };
+        let wall_n = |wall: &Wall| wall.contact_n(&self.tip_m, &self.tip_velocity_m_s);
+        let walls_n: Vector3<f64> = self.walls.iter().filter(|_| !self.aside).map(wall_n).sum();
+        tissue_n + walls_n + self.hands().tip + self.loads.tip_n
+    }
+
+    fn world_from_s1(&self) -> UnitQuaternion<f64> {
+        match (&self.carried, &self.person) {
+            (Some(carried), _) => *carried,
+            (None, Some(person)) => person.world_from_s1(),
+            (None, None) => along_shaft(&trocar::shaft(&self.trocar_m, &self.tip_m).0),
+        }
+    }
+
+    fn sense(&mut self) -> Sensed {
+        let tip_n = self.contact_n();
+        self.true_tip_n = tip_n;
+        let world_from_s1 = self.world_from_s1();
+        let Touch { tool, stand, .. } = self.hands();
+        if let Some(wrist) = &mut self.wrist {
+            let trocar = self.trocar.as_ref().filter(|_| !self.aside);
+            let twist_nm = self.loads.torque_nm;
+            let wall = trocar.map(|trocar| (trocar.force_n(), trocar.shaft(&self.tip_m).1));
+            return Sensed::AtWrist(
+                wrist.measure(&world_from_s1, &Loads { tip_n, twist_nm, wall, touch_n: tool, stand_n: stand }),
+            );
+        }
+        let noise_n = match &mut self.sensor_noise_n {
+            Some((sigma_n, noise)) => Vector3::from_fn(|_, _| *sigma_n * noise.gaussian()),
+            None => Vector3::zeros(),
+        };
+        Sensed::AtTip(tip_n + noise_n)
+    }
+
+    /// What a rig would measure now; once per step.
+    pub(crate) fn measure(&mut self) -> Inputs {
+        let sensed = self.sense();
+        // This world has no arm of joints, and its tracker tells no places.
+        let wrench = sensed.wrist().map(|sample| sample.raw);
+        let hand_m = self.hand.position_m();
+        let leader_m = self
+            .leader
+            .map_or(hand_m, |Leader { resolution_m, .. }| hand_m.map(|x| (x / resolution_m).round() * resolution_m));
+        Inputs {
+            hand: kinematics::Hand::at(leader_m),
+            gripper_rad: self.jaws.then(|| self.hand.grip_rad()),
+            grip_n: self.jaws.then_some(self.loads.opening_n),
+            tip_m: self.tip_m,
+            sensed,
+            frames: FrameSample { wrench, ..FrameSample::from(leader_m) },
+            powered: true,
+            ..Inputs::NOTHING
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! The world by itself, in free running.
+
+use nalgebra::Vector3;
+use nima_machine::rig::{Inputs, Outputs, Sensed};
+
+use super::World;
+use crate::scene::Scene;
+
+fn force_n(inputs: &Inputs) -> Vector3<f64> {
+    match inputs.sensed {
+        Sensed::AtTip(force_n) => force_n,
+        sensed => panic!("not at the tip: {sensed:?}"),
+    }
+}
+
+fn run(scene: &Scene, seconds: f64) -> Vec<Inputs> {
+    let mut world = World::new(scene, 1000.0);
+    let mut outputs = Outputs::SAFE;
+    (0..(seconds * 1000.0) as usize)
+        .filter_map(|i| {
+            let inputs = world.exchange(i as f64 * 1e-3, &outputs);
+            outputs.tip_command_m = inputs.map(|inputs| inputs.hand.position_m);
+            inputs
+        })
+        .collect()
+}
+
+#[test]
+fn peg_transfer_presses_with_a_few_newtons_and_lets_go() {
+    let inputs = run(&Scene::load("peg_transfer").unwrap(), 20.0);
+    let peak_n = inputs.iter().map(|i| force_n(i).z).fold(0.0, f64::max);
+    assert!((1.0..6.0).contains(&peak_n), "peak {peak_n} N");
+    let free = inputs.iter().filter(|i| force_n(i).norm() < 0.1).count();
+    assert!(free * 4 > inputs.len(), "a good part of the task is in free space: {free}");
+    let travel_m = inputs.iter().map(|i| i.tip_m.x).fold(0.0, f64::max);
+    assert!(travel_m > 0.025, "it reaches the far pegs: {travel_m}");
+}
+
+#[test]
+fn a_seed_repeats_exactly() {
+    let scene = Scene::load("peg_transfer").unwrap();
+    assert_eq!(run(&scene, 2.0), run(&scene, 2.0));
+}
+
+#[test]
+fn free_motion_measures_noise_only() {
+    let inputs = run(&Scene::load("free_motion").unwrap(), 10.0);
+    let mean = inputs.iter().map(force_n).sum::<Vector3<f64>>() / inputs.len() as f64;
+    assert!(mean.norm() < 0.002, "{mean}");
+}
+
+#[test]
+fn without_a_listed_part_the_part_is_ideal() {
+    let mut scene = Scene::load("peg_transfer").unwrap();
+    (scene.tissue, scene.leader, scene.follower, scene.sensor) = (None, None, None, None);
+    let inputs = run(&scene, 5.0);
+    assert!(inputs.iter().all(|i| force_n(i) == Vector3::zeros()));
+    assert!(inputs.windows(2).all(|pair| pair[1].tip_m == pair[0].hand.position_m));
+}
+
+#[test]
+fn a_force_on_the_hand_moves_it_and_a_poisoned_one_does_not() {
+    let scene = Scene::load("free_motion").unwrap();
+    let pushed = |force_n| {
+        let mut world = World::new(&scene, 1000.0);
+        for i in 0..500 {
+            world.exchange(f64::from(i) * 1e-3, &Outputs { hand_force_n: force_n, ..Outputs::SAFE });
+        }
+        world.hand().position_m()
+    };
+    let (still, up, poisoned) = (pushed(Vector3::zeros()), pushed(Vector3::z() * 4.0), pushed(Vector3::z() * f64::NAN));
+    assert!((up.z - still.z) > 0.003, "{}", up.z - still.z);
+    assert_eq!(poisoned, still);
+}

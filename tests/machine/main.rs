@@ -3,6 +3,7 @@
 
 mod bimanual;
 mod davinci;
+mod leading;
 mod letting_go;
 mod over_a_network;
 mod ready_check;

@@ -3,12 +3,14 @@
 use egui::{Color32, Label, Rect, RichText, Ui, vec2};
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_machine::rig::Side;
-use nima_world::scene::Scene;
+use nima_world::{Training, scene::Scene};
 
 use super::{
     mesh::{Material, Mesh, Paint},
     objects::{self, Shown},
+    reach::Reach,
     shadows::Shadows,
+    side_name,
 };
 use crate::console::{live::Live, text, theme};
 
@@ -111,9 +113,14 @@ pub(super) fn board_of(scene: &Scene) -> Option<&nima_physics::Board> {
     under_pegs.or_else(|| scene.wire.as_ref().map(|setting| &setting.board))
 }
 
-/// How far the trial has come, in words; `None` in a scene where that is not known.
-pub(super) fn told(live: &Live, is_led: bool) -> Option<String> {
-    let training = live.training.as_ref()?;
+/// How far the trial has come, in words, and what the instrument that is led reaches; `None` in a scene where that is not known.
+pub(super) fn told(live: &Live, led: Option<Side>, reach: Option<Reach>) -> Option<String> {
+    let (training, is_led) = (live.training.as_ref()?, led.is_some());
+    if live.scene.objects.is_some() {
+        let jaws = led.map(|side| text::training::jaws(side_name(side), reach.map(name_of)));
+        let Training { passed, placed, dropped, .. } = training;
+        return Some(text::training::rings(jaws.as_deref(), [*passed, *placed, *dropped], training.ended));
+    }
     if live.scene.wire.is_some() {
         return Some(text::training::wire(training.touches, training.share, training.ended, is_led));
     }
@@ -126,9 +133,17 @@ pub(super) fn told(live: &Live, is_led: bool) -> Option<String> {
     })
 }
 
+const fn name_of(reach: Reach) -> &'static str {
+    match reach {
+        Reach::Above(_) => text::training::JAWS_ABOVE,
+        Reach::Between(_) => text::training::JAWS_AROUND,
+        Reach::Held(_) => text::training::JAWS_HOLD,
+    }
+}
+
 /// The line, at the top of the view.
-pub(super) fn line_ui(ui: &mut Ui, rect: Rect, live: &Live, (is_led, figures): (bool, bool)) {
-    let Some(words) = told(live, is_led) else { return };
+pub(super) fn line_ui(ui: &mut Ui, rect: Rect, words: Option<String>, figures: bool) {
+    let Some(words) = words else { return };
     // Between the readings and the gauges, where they are shown.
     let room = if figures {
         Rect::from_min_max(rect.left_top() + vec2(READINGS, 0.0), rect.right_bottom() - vec2(GAUGES, 0.0))
@@ -144,7 +159,7 @@ pub(super) fn line_ui(ui: &mut Ui, rect: Rect, live: &Live, (is_led, figures): (
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigConfig;
-    use nima_world::{LoopSeen, MARKS_MAX, Mark, Training};
+    use nima_world::{LoopSeen, MARKS_MAX, Mark};
 
     use super::*;
 
@@ -164,7 +179,7 @@ mod tests {
 
     fn vertices(live: &Live) -> usize {
         let mut mesh = Mesh::default();
-        marks(&mut mesh, &live.scene, &Shown::of(live).unwrap(), |_, _| 0.0);
+        marks(&mut mesh, &live.scene, &Shown::of(live, None).unwrap(), |_, _| 0.0);
         mesh.vertices.len()
     }
 
@@ -176,10 +191,26 @@ mod tests {
         wrong.found = 0;
         let wrong = live("find_lumps", &wrong);
         assert_eq!(vertices(&during), vertices(&wrong), "a true mark looks as a false one does");
-        assert_eq!(told(&during, true), told(&wrong, true));
+        let led = Some(Side::Right);
+        assert_eq!(told(&during, led, None), told(&wrong, led, None));
         assert!(vertices(&after) > vertices(&during) + 1000, "the lumps");
-        assert_eq!(told(&after, false).unwrap(), "Lumps found: 1 of 5, false marks: 2");
-        assert_eq!(told(&live("lumps", &marked(true)), false), None, "nobody looks for them");
+        assert_eq!(told(&after, None, None).unwrap(), "Lumps found: 1 of 5, false marks: 2");
+        assert_eq!(told(&live("lumps", &marked(true)), None, None), None, "nobody looks for them");
+    }
+
+    #[test]
+    fn what_jaws_hold_is_told_with_what_was_counted() {
+        let training = Training { passed: 3, placed: 2, dropped: 1, ..Training::default() };
+        let told = |training: &Training, led, reach| told(&live("rings", training), led, reach).unwrap();
+        let counted = "handed over 3, on pegs 2, dropped 1";
+        assert_eq!(told(&training, None, None), format!("Rings: {counted}"));
+        let left = |reach| told(&training, Some(Side::Left), reach);
+        assert_eq!(left(None), format!("Left instrument. Rings: {counted}"));
+        assert_eq!(left(Some(Reach::Held(4))), format!("Left instrument holds a ring. Rings: {counted}"));
+        assert_eq!(left(Some(Reach::Above(4))), format!("Left instrument above a ring. Rings: {counted}"));
+        assert_eq!(left(Some(Reach::Between(4))), format!("Left instrument around a ring. Rings: {counted}"));
+        let done = Training { passed: 12, placed: 12, ended: true, ..Training::default() };
+        assert_eq!(told(&done, None, None), "Task done. Rings: handed over 12, on pegs 12, dropped 0");
     }
 
     #[test]
@@ -188,7 +219,7 @@ mod tests {
         training.loops[Side::Right.index()] = LoopSeen { touches: true, on_wire: true };
         let of = |training: &Training| {
             let live = live("wire", training);
-            let (mut mesh, shown) = (Mesh::default(), Shown::of(&live).unwrap());
+            let (mut mesh, shown) = (Mesh::default(), Shown::of(&live, None).unwrap());
             let (tip_m, trocar_m) = (Vector3::new(0.0, 0.0, 0.03), Vector3::new(0.0, -0.06, 0.14));
             let mut shadows = Shadows::on(board_of(&live.scene));
             let end_m = hoop(&mut mesh, &live.scene, &shown, (Side::Right, &tip_m, &trocar_m), &mut shadows).unwrap();

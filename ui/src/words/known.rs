@@ -210,7 +210,7 @@ mod tests {
             "right arm: from Ready to Engaged",
             "left arm: fault: The control loop was blocked: drives and force were switched off",
             "command: gain 0.35",
-            "command: lead the handle to 10, 0, -2 mm",
+            "command: lead the left handle to 10, 0, -2 mm",
             "right arm: refused: engage the right arm: nobody holds the handle",
             "right arm: refused: delay of the link 100 ms: the delay is that of the network, which is measured and not set",
             "the loop was silent for 612 ms",

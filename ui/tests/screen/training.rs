@@ -65,20 +65,20 @@ fn one_person_leads_both_instruments_one_at_a_time() {
     plan.rig.mode = Mode::Matched;
     let mut harness = shown(&plan, SIZE, |app| app);
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
-    read(&mut harness, "Rings: handed over 0, on pegs 0, dropped 0");
+    read(&mut harness, "Rings: passed 0, placed 0, dropped 0");
     press(&mut harness, "Drive by mouse (M)");
     until(&mut harness, "led", |tick| tick.guide_m.is_some());
     read(&mut harness, "Right instrument");
     let right_m = |harness: &Window<'_>| harness.state().tick().unwrap().guide_m.unwrap();
     let before_m = right_m(&harness);
     // All in one frame: they are done in their order.
-    for key in [Key::PageUp, Key::PageUp, Key::H, Key::PageUp, Key::G] {
+    for key in [Key::PageDown, Key::PageDown, Key::H, Key::PageUp, Key::G] {
         harness.key_press(key);
     }
     read(&mut harness, "Left instrument");
     wait(&mut harness, "the left jaws alone are open", |harness| open(harness) == [false, true]);
-    until(&mut harness, "the right one is two steps higher", |tick| {
-        tick.guide_m.is_some_and(|at_m| (at_m.z - before_m.z - 0.002).abs() < 1e-6)
+    until(&mut harness, "the right one is two steps lower", |tick| {
+        tick.guide_m.is_some_and(|at_m| (at_m.z - before_m.z + 0.002).abs() < 1e-6)
     });
     let held_m = right_m(&harness);
     harness.run_steps(5);

@@ -29,6 +29,9 @@ const ENGAGE: (i32, i32) = (1380, 36);
 const MARK: [u8; 3] = [0x9c, 0xe8, 0x7a];
 const MARK_PIXELS: usize = 20;
 const DOUBLE: f32 = 27.0;
+/// Colours of alarms (`theme::Palette`), and fewer pixels than the frame of one has.
+const ALARMS: [[u8; 3]; 3] = [[0xff, 0x4d, 0x4d], [0xff, 0xd7, 0x3d], [0x41, 0xd6, 0xe0]];
+const ALARM_PIXELS: usize = 800;
 /// So near to where it was led the tip is there, points; patience of a player who waits for that.
 const NEAR: f32 = 3.0;
 const PATIENCE: Duration = Duration::from_secs(12);
@@ -155,14 +158,16 @@ impl<'a> Player<'a> {
         self.at_m[self.led.index()]
     }
 
-    /// Where the tip is: the line below it ends on the board.
+    /// Where the tip is, which is on its own side: the line below it ends on the board.
     fn find_tip(&mut self) {
         let began = Instant::now();
         self.at_m[self.led.index()] = loop {
             let picture = self.picture(self.view);
             let green = picture.places(is_green);
             let lowest = green.iter().copied().max_by(|one, other| one.y.total_cmp(&other.y));
-            if let Some(((tip, _), lowest)) = picture.mark().zip(lowest) {
+            let is_right = self.led == Side::Right;
+            let mark = picture.mark().filter(|(tip, _)| (tip.x > self.view.center().x) == is_right);
+            if let Some(((tip, _), lowest)) = mark.zip(lowest) {
                 // Half of the mark below.
                 let foot_m = self.level(lowest - vec2(0.0, 2.0), 0.0);
                 let height = |z: f32| (self.place(&Vector3::new(foot_m.x, foot_m.y, z)).y - tip.y).abs();
@@ -244,6 +249,7 @@ impl<'a> Player<'a> {
                 return;
             }
             if began.elapsed() > PATIENCE {
+                self.look_for_alarm();
                 let anywhere = self.picture(self.view).mark();
                 self.keep_picture();
                 panic!(
@@ -251,6 +257,15 @@ impl<'a> Player<'a> {
                     self.led.word()
                 );
             }
+        }
+    }
+
+    /// A loop that this machine holds up raises an alarm, whose strip moves everything else.
+    fn look_for_alarm(&self) {
+        let strip = Rect::from_min_size(pos2(0.0, 60.0), vec2(WINDOW[0], 70.0));
+        if self.picture(strip).places(|pixel| ALARMS.contains(&pixel)).len() > ALARM_PIXELS {
+            println!("there is an alarm");
+            nima_testing::real_time::too_busy();
         }
     }
 
@@ -281,6 +296,7 @@ impl<'a> Player<'a> {
         let near: Vec<Pos2> =
             on_board.filter(|from_foot_m| from_foot_m.norm() < AROUND_M).map(|from| pos2(from.x, from.y)).collect();
         let Some(ring) = around(&near).filter(|ring| (0.014..0.022).contains(&ring.width())) else {
+            self.look_for_alarm();
             self.keep_picture();
             panic!("no ring lies around the peg at {x}, {y} m: {:?}", around(&near));
         };

@@ -23,7 +23,7 @@ const OPEN_SHARE: f64 = 0.8;
 const WHEEL_M: f32 = 0.0001;
 /// Space in which the instrument may be led: half width, half depth, lowest and highest, m.
 const SIDE_M: f32 = 0.055;
-const HEIGHT_M: std::ops::RangeInclusive<f32> = -0.02..=0.09;
+const HEIGHT_M: std::ops::RangeInclusive<f32> = -0.02..=0.095;
 
 /// Which instrument is led, and to which position.
 #[derive(Clone, Copy, Debug, Default)]

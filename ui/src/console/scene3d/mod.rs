@@ -185,7 +185,7 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         axes(&painter, rect, &camera);
     }
     hint(&painter, rect, live, view);
-    training::line_ui(ui, rect, training::told(live, led, reach), view.figures);
+    training::line_ui(ui, rect, training::told(live, led, reach), readings_width(live), view.figures);
     // No hover texts in a surgeon's view, nor over what is led.
     let pointed_at = response.hover_pos().filter(|_| view.figures && !response.dragged() && !leading);
     if let Some(words) = pointed_at.and_then(|pointer| pick::pick(pointer, rect, &camera, &live.scene, &arms)) {
@@ -273,7 +273,7 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
     let at = |point_m: Vector3<f32>| camera.project(&point_m, rect);
     let Arm { trocar_m, pose, side, .. } = arm;
     // Not below the readings.
-    let free = |place: &Pos2| !figures || place.y > rect.top() + 110.0 || place.x > rect.left() + 350.0;
+    let free = |place: &Pos2| !figures || place.y > rect.top() + 116.0 || place.x > rect.left() + readings_width(live);
     if let Some(place) = at(*trocar_m).filter(free) {
         label(
             painter,
@@ -285,11 +285,12 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
         );
     }
     let along = (trocar_m - pose.tip_m).try_normalize(1e-4).unwrap_or_else(Vector3::z);
-    if let (true, Some(place)) = (live.is_bimanual(), at(pose.tip_m + along * NAME_ABOVE_M[usize::from(figures)])) {
-        let (align, shift) = match side {
-            Side::Right => (Align2::LEFT_CENTER, vec2(20.0, 0.0)),
-            Side::Left => (Align2::RIGHT_CENTER, vec2(-20.0, 0.0)),
-        };
+    let (align, shift) = match side {
+        Side::Right => (Align2::LEFT_CENTER, vec2(20.0, 0.0)),
+        Side::Left => (Align2::RIGHT_CENTER, vec2(-20.0, 0.0)),
+    };
+    let name_at = at(pose.tip_m + along * NAME_ABOVE_M[usize::from(figures)]).filter(free);
+    if let (true, Some(place)) = (live.is_bimanual(), name_at) {
         let name = side_name(*side);
         let words = if view.lead.side() == Some(*side) { text::field::led(name) } else { name.to_owned() };
         label(painter, place + shift, align, &words, theme::strong(15.0), theme::DARK.text);
@@ -332,6 +333,15 @@ fn label(painter: &Painter, place: Pos2, align: Align2, text: &str, font: FontId
     painter.text(place, align, text, font, colour);
 }
 
+/// Places of the columns of the readings, from the left of the view, points.
+const COLUMN: f32 = 226.0;
+const COLUMNS_APART: f32 = 112.0;
+
+/// Width of the readings with their distance from the left of the view, points.
+fn readings_width(live: &Live) -> f32 {
+    COLUMN + COLUMNS_APART * f32::from(u8::from(live.is_bimanual())) + 20.0
+}
+
 /// The forces in large figures, one column for each hand in their order on the screen, and gauges of both with the
 /// ceiling.
 fn readings(painter: &Painter, rect: Rect, live: &Live) {
@@ -340,7 +350,7 @@ fn readings(painter: &Painter, rect: Rect, live: &Live) {
     let both = sides.len() > 1;
     let corner = rect.left_top() + vec2(16.0, if both { 36.0 } else { 14.0 });
     let figures = &live.figures;
-    let column = |i: usize| corner.x + 210.0 + 112.0 * i as f32;
+    let column = |i: usize| rect.left() + COLUMN + COLUMNS_APART * i as f32;
     let plate =
         Rect::from_min_max(rect.left_top() + vec2(8.0, 8.0), pos2(column(sides.len() - 1) + 12.0, corner.y + 72.0));
     painter.rect_filled(plate, theme::CORNER, Color32::from_black_alpha(150));

@@ -26,8 +26,7 @@ const MARK_FALSE: Paint = Paint(Color32::from_rgb(0x3a, 0x42, 0x4c), Material::M
 const PIN: Paint = Paint(Color32::from_rgb(0xb4, 0xbc, 0xc6), Material::Metal);
 const LUMP: Paint = Paint(Color32::from_rgb(0x6a, 0x2f, 0x4e), Material::Matte);
 
-/// Width of the readings at the left of the view, and of the gauges at its right, points.
-const READINGS: f32 = 250.0;
+/// Width of the gauges at the right of the view, points.
 const GAUGES: f32 = 110.0;
 /// One of so many points of the wire's curve is drawn.
 const POINTS: usize = 3;
@@ -141,12 +140,12 @@ const fn name_of(reach: Reach) -> &'static str {
     }
 }
 
-/// The line, at the top of the view.
-pub(super) fn line_ui(ui: &mut Ui, rect: Rect, words: Option<String>, figures: bool) {
+/// The line, at the top of the view; so wide are the readings at its left, if figures are shown.
+pub(super) fn line_ui(ui: &mut Ui, rect: Rect, words: Option<String>, readings: f32, figures: bool) {
     let Some(words) = words else { return };
     // Between the readings and the gauges, where they are shown.
     let room = if figures {
-        Rect::from_min_max(rect.left_top() + vec2(READINGS, 0.0), rect.right_bottom() - vec2(GAUGES, 0.0))
+        Rect::from_min_max(rect.left_top() + vec2(readings, 0.0), rect.right_bottom() - vec2(GAUGES, 0.0))
     } else {
         rect
     };
@@ -202,7 +201,7 @@ mod tests {
     fn what_jaws_hold_is_told_with_what_was_counted() {
         let training = Training { passed: 3, placed: 2, dropped: 1, ..Training::default() };
         let told = |training: &Training, led, reach| told(&live("rings", training), led, reach).unwrap();
-        let counted = "handed over 3, on pegs 2, dropped 1";
+        let counted = "passed 3, placed 2, dropped 1";
         assert_eq!(told(&training, None, None), format!("Rings: {counted}"));
         let left = |reach| told(&training, Some(Side::Left), reach);
         assert_eq!(left(None), format!("Left instrument. Rings: {counted}"));
@@ -210,7 +209,7 @@ mod tests {
         assert_eq!(left(Some(Reach::Above(4))), format!("Left instrument above a ring. Rings: {counted}"));
         assert_eq!(left(Some(Reach::Between(4))), format!("Left instrument around a ring. Rings: {counted}"));
         let done = Training { passed: 12, placed: 12, ended: true, ..Training::default() };
-        assert_eq!(told(&done, None, None), "Task done. Rings: handed over 12, on pegs 12, dropped 0");
+        assert_eq!(told(&done, None, None), "Task done. Rings: passed 12, placed 12, dropped 0");
     }
 
     #[test]

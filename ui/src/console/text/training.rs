@@ -34,5 +34,5 @@ pub(in crate::console) fn jaws(side: &str, with_ring: Option<&str>) -> String {
 pub(in crate::console) fn rings(led: Option<&str>, [passed, placed, dropped]: [u32; 3], ended: bool) -> String {
     let done = if ended { "Task done. " } else { "" };
     let led = led.map(|words| format!("{words}. ")).unwrap_or_default();
-    format!("{done}{led}Rings: handed over {passed}, on pegs {placed}, dropped {dropped}")
+    format!("{done}{led}Rings: passed {passed}, placed {placed}, dropped {dropped}")
 }

@@ -3,8 +3,9 @@
 //!
 //! The cap commands a velocity: its deflection (-1 to 1) times [`DeskSettings::speed_m_s`], in the workspace (x right,
 //! y away, z up). Until it is touched, the simulated hand performs its task; from then on the hand is led by the cap,
-//! until button 0 ends this. Button 1 marks the place under the tip in a scene where lumps are looked for. A cap that is lost or silent counts as released, and the hand stays where it is. Leading
-//! from the screen takes precedence.
+//! until button 0 ends this. Button 1 marks the place under the tip in a scene where lumps are looked for, and opens and closes the jaws in one
+//! with rings; there the left hand waits while the right one is led, so that it takes no ring away. A cap that is lost or silent counts as
+//! released, and the hand stays where it is. Leading from the screen takes precedence.
 
 use nalgebra::Vector3;
 use nima_devices::{
@@ -20,6 +21,9 @@ use super::Worlds;
 
 /// Smaller deflections count as zero.
 const TOUCH: f64 = 0.05;
+/// How far the button opens the jaws, rad; jaws that are open less than this share of it hold a ring, or nothing.
+const OPEN_RAD: f64 = 0.6;
+const OPEN_SHARE: f64 = 0.8;
 /// Longest time step in which a deflection is integrated, s.
 const STEP_MAX_S: f64 = 0.01;
 
@@ -29,12 +33,16 @@ pub struct Desk {
     cap: Option<(Slot<CapDriver>, Held<CapReading>)>,
     pedal: Option<(Slot<PedalDriver>, Held<PedalReading>, PedalRoles)>,
     speed_m_s: f64,
-    /// What was done with its buttons, and whether the one that marks is down.
+    /// What was done with its buttons, how far the jaws are held open with them, rad, and whether the second one is down.
     acts: Acts,
-    marking: bool,
-    /// Position to which the cap leads the hand, m; `None` until it is touched.
+    grip_rad: Option<f64>,
+    is_down: bool,
+    /// Position to which the cap leads the hand, m; `None` until it is touched. Where the left hand waits meanwhile.
     at_m: Option<Vector3<f64>>,
-    hand_m: Vector3<f64>,
+    left_m: Option<Vector3<f64>>,
+    hands_m: [Vector3<f64>; SIDES],
+    /// Opening of the right gripper, rad, where there are jaws.
+    gripper_rad: Option<f64>,
     last_s: Option<f64>,
     watch: Watch,
     outputs: [Outputs; SIDES],
@@ -71,9 +79,12 @@ impl Desk {
             pedal,
             speed_m_s: settings.speed_m_s,
             acts: Acts::NONE,
-            marking: false,
+            grip_rad: None,
+            is_down: false,
             at_m: None,
-            hand_m: Vector3::zeros(),
+            left_m: None,
+            hands_m: [Vector3::zeros(); SIDES],
+            gripper_rad: None,
             last_s: None,
             watch: Watch::default(),
             outputs: [Outputs::SAFE; SIDES],
@@ -87,18 +98,41 @@ impl Desk {
         let (slot, held) = self.cap.as_mut()?;
         let reading = slot.poll(now_s);
         let cap = held.update(reading, slot.health());
-        let marks = cap.buttons >> 1 & 1 == 1;
-        if marks && !std::mem::replace(&mut self.marking, marks) {
-            self.acts.note(Act::Mark);
+        let is_down = cap.buttons >> 1 & 1 == 1;
+        if is_down && !self.is_down {
+            self.press();
         }
-        self.marking = marks;
+        self.is_down = is_down;
         if cap.buttons & 1 == 1 {
-            self.at_m = None;
+            (self.at_m, self.grip_rad) = (None, None);
         } else if cap.translation.norm() > TOUCH {
-            let at_m = self.at_m.unwrap_or(self.hand_m) + cap.translation * (self.speed_m_s * dt_s);
+            let at_m = self.at_m.unwrap_or(self.hands_m[Side::Right.index()]);
+            let at_m = at_m + cap.translation * (self.speed_m_s * dt_s);
             self.at_m = Some(at_m.map(|x| x.clamp(-GUIDE_MAX_M, GUIDE_MAX_M)));
         }
         self.at_m
+    }
+
+    /// The second button: where there are jaws it opens or closes them, elsewhere it marks.
+    fn press(&mut self) {
+        let Some(gripper_rad) = self.gripper_rad else { return self.acts.note(Act::Mark) };
+        let is_open = self.grip_rad.unwrap_or(gripper_rad) > OPEN_SHARE * OPEN_RAD;
+        self.grip_rad = Some(if is_open { 0.0 } else { OPEN_RAD });
+        // With jaws that are led the hand goes on with no task of its own.
+        self.at_m.get_or_insert(self.hands_m[Side::Right.index()]);
+    }
+
+    /// What the worlds get: the loop's outputs, with what is led here.
+    fn led(&mut self, led_m: Option<Vector3<f64>>) -> [Outputs; SIDES] {
+        let left_m = self.left_m.unwrap_or(self.hands_m[Side::Left.index()]);
+        self.left_m = led_m.and(self.gripper_rad).map(|_| left_m);
+        let mut outputs = self.outputs;
+        let [right, left] = &mut outputs;
+        right.guide_m = right.guide_m.or(led_m);
+        right.grip_rad = right.grip_rad.or(self.grip_rad);
+        right.acts = right.acts.and(self.acts);
+        left.guide_m = left.guide_m.or(self.left_m);
+        outputs
     }
 
     fn switches(&mut self, now_s: f64) -> Switches {
@@ -117,10 +151,7 @@ impl Desk {
 impl Rig for Desk {
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         let (led_m, switches) = (self.lead(now_s), self.switches(now_s));
-        let mut outputs = self.outputs;
-        let right = &mut outputs[Side::Right.index()];
-        right.guide_m = right.guide_m.or(led_m);
-        right.acts = right.acts.and(self.acts);
+        let outputs = self.led(led_m);
         let mut watch = std::mem::take(&mut self.watch);
         for (device, health) in self.standings().enumerate() {
             watch.look(now_s, device, health.standing, [false; SIDES]);
@@ -131,9 +162,10 @@ impl Rig for Desk {
         for input in inputs.iter_mut().flatten() {
             input.switches = switches;
         }
-        if let Some(right) = &inputs[Side::Right.index()] {
-            self.hand_m = right.hand.position_m;
+        for (hand_m, input) in self.hands_m.iter_mut().zip(&inputs) {
+            *hand_m = input.map_or(*hand_m, |input| input.hand.position_m);
         }
+        self.gripper_rad = inputs[Side::Right.index()].and_then(|right| right.gripper_rad);
         inputs
     }
 
@@ -155,18 +187,137 @@ impl Rig for Desk {
 }
 
 #[cfg(all(test, target_os = "linux"))]
+#[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
-    use std::time::{Duration, Instant};
+    use std::{
+        sync::{
+            Arc,
+            atomic::{AtomicU32, Ordering::Relaxed},
+        },
+        time::{Duration, Instant},
+    };
 
-    use nima_devices::hid::{CapSettings, PedalSettings};
-
+    use nima_devices::{
+        Standing,
+        hid::{CapSettings, PedalSettings},
+    };
+    use nima_machine::config::RigConfig;
+    use nima_score::Event;
     use nima_testing::real_time::judged;
 
     use super::*;
     use crate::{
-        emulators::hid::{CapBody, CapModel, PedalBody, PedalModel, cap, pedal},
+        Watched,
+        emulators::{
+            Serving,
+            hid::{CapBody, CapModel, PedalBody, PedalModel, cap, pedal},
+        },
         scene::Scene,
     };
+
+    fn source(endpoint: &str) -> String {
+        if endpoint.starts_with("emulated:") { endpoint.to_owned() } else { format!("emulated:{endpoint}") }
+    }
+
+    /// The rig `desk` in a scene, with a cap whose buttons a test presses.
+    struct Pressed {
+        desk: Desk,
+        watched: Watched,
+        buttons: Arc<AtomicU32>,
+        inputs: [Option<Inputs>; SIDES],
+        begin: Instant,
+        _cap: Serving,
+    }
+
+    impl Pressed {
+        fn begin(scene: &str) -> Self {
+            let buttons = Arc::new(AtomicU32::new(0));
+            let now = Arc::clone(&buttons);
+            let moved = move |_| CapReading { buttons: now.load(Relaxed), ..CapReading::default() };
+            let cap = cap(None, CapModel::default(), CapBody::moved_by(moved)).serve().unwrap();
+            let mut settings = RigConfig::load("desk").unwrap().desk.unwrap();
+            settings.cap.as_mut().unwrap().source = source(&cap.endpoint);
+            settings.pedal = None;
+            let (worlds, watched) = Worlds::watched(&Scene::load(scene).unwrap(), 1000.0);
+            let (desk, _) = Desk::start(&settings, worlds).unwrap();
+            let (inputs, begin) = ([None; SIDES], Instant::now());
+            let mut this = Self { desk, watched: watched.unwrap(), buttons, inputs, begin, _cap: cap };
+            this.run(|this| this.desk.standings().all(|health| health.standing == Standing::Connected));
+            this.for_s(0.3);
+            this
+        }
+
+        /// Runs the loop, as an engaged one does, until it is as wanted; for 6 s at most.
+        fn run(&mut self, wanted: impl Fn(&Self) -> bool) -> bool {
+            let until = Instant::now() + Duration::from_secs(6);
+            while Instant::now() < until {
+                let now_s = self.begin.elapsed().as_secs_f64();
+                let outputs = self.desk.hands_m.map(|hand_m| Outputs { tip_command_m: Some(hand_m), ..Outputs::SAFE });
+                self.desk.write(now_s, &outputs);
+                self.inputs = self.desk.read(now_s);
+                if wanted(self) {
+                    return true;
+                }
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            false
+        }
+
+        fn for_s(&mut self, seconds: f64) {
+            let until_s = self.begin.elapsed().as_secs_f64() + seconds;
+            self.run(|this| this.begin.elapsed().as_secs_f64() > until_s);
+        }
+
+        /// Holds a button down for a while.
+        fn press(&mut self, button: u32) {
+            self.buttons.store(1 << button, Relaxed);
+            self.for_s(0.2);
+            self.buttons.store(0, Relaxed);
+            self.for_s(0.2);
+        }
+
+        fn gripper_rad(&self, side: Side) -> f64 {
+            self.inputs[side.index()].and_then(|inputs| inputs.gripper_rad).unwrap_or_default()
+        }
+    }
+
+    #[test]
+    fn the_second_button_of_a_cap_marks_where_lumps_are_looked_for() {
+        judged(|| {
+            let mut pressed = Pressed::begin("find_lumps");
+            let marks = |pressed: &Pressed| {
+                pressed.watched.happenings().filter(|of| matches!(of.event, Event::LumpMarked { .. })).count()
+            };
+            assert_eq!(marks(&pressed), 0);
+            for _ in 0..2 {
+                pressed.press(1);
+            }
+            assert_eq!(marks(&pressed), 2, "each press once, however long it is");
+            pressed.press(0);
+            assert_eq!(marks(&pressed), 0, "the first one lets the hand go on");
+        });
+    }
+
+    #[test]
+    fn the_second_button_of_a_cap_opens_and_closes_jaws_and_the_other_hand_waits() {
+        judged(|| {
+            let mut pressed = Pressed::begin("rings");
+            let left = Side::Left.index();
+            let mut left_m = None;
+            for open in [true, false, true] {
+                pressed.press(1);
+                let is_so = pressed.run(|pressed| (pressed.gripper_rad(Side::Right) > 0.5) == open);
+                assert!(is_so, "{open}: {} rad", pressed.gripper_rad(Side::Right));
+                left_m.get_or_insert(pressed.desk.hands_m[left]);
+            }
+            let moved_m = (pressed.desk.hands_m[left] - left_m.unwrap()).norm();
+            pressed.press(0);
+            assert_eq!((pressed.desk.at_m, pressed.desk.left_m, pressed.desk.grip_rad), (None, None, None));
+            pressed.for_s(1.0);
+            let goes_on_m = (pressed.desk.hands_m[left] - left_m.unwrap()).norm();
+            assert!(moved_m < 0.002 && goes_on_m > 0.01, "{moved_m} m, and then {goes_on_m} m");
+        });
+    }
 
     #[test]
     fn a_cap_leads_the_hand_and_a_pedal_is_the_clutch() {
@@ -187,9 +338,6 @@ mod tests {
             )
             .serve()
             .unwrap();
-            let source = |endpoint: &str| {
-                if endpoint.starts_with("emulated:") { endpoint.to_owned() } else { format!("emulated:{endpoint}") }
-            };
             let settings = DeskSettings {
                 cap: Some(CapSettings { source: source(&cap.endpoint), ..CapSettings::default() }),
                 pedal: Some(PedalSettings { source: source(&pedal.endpoint), ..PedalSettings::default() }),
@@ -202,7 +350,7 @@ mod tests {
             let (mut first_m, mut led_s, mut clutched) = (None, 0.0, false);
             while begin.elapsed() < Duration::from_secs(6) && led_s < 0.8 {
                 let now_s = begin.elapsed().as_secs_f64();
-                let outputs = Outputs { tip_command_m: Some(desk.hand_m), ..Outputs::SAFE };
+                let outputs = Outputs { tip_command_m: Some(desk.hands_m[0]), ..Outputs::SAFE };
                 desk.write(now_s, &[outputs; SIDES]);
                 let inputs = desk.read(now_s);
                 clutched |= inputs[0].is_some_and(|inputs| inputs.switches.clutch);

@@ -40,6 +40,8 @@ struct Rings {
     objects: Objects,
     watch: Watch,
     task: PegTransfer,
+    /// What the screen shows of it.
+    counted: Training,
 }
 
 /// The place of a side among the objects.
@@ -63,7 +65,7 @@ impl Game {
         let rings = |setting: &Setting| {
             let objects = Objects::new(setting, period_s);
             let (watch, task) = (Watch::new(&objects), PegTransfer::new(setting));
-            Self::Rings(Box::new(Rings { objects, watch, task }))
+            Self::Rings(Box::new(Rings { objects, watch, task, counted: Training::default() }))
         };
         let wire = |setting: &WireSetting| Self::Wire(Box::new((Wire::new(setting, period_s), WireTask::new(setting))));
         let lumps = || Palpation::of(scene).map(|palpation| Self::Lumps(Box::new(palpation)));
@@ -116,7 +118,7 @@ impl Game {
 
     fn training(&self) -> Training {
         match self {
-            Self::Rings(_) => Training::default(),
+            Self::Rings(rings) => rings.counted,
             Self::Lumps(palpation) => palpation.training(),
             Self::Wire(both) => {
                 let (wire, task) = both.as_ref();
@@ -140,12 +142,23 @@ impl Rings {
         while let Some(event) = self.watch.next_event() {
             tell(0.0, event);
             self.task.take(event);
+            self.count(event);
             done = true;
         }
         if done && self.task.is_done() {
             tell(0.0, Event::Ended);
         }
         loads
+    }
+
+    fn count(&mut self, event: Event) {
+        let Training { passed, placed, dropped, .. } = &mut self.counted;
+        match event {
+            Event::RingTransferred { .. } => *passed += 1,
+            Event::RingPlaced { .. } => *placed += 1,
+            Event::RingDropped { .. } => *dropped += 1,
+            _ => {}
+        }
     }
 }
 

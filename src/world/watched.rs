@@ -32,7 +32,7 @@ pub struct Moment {
     pub training: Training,
 }
 
-/// How far a training task has come that is not one of rings.
+/// How far a training task has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Training {
     /// The trial is over.
@@ -49,6 +49,12 @@ pub struct Training {
     pub touches: u32,
     /// Share of the way to the goal that is done, 0 to 1.
     pub share: f64,
+    /// How often rings were handed over in mid-air, put on pegs, and dropped, in view or out of it.
+    pub passed: u32,
+    /// See `passed`.
+    pub placed: u32,
+    /// See `passed`.
+    pub dropped: u32,
 }
 
 /// A place that was marked.

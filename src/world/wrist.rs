@@ -164,6 +164,16 @@ mod tests {
     }
 
     #[test]
+    fn the_torque_of_what_jaws_hold_reaches_the_wrist_about_the_shaft() {
+        let (mut wrist, ..) = quiet("isolation");
+        let direction = Vector3::new(0.2, -0.3, -0.9).normalize();
+        let mut torque = |loads: &Loads| wrist.measure(&along_shaft(&direction), loads).raw.torque_nm;
+        let none = torque(&Loads::default());
+        let twist = torque(&Loads { twist_nm: direction * 2e-4, ..Loads::default() }) - none;
+        assert!((twist - Vector3::new(0.0, 0.0, 2e-4)).norm() < 1e-15, "{twist}");
+    }
+
+    #[test]
     fn the_wrist_looks_along_the_shaft() {
         for direction in [-Vector3::z(), Vector3::new(0.3, 0.4, -0.8).normalize(), Vector3::x()] {
             let world_from_s1 = along_shaft(&direction);

@@ -66,11 +66,11 @@ fn an_act_of_a_task_is_counted_once_and_refused_in_a_stop() {
         let timing = Timing { now_s: 0.0, wake_s: 0.0, work_s: 0.0, sample_to_force_s: None, missed_now: 0 };
         pair.step(false, Some(Inputs::NOTHING), &timing).0.acts
     };
-    assert_eq!(pair.obey(Command::Task(Act::Mark), 0.0), Ok(()));
+    assert_eq!(pair.obey(Command::Task(Side::Right, Act::Mark), 0.0), Ok(()));
     let marked = Acts { marks: 1, ..Acts::NONE };
     assert_eq!([acts(&mut pair), acts(&mut pair)], [marked; 2]);
     assert_eq!(pair.obey(Command::Stop, 0.0), Ok(()));
-    let refused = pair.obey(Command::Task(Act::Mark), 0.0);
+    let refused = pair.obey(Command::Task(Side::Right, Act::Mark), 0.0);
     assert!(matches!(refused, Err(Refusal::State(LoopState::Stopped))), "{refused:?}");
     assert_eq!(acts(&mut pair), marked);
 }
@@ -80,8 +80,12 @@ fn where_a_person_may_hold_the_handle_neither_is_obeyed() {
     for name in ["emulated", "paper"] {
         let rig = RigConfig::load(name).unwrap();
         let mut pair = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();
-        let acts =
-            [Command::Task(Act::Mark), Command::LetGo(true), Command::SetGovernor(false), Command::SetGovernor(true)];
+        let acts = [
+            Command::Task(Side::Right, Act::Mark),
+            Command::LetGo(true),
+            Command::SetGovernor(false),
+            Command::SetGovernor(true),
+        ];
         for command in acts {
             assert_eq!(pair.obey(command, 0.0), Err(Refusal::SimulatedOnly), "{name}: {command:?}");
         }

@@ -5,6 +5,7 @@ mod bimanual;
 mod contacts;
 mod davinci;
 mod feeling;
+mod leading;
 mod letting_go;
 mod over_a_network;
 mod ready_check;

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use nima_core::impedance::Mode;
 use nima_machine::{
     messages::{Command, LoopState},
-    rig::Act,
+    rig::{Act, Side},
     runtime,
 };
 use nima_score::{Event, Happening};
@@ -83,13 +83,13 @@ fn a_person_marks_begins_anew_and_ends_from_the_screen() {
     let plan = of("find_lumps", Mode::Matched);
     let lump = plan.scene.placed_lumps().unwrap().list[2];
     let beside = Vector3::new(lump.at_m[0], lump.at_m[1], 0.004);
-    let task = |at_s: f64, act: Act| (at_s, Command::Task(act));
+    let task = |at_s: f64, act: Act| (at_s, Command::Task(Side::Right, act));
     let commands = [
-        (0.5, Command::Guide(Some(beside))),
+        (0.5, Command::Guide(Side::Right, Some(beside))),
         task(2.5, Act::Mark),
         task(2.6, Act::Begin),
         task(2.7, Act::Mark),
-        (2.8, Command::Guide(Some(Vector3::new(0.055, 0.042, 0.004)))),
+        (2.8, Command::Guide(Side::Right, Some(Vector3::new(0.055, 0.042, 0.004)))),
         task(4.8, Act::Mark),
         task(4.9, Act::End),
         task(5.0, Act::Mark),

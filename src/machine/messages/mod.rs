@@ -45,14 +45,14 @@ pub enum Command {
     SetStaticHold(bool),
     /// Give the person at the arm of this side an instruction for the calibration; in idle only.
     Prompt(Side, Prompt),
-    /// Lead the handle from the screen to this position, m (workspace), at most [`crate::teleop::GUIDE_MAX_M`] from the
+    /// Lead the handle of this side from the screen to this position, m (workspace), at most [`crate::rig::GUIDE_MAX_M`] from the
     /// middle on each axis; `None` ends this. A stop and a fault end it too.
-    Guide(Option<Vector3<f64>>),
-    /// Hold the gripper of the handle open from the screen, this far, rad, at most [`crate::rig::GRIP_MAX_RAD`]; `None` ends this. A
-    /// stop and a fault end it too. On a simulated rig only.
-    Grip(Option<f64>),
-    /// Do this in the training task, with the tip of the right instrument. On a simulated rig only.
-    Task(Act),
+    Guide(Side, Option<Vector3<f64>>),
+    /// Hold the gripper of this side's handle open from the screen, this far, rad, at most [`crate::rig::GRIP_MAX_RAD`]; `None` ends
+    /// this. A stop and a fault end it too. On a simulated rig only.
+    Grip(Side, Option<f64>),
+    /// Do this in the training task, with the tip of this side's instrument. On a simulated rig only.
+    Task(Side, Act),
     /// The simulated hand lets go of its handle (true) or takes it again (false). On a simulated rig only.
     LetGo(bool),
     /// Leave the governor out (false) or let it watch again (true). On a simulated rig only, where nobody holds the handle.
@@ -79,13 +79,13 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether the pair of this side carries it out. Leading from the screen and letting go are for the right hand.
+    /// Whether the pair of this side carries it out. Letting go is for the right hand.
     pub fn concerns(self, side: Side) -> bool {
         match self {
-            Self::EngageOne(of) | Self::Prompt(of, _) => of == side,
-            Self::Guide(_) | Self::Grip(_) | Self::Task(_) | Self::LetGo(_) | Self::SetGovernor(_) => {
-                side == Side::Right
+            Self::EngageOne(of) | Self::Prompt(of, _) | Self::Guide(of, _) | Self::Grip(of, _) | Self::Task(of, _) => {
+                of == side
             }
+            Self::LetGo(_) | Self::SetGovernor(_) => side == Side::Right,
             _ => true,
         }
     }

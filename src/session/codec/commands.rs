@@ -31,7 +31,7 @@ choice!(Command {
     5 => SetDeadBand { 0: speed_m_s: f64 },
     6 => SetStaticHold { 0: holds: bool },
     7 => Prompt { 0: side: Side, 1: prompt: Prompt },
-    8 => Guide { 0: guide_m: Option<Vector3<f64>> },
+    8 => Guide { 0: side: Side, 1: guide_m: Option<Vector3<f64>> },
     9 => LetGo { 0: lets_go: bool },
     10 => SetGovernor { 0: on: bool },
     11 => SetScale { 0: scale: f64 },
@@ -43,8 +43,8 @@ choice!(Command {
     17 => TestWatchdog { 0: watchdog: Watchdog },
     18 => Checked { 0: passed: bool },
     19 => Shutdown {},
-    20 => Grip { 0: grip_rad: Option<f64> },
-    21 => Task { 0: act: Act },
+    20 => Grip { 0: side: Side, 1: grip_rad: Option<f64> },
+    21 => Task { 0: side: Side, 1: act: Act },
 });
 
 choice!(Act { 0 => Begin {}, 1 => Mark {}, 2 => End {} });

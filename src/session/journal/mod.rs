@@ -18,7 +18,7 @@ use crate::codec::Wrong;
 use parts::Bytes;
 
 /// Version of the journal that this program writes, and the only one that it reads.
-pub const VERSION: u16 = 3;
+pub const VERSION: u16 = 4;
 
 const MAGIC: [u8; 4] = *b"NIMJ";
 /// Magic, version, CRC.

@@ -216,9 +216,9 @@ fn command() -> BoxedStrategy<Command> {
         (0..of_number.len(), number()).prop_map(move |(i, value)| of_number[i](value)),
         (0..of_bool.len(), any::<bool>()).prop_map(move |(i, value)| of_bool[i](value)),
         (side(), prompt()).prop_map(|(side, prompt)| Command::Prompt(side, prompt)),
-        maybe(vector()).prop_map(Command::Guide),
-        maybe(number()).prop_map(Command::Grip),
-        proptest::sample::select(Act::ALL.to_vec()).prop_map(Command::Task),
+        (side(), maybe(vector())).prop_map(|(side, guide_m)| Command::Guide(side, guide_m)),
+        (side(), maybe(number())).prop_map(|(side, grip_rad)| Command::Grip(side, grip_rad)),
+        (side(), proptest::sample::select(Act::ALL.to_vec())).prop_map(|(side, act)| Command::Task(side, act)),
         side().prop_map(Command::EngageOne),
         proptest::sample::select(Watchdog::ALL.to_vec()).prop_map(Command::TestWatchdog),
     ]

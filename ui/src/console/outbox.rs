@@ -17,7 +17,7 @@ impl Outbox {
         if command == Command::Stop {
             self.waiting.clear();
         }
-        self.waiting.retain(|old| std::mem::discriminant(old) != std::mem::discriminant(&command));
+        self.waiting.retain(|old| !is_outdated(old, command));
         self.waiting.push(command);
     }
 
@@ -60,9 +60,40 @@ impl Outbox {
     }
 }
 
+/// Whether a command that waits is of no use any more with this newer one: it is for the same thing of the same side.
+fn is_outdated(old: &Command, newer: Command) -> bool {
+    match (*old, newer) {
+        (Command::Guide(old, _), Command::Guide(newer, _)) | (Command::Grip(old, _), Command::Grip(newer, _)) => {
+            old == newer
+        }
+        // Each is done.
+        (Command::Task(..), Command::Task(..)) => false,
+        (old, newer) => std::mem::discriminant(&old) == std::mem::discriminant(&newer),
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use nima_machine::rig::{Act, Side};
+
     use super::*;
+
+    #[test]
+    fn both_instruments_are_led_in_one_frame_and_every_act_is_done() {
+        let mut outbox = Outbox::default();
+        for rad in [0.6, 0.0] {
+            for side in Side::ALL {
+                outbox.push(Command::Guide(side, None));
+                outbox.push(Command::Grip(side, Some(rad)));
+            }
+            outbox.push(Command::Task(Side::Right, Act::Mark));
+        }
+        let [right, left] = Side::ALL;
+        let mark = Command::Task(right, Act::Mark);
+        let of = |side| [Command::Guide(side, None), Command::Grip(side, Some(0.0))];
+        let wanted: Vec<Command> = [mark].into_iter().chain(of(right)).chain(of(left)).chain([mark]).collect();
+        assert_eq!(outbox.waiting, wanted);
+    }
 
     #[test]
     fn a_dragged_slider_leaves_one_command() {

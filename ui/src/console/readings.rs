@@ -41,6 +41,8 @@ pub struct Figures {
     pub measured_n: [f64; SIDES],
     /// Mean magnitude of the rendered force of each side, N.
     pub rendered_n: [f64; SIDES],
+    /// Torque about the shaft of each side, Nm.
+    pub twist: [Twist; SIDES],
     /// Error of each mode at the horizon, N, mean over the last seconds.
     pub horizon_n: [f64; SLOTS],
     /// Lateness of wake-ups, us.
@@ -55,6 +57,15 @@ pub struct Figures {
     pub frame_ms: [f64; 2],
     /// Processor time of one frame, ms.
     pub frame_work_ms: f64,
+}
+
+/// Torque about the shaft, Nm, positive against the clock as seen from the trocar. `None` where it is not known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Twist {
+    /// Of what the jaws hold or touch.
+    pub jaws_nm: Option<f64>,
+    /// On the wrist sensor, as read.
+    pub wrist_nm: Option<f64>,
 }
 
 impl Gates {

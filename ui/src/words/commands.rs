@@ -36,16 +36,18 @@ pub(crate) fn command(command: Command) -> String {
         Command::SetStaticHold(true) => "keep the force at standstill".to_owned(),
         Command::SetStaticHold(false) => "fade the force out at standstill".to_owned(),
         Command::Prompt(side, _) => format!("instruction to the person at the {} arm", side.word()),
-        Command::Guide(Some(at_m)) => {
+        Command::Guide(side, Some(at_m)) => {
             let [x, y, z] = [at_m.x, at_m.y, at_m.z].map(|m| m * 1e3);
-            format!("lead the handle to {x:.0}, {y:.0}, {z:.0} mm")
+            format!("lead the {} handle to {x:.0}, {y:.0}, {z:.0} mm", side.word())
         }
-        Command::Guide(None) => "lead the handle no longer".to_owned(),
-        Command::Grip(Some(rad)) => format!("hold the gripper open by {:.0} degrees", rad.to_degrees()),
-        Command::Grip(None) => "leave the gripper to the hand".to_owned(),
-        Command::Task(Act::Begin) => "begin the trial anew".to_owned(),
-        Command::Task(Act::Mark) => "mark the place under the tip".to_owned(),
-        Command::Task(Act::End) => "end the trial".to_owned(),
+        Command::Guide(side, None) => format!("lead the {} handle no longer", side.word()),
+        Command::Grip(side, Some(rad)) => {
+            format!("hold the {} gripper open by {:.0} degrees", side.word(), rad.to_degrees())
+        }
+        Command::Grip(side, None) => format!("leave the {} gripper to the hand", side.word()),
+        Command::Task(_, Act::Begin) => "begin the trial anew".to_owned(),
+        Command::Task(side, Act::Mark) => format!("mark the place under the {} tip", side.word()),
+        Command::Task(_, Act::End) => "end the trial".to_owned(),
         Command::LetGo(true) => "the simulated hand lets go".to_owned(),
         Command::LetGo(false) => "the simulated hand takes hold".to_owned(),
         Command::SetGovernor(true) => "governor on".to_owned(),
@@ -88,8 +90,8 @@ mod tests {
         assert_eq!(told(Command::SetMode(Mode::Dfr)), "command: mode \"Direct (DFR)\"");
         assert_eq!(told(Command::SetDelay(0.05)), "command: delay of the link 50 ms");
         assert_eq!(
-            told(Command::Guide(Some(Vector3::new(0.01, 0.0, -0.002)))),
-            "command: lead the handle to 10, 0, -2 mm"
+            told(Command::Guide(Side::Left, Some(Vector3::new(0.01, 0.0, -0.002)))),
+            "command: lead the left handle to 10, 0, -2 mm"
         );
         assert_eq!(told(Command::EngageOne(Side::Left)), "command: engage the left arm");
     }

@@ -139,24 +139,30 @@ fn commands() -> impl Iterator<Item = Command> {
             Command::Checked(on),
         ]
     });
-    let sides = Side::ALL.into_iter().flat_map(|side| [Command::EngageOne(side), Command::Prompt(side, Prompt::Rest)]);
+    let sides = Side::ALL.into_iter().flat_map(|side| {
+        [
+            Command::EngageOne(side),
+            Command::Prompt(side, Prompt::Rest),
+            Command::Guide(side, Some(Vector3::zeros())),
+            Command::Guide(side, None),
+            Command::Grip(side, Some(0.0)),
+            Command::Grip(side, None),
+        ]
+    });
     let others = [
         Command::SetGain(0.0),
         Command::SetGainAboveOne(0.0),
         Command::SetDelay(0.0),
         Command::SetDeadBand(0.0),
         Command::SetScale(0.0),
-        Command::Guide(Some(Vector3::zeros())),
-        Command::Guide(None),
-        Command::Grip(Some(0.0)),
-        Command::Grip(None),
         Command::Engage,
         Command::Rest,
         Command::Stop,
         Command::ReleaseStop,
         Command::Shutdown,
     ];
-    let counted = Watchdog::ALL.map(Command::TestWatchdog).into_iter().chain(Act::ALL.map(Command::Task));
+    let acts = Side::ALL.into_iter().flat_map(|side| Act::ALL.map(|act| Command::Task(side, act)));
+    let counted = Watchdog::ALL.map(Command::TestWatchdog).into_iter().chain(acts);
     modes.chain(switches).chain(sides).chain(others).chain(counted)
 }
 
@@ -204,7 +210,7 @@ mod tests {
             "right arm: from Ready to Engaged",
             "left arm: fault: The control loop was blocked: drives and force were switched off",
             "command: gain 0.35",
-            "command: lead the handle to 10, 0, -2 mm",
+            "command: lead the left handle to 10, 0, -2 mm",
             "right arm: refused: engage the right arm: nobody holds the handle",
             "right arm: refused: delay of the link 100 ms: the delay is that of the network, which is measured and not set",
             "the loop was silent for 612 ms",

@@ -48,13 +48,13 @@ impl<L: Link> Pair<L> {
             },
             // In idle only: a person who handles the arm must be safe from its motion.
             Command::Prompt(_, prompt) if self.state() == LoopState::Idle && prompt.is_finite() => self.prompt = prompt,
-            Command::Guide(guide_m)
+            Command::Guide(_, guide_m)
                 if !self.state().is_latched()
                     && guide_m.is_none_or(|at_m| at_m.iter().all(|x| x.abs() <= GUIDE_MAX_M)) =>
             {
                 self.guide_m = guide_m;
             }
-            Command::LetGo(_) | Command::SetGovernor(_) | Command::Grip(_) | Command::Task(_)
+            Command::LetGo(_) | Command::SetGovernor(_) | Command::Grip(..) | Command::Task(..)
                 if self.lets_go.is_none() =>
             {
                 return Err(Refusal::SimulatedOnly);
@@ -62,13 +62,13 @@ impl<L: Link> Pair<L> {
             Command::LetGo(lets_go) => self.lets_go = Some(lets_go),
             Command::SetGovernor(on) => self.chain.set_governor(on),
             Command::Prompt(_, prompt) if prompt.is_finite() => return Err(Refusal::State(self.state())),
-            Command::Grip(grip_rad)
+            Command::Grip(_, grip_rad)
                 if !self.state().is_latched() && grip_rad.is_none_or(|rad| (0.0..=GRIP_MAX_RAD).contains(&rad)) =>
             {
                 self.grip_rad = grip_rad;
             }
-            Command::Task(act) if !self.state().is_latched() => self.acts.note(act),
-            Command::Guide(_) | Command::Grip(_) | Command::Task(_) if self.state().is_latched() => {
+            Command::Task(_, act) if !self.state().is_latched() => self.acts.note(act),
+            Command::Guide(..) | Command::Grip(..) | Command::Task(..) if self.state().is_latched() => {
                 return Err(Refusal::State(self.state()));
             }
             Command::Engage | Command::EngageOne(_) => {

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use nima_core::{impedance::Mode, statistics::Quantiles};
+use nima_core::{frames::WristSample, impedance::Mode, statistics::Quantiles};
 use nima_machine::{
     messages::{Event, Fault, LoopState, Tick},
     rig::{Gauges, SIDES, Side},
@@ -14,7 +14,7 @@ use crate::{
         activity::Activity,
         door::{Door, News},
         history::CHANNELS,
-        readings::{Change, Figures},
+        readings::{Change, Figures, Twist},
         rolling::Fading,
     },
     line::LineDoor,
@@ -177,7 +177,20 @@ impl Live {
     fn refresh_readings(&mut self) {
         self.figures.measured_n = self.measured.map(Fading::get);
         self.figures.rendered_n = self.rendered.map(Fading::get);
+        self.figures.twist = Side::ALL.map(|side| self.twist(side).unwrap_or_default());
         self.readings_at = Instant::now();
+    }
+
+    /// Torque about the shaft of this side.
+    fn twist(&self, side: Side) -> Option<Twist> {
+        let (tick, trocar_m) = (self.tick_of(side)?, self.scene.of_side(side)?.trocar_m);
+        let out = (trocar_m - tick.tip_m).try_normalize(1e-6)?;
+        let jaws = self.objects.as_ref().and_then(|objects| objects.jaws[side.index()]);
+        let wrist_nm = |sample: &WristSample| Some((sample.world_from_s1? * sample.raw.torque_nm).dot(&out));
+        Some(Twist {
+            jaws_nm: jaws.map(|jaws| jaws.torque_nm.dot(&out)),
+            wrist_nm: tick.wrist.as_ref().and_then(wrist_nm),
+        })
     }
 
     /// All other figures; the ticks since the last time took so many seconds.

@@ -13,6 +13,7 @@ use super::axis::{marks, near_end, plain, signed};
 use crate::console::{
     history::{CHANNELS, History, Trace},
     live::Live,
+    readings::Twist,
     scene3d::side_name,
     text, theme,
     widgets::{force_sign, small},
@@ -118,6 +119,7 @@ pub(super) fn stepped(t_s: f64, step_s: f64) -> f64 {
 /// The panel, with plots of these axes (0 is x) below one another.
 pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[usize]) {
     header_ui(ui, live, state);
+    twist_ui(ui, live, state.side);
     ui.add_space(2.0);
     let now_s = state.now_s(state.history(live));
     let (from_s, to_s) = (now_s + state.view_s.0, now_s + state.view_s.1);
@@ -165,6 +167,15 @@ fn read_at(ui: &Ui, history: &History, axis: usize, (now_s, at_s): (f64, f64), r
         let words = format!("{} N", signed(value_n));
         let place = ui.painter().text(pos2(right, corner.y), Align2::RIGHT_TOP, words, theme::strong(13.0), colour);
         right = place.left() - 10.0;
+    }
+}
+
+/// The torque about the shaft, where it is known: nothing renders it, so it is not among the traces.
+fn twist_ui(ui: &mut Ui, live: &Live, side: Side) {
+    let Twist { jaws_nm, wrist_nm } = live.figures.twist[side.index()];
+    if jaws_nm.is_some() || wrist_nm.is_some() {
+        let words = text::forces::twist([jaws_nm, wrist_nm].map(|nm| nm.map(|nm| 1e3 * nm)));
+        ui.label(small(&words)).on_hover_text(text::forces::TWIST_HOVER);
     }
 }
 

@@ -11,6 +11,8 @@ const ENDOSCOPE_FIELD: f32 = 0.92;
 const DISTANCE_M: std::ops::RangeInclusive<f32> = 0.06..=0.9;
 /// Range of pitch: from nearly level with the surface to nearly straight down, rad.
 const PITCH: std::ops::RangeInclusive<f32> = 0.03..=1.5;
+/// Sine of the flattest angle at which a level is looked at: below it a point of the screen is centimetres.
+const FLATTEST: f32 = 0.15;
 
 /// Position and direction of the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,6 +122,17 @@ impl Camera {
         let (x, y) = (clip.x / clip.w, clip.y / clip.w);
         Some(rect.center() + Vec2::new(0.5 * x * rect.width(), -0.5 * y * rect.height()))
     }
+
+    /// Where the ray through a place on the screen comes down to this height, m; `None` if it does not, or too flat.
+    pub fn on_level(&self, place: Pos2, rect: Rect, height_m: f32) -> Option<Vector3<f32>> {
+        let from_centre = place - rect.center();
+        let (x, y) = (2.0 * from_centre.x / rect.width(), -2.0 * from_centre.y / rect.height());
+        let workspace_from_clip = self.clip_from_workspace(rect.aspect_ratio()).try_inverse()?;
+        let far = workspace_from_clip * Vector4::new(x, y, 1.0, 1.0);
+        let (eye_m, way) = (self.eye_m(), (far.xyz() / far.w - self.eye_m()).try_normalize(1e-6)?);
+        let length_m = (height_m - eye_m.z) / way.z;
+        (way.z <= -FLATTEST && length_m > 0.0).then(|| eye_m + way * length_m)
+    }
 }
 
 #[cfg(test)]
@@ -171,6 +184,21 @@ mod tests {
         camera.zoom(f32::NAN);
         assert!(camera.distance_m.is_finite());
         assert!(camera.clip_from_workspace(f32::NAN).iter().all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn a_place_on_the_screen_is_on_the_level_that_it_shows_and_none_is_too_far() {
+        for camera in [Camera::of(&Scene::load("rings").unwrap()), Camera::endoscope(&Scene::load("rings").unwrap())] {
+            for at_m in [Vector3::new(0.045, -0.026, 0.002), Vector3::new(-0.02, 0.03, 0.04), Vector3::zeros()] {
+                let on_screen = camera.project(&at_m, view()).unwrap();
+                let found_m = camera.on_level(on_screen, view(), at_m.z).unwrap();
+                assert!((found_m - at_m).norm() < 1e-4, "{found_m} for {at_m}");
+            }
+            let above_eye_m = camera.eye_m().z + 0.01;
+            assert_eq!(camera.on_level(view().center(), view(), above_eye_m), None);
+        }
+        let flat = Camera { pitch: 0.1, ..Camera::default() };
+        assert_eq!(flat.on_level(view().center(), view(), 0.0), None);
     }
 
     #[test]

@@ -1,13 +1,14 @@
-//! Leads the instrument with mouse and keyboard, for demonstrations without a haptic device.
+//! Leads an instrument with mouse and keyboard, for demonstrations and training tasks without a haptic device.
 //!
-//! The window sends positions (m, workspace). The simulated hand moves there and yields to the rendered force. Leading
+//! The window sends positions (m, workspace). The simulated hand moves there and yields to the rendered force. With two
+//! instruments one is led and the other one is held where it was left, jaws and all, until a key changes which is led. Leading
 //! ends when the loop stops.
 
-use egui::{Button, Key, Rect, Response, RichText, Ui, vec2};
+use egui::{Button, Event, Key, PointerButton, Pos2, Rect, Response, RichText, Ui, Vec2, vec2};
 use nalgebra::Vector3;
 use nima_machine::{
     messages::{Command, LoopState},
-    rig::Act,
+    rig::{Act, SIDES, Side},
 };
 
 use super::{Camera, Live, Outbox};
@@ -15,68 +16,86 @@ use crate::console::{text, theme};
 
 /// Motion per press of an arrow key, m.
 const STEP_M: f32 = 0.001;
-/// How far the key opens the jaws, rad.
+/// How far the key opens the jaws, rad; jaws that hold a ring are nearer to closed than this share of it.
 const OPEN_RAD: f64 = 0.6;
+const OPEN_SHARE: f64 = 0.8;
 /// Change of height per point of the wheel, m.
 const WHEEL_M: f32 = 0.0001;
 /// Space in which the instrument may be led: half width, half depth, lowest and highest, m.
 const SIDE_M: f32 = 0.055;
-const HEIGHT_M: std::ops::RangeInclusive<f32> = -0.02..=0.06;
+const HEIGHT_M: std::ops::RangeInclusive<f32> = -0.02..=0.095;
 
-/// Whether the instrument is led, and to which position.
+/// Which instrument is led, and to which position.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Lead {
-    at_m: Option<Vector3<f32>>,
+    /// Where each instrument is led or held, m; none while nobody leads.
+    at_m: [Option<Vector3<f32>>; SIDES],
+    /// The one that mouse and keys move.
+    side: Side,
     /// The jaws are held open; not known before the first press of the key.
-    open: Option<bool>,
+    open: [Option<bool>; SIDES],
+    /// Where the pointer was last, while it drags the instrument.
+    drag: Option<Pos2>,
 }
 
 impl Lead {
-    /// Whether the instrument is led.
-    pub(super) const fn is_on(self) -> bool {
-        self.at_m.is_some()
+    /// Whether an instrument is led.
+    pub(super) fn is_on(self) -> bool {
+        self.at_m.iter().any(Option::is_some)
+    }
+
+    /// The instrument that mouse and keys move.
+    pub(super) fn side(self) -> Option<Side> {
+        self.is_on().then_some(self.side)
     }
 
     /// Ends the leading.
     pub(super) fn let_go(&mut self, outbox: &mut Outbox) {
-        if self.at_m.take().is_some() {
-            outbox.push(Command::Guide(None));
-        }
-        self.leave_jaws(outbox);
-    }
-
-    fn leave_jaws(&mut self, outbox: &mut Outbox) {
-        if self.open.take().is_some() {
-            outbox.push(Command::Grip(None));
-        }
-    }
-
-    /// Opens and closes the jaws by a key.
-    fn jaws(&mut self, ui: &Ui, live: &Live, outbox: &mut Outbox) {
-        let pressed = !ui.ctx().text_edit_focused() && ui.input(|input| input.key_pressed(Key::G));
-        if pressed && live.scene.objects.is_some() {
-            let open = !self.open.unwrap_or(false);
-            self.open = Some(open);
-            outbox.push(Command::Grip(Some(if open { OPEN_RAD } else { 0.0 })));
-        }
-    }
-
-    /// What else is done in a training task, by keys.
-    fn acts(ui: &Ui, live: &Live, outbox: &mut Outbox) {
-        if ui.ctx().text_edit_focused() {
-            return;
-        }
-        let pressed = |key: Key| ui.input(|input| input.modifiers.is_none() && input.key_pressed(key));
-        let (is_searched, on_wire) = (live.scene.is_searched(), live.scene.wire.is_some());
-        for (key, act, has) in [
-            (Key::X, Act::Mark, is_searched),
-            (Key::D, Act::End, is_searched),
-            (Key::N, Act::Begin, is_searched || on_wire),
-        ] {
-            if has && pressed(key) {
-                outbox.push(Command::Task(act));
+        for side in Side::ALL {
+            if self.at_m[side.index()].is_some() {
+                outbox.push(Command::Guide(side, None));
+            }
+            if self.open[side.index()].is_some() {
+                outbox.push(Command::Grip(side, None));
             }
         }
+        self.forget();
+    }
+
+    /// The loop has ended the leading already.
+    fn forget(&mut self) {
+        *self = Self { side: self.side, ..Self::default() };
+    }
+
+    /// Begins: every instrument is held where its hand is now, and one of them is led.
+    fn take(&mut self, live: &Live, outbox: &mut Outbox) {
+        for side in live.sides() {
+            let at_m = live.tick_of(side).map(|tick| tick.leader_m.cast());
+            self.at_m[side.index()] = at_m;
+            if let Some(at_m) = at_m {
+                outbox.push(Command::Guide(side, Some(at_m.cast())));
+            }
+        }
+        if self.at_m[self.side.index()].is_none() {
+            self.side = self.side.other();
+        }
+    }
+
+    /// Leads the other instrument, if there is one.
+    fn change_side(&mut self) {
+        if self.at_m[self.side.other().index()].is_some() {
+            (self.side, self.drag) = (self.side.other(), None);
+        }
+    }
+
+    /// Opens or closes the jaws.
+    fn jaws(&mut self, live: &Live, outbox: &mut Outbox) {
+        let i = self.side.index();
+        let opening_rad = live.objects.as_ref().and_then(|objects| objects.jaws[i]).map(|jaws| jaws.opening_rad);
+        // The hand may have opened them before it was led.
+        let was_open = self.open[i].unwrap_or_else(|| opening_rad.is_some_and(|rad| rad > OPEN_SHARE * OPEN_RAD));
+        self.open[i] = Some(!was_open);
+        outbox.push(Command::Grip(self.side, Some(if was_open { 0.0 } else { OPEN_RAD })));
     }
 
     /// The switch in the view, and the handling of mouse and keys while it is on. Returns true while it is on.
@@ -91,8 +110,7 @@ impl Lead {
     ) -> bool {
         let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged) && !live.is_shown_only();
         if self.is_on() && !runs {
-            // The loop has ended the leading already.
-            (self.at_m, self.open) = (None, None);
+            self.forget();
         }
         let place = Rect::from_min_size(rect.right_bottom() - vec2(250.0, 46.0), vec2(150.0, 34.0));
         let text = if self.is_on() { text::field::LEAD_END } else { text::field::LEAD };
@@ -101,53 +119,98 @@ impl Lead {
         let clicked = ui.add_enabled_ui(runs, |ui| ui.put(rect.intersect(place), button).clicked()).inner;
         let pressed = !ui.ctx().text_edit_focused() && ui.input(|input| input.key_pressed(Key::M));
         if runs && (clicked || pressed) {
-            self.at_m = match self.at_m {
-                Some(_) => None,
-                None => live.first_tick().map(|tick| tick.leader_m.cast()),
-            };
-            outbox.push(Command::Guide(self.at_m.map(Vector3::cast)));
-            if self.at_m.is_none() {
-                self.leave_jaws(outbox);
+            if self.is_on() {
+                self.let_go(outbox);
+            } else {
+                self.take(live, outbox);
             }
         }
-        if self.at_m.is_some() {
-            self.jaws(ui, live, outbox);
-            Self::acts(ui, live, outbox);
+        if self.is_on() {
+            self.steer(ui, rect, view, live, camera, outbox);
         }
-        let Some(at_m) = &mut self.at_m else { return false };
-        let before_m = *at_m;
-        if view.dragged() {
-            let drag = view.drag_delta() * camera.metres_per_point(rect.height());
-            *at_m += camera.right() * drag.x - camera.away() * drag.y;
+        self.is_on()
+    }
+
+    /// Does what mouse and keys say, in their order: where frames are few, many of them come at once.
+    fn steer(&mut self, ui: &Ui, rect: Rect, view: &Response, live: &Live, camera: &Camera, outbox: &mut Outbox) {
+        let before_m = self.at_m;
+        let takes = view.contains_pointer() || view.is_pointer_button_down_on();
+        let writes = ui.ctx().text_edit_focused();
+        for event in ui.input(|input| input.events.clone()) {
+            match event {
+                Event::Key { key, pressed: true, repeat, modifiers, .. } if !writes && modifiers.is_none() => {
+                    self.key(key, repeat, live, camera, outbox);
+                }
+                Event::PointerButton { pos, button: PointerButton::Primary, pressed, .. } => {
+                    self.drag_to(pos, camera, rect);
+                    self.drag = (pressed && takes && rect.contains(pos)).then_some(pos);
+                }
+                Event::PointerMoved(pos) => self.drag_to(pos, camera, rect),
+                Event::PointerGone => self.drag = None,
+                _ => {}
+            }
         }
-        *at_m += keys_m(ui, camera);
         if view.contains_pointer() {
-            at_m.z += WHEEL_M * ui.input(|input| input.smooth_scroll_delta().y);
+            self.step(Vector3::z() * (WHEEL_M * ui.input(|input| input.smooth_scroll_delta().y)));
         }
-        *at_m = Vector3::new(
-            at_m.x.clamp(-SIDE_M, SIDE_M),
-            at_m.y.clamp(-SIDE_M, SIDE_M),
-            at_m.z.clamp(*HEIGHT_M.start(), *HEIGHT_M.end()),
-        );
-        if *at_m != before_m {
-            outbox.push(Command::Guide(Some(at_m.cast())));
+        for side in Side::ALL {
+            if let Some(at_m) = self.at_m[side.index()].filter(|at_m| before_m[side.index()] != Some(*at_m)) {
+                outbox.push(Command::Guide(side, Some(at_m.cast())));
+            }
         }
-        true
+    }
+
+    fn key(&mut self, key: Key, repeat: bool, live: &Live, camera: &Camera, outbox: &mut Outbox) {
+        let (is_searched, on_wire) = (live.scene.is_searched(), live.scene.wire.is_some());
+        match key {
+            Key::ArrowLeft => self.step(-camera.right() * STEP_M),
+            Key::ArrowRight => self.step(camera.right() * STEP_M),
+            Key::ArrowUp => self.step(camera.away() * STEP_M),
+            Key::ArrowDown => self.step(-camera.away() * STEP_M),
+            Key::PageUp => self.step(Vector3::z() * STEP_M),
+            Key::PageDown => self.step(-Vector3::z() * STEP_M),
+            _ if repeat => {}
+            Key::H => self.change_side(),
+            Key::G if live.scene.objects.is_some() => self.jaws(live, outbox),
+            Key::X if is_searched => outbox.push(Command::Task(self.side, Act::Mark)),
+            Key::D if is_searched => outbox.push(Command::Task(self.side, Act::End)),
+            Key::N if is_searched || on_wire => outbox.push(Command::Task(self.side, Act::Begin)),
+            _ => {}
+        }
+    }
+
+    /// Moves the instrument that is led so far, m.
+    fn step(&mut self, way_m: Vector3<f32>) {
+        if let Some(at_m) = &mut self.at_m[self.side.index()] {
+            *at_m = within(*at_m + way_m);
+        }
+    }
+
+    /// The pointer is here now: the instrument that it drags moves with it. Not with egui's `dragged`, which takes the first points of a drag
+    /// for a click and leaves out what came with the release.
+    fn drag_to(&mut self, pos: Pos2, camera: &Camera, rect: Rect) {
+        let (Some(from), Some(at_m)) = (&mut self.drag, &mut self.at_m[self.side.index()]) else { return };
+        *at_m = within(moved_m(at_m, pos - std::mem::replace(from, pos), camera, rect));
     }
 }
 
-/// Small steps by keys, in the axes of the screen.
-fn keys_m(ui: &Ui, camera: &Camera) -> Vector3<f32> {
-    if ui.ctx().text_edit_focused() {
-        return Vector3::zeros();
+fn within(at_m: Vector3<f32>) -> Vector3<f32> {
+    Vector3::new(
+        at_m.x.clamp(-SIDE_M, SIDE_M),
+        at_m.y.clamp(-SIDE_M, SIDE_M),
+        at_m.z.clamp(*HEIGHT_M.start(), *HEIGHT_M.end()),
+    )
+}
+
+/// The place at the same height, so many points away on the screen: the tip stays under the pointer.
+fn moved_m(at_m: &Vector3<f32>, way: Vec2, camera: &Camera, rect: Rect) -> Vector3<f32> {
+    if way == Vec2::ZERO {
+        return *at_m;
     }
-    let ways = [
-        (Key::ArrowLeft, -camera.right()),
-        (Key::ArrowRight, camera.right()),
-        (Key::ArrowUp, camera.away()),
-        (Key::ArrowDown, -camera.away()),
-        (Key::PageUp, Vector3::z()),
-        (Key::PageDown, -Vector3::z()),
-    ];
-    ui.input(|input| ways.iter().filter(|(key, _)| input.key_pressed(*key)).map(|(_, way)| way * STEP_M).sum())
+    let to_m = camera.project(at_m, rect).and_then(|at| camera.on_level(at + way, rect, at_m.z));
+    to_m.unwrap_or_else(|| {
+        // Seen too flat for that.
+        let way_m = way * camera.metres_per_point(rect.height());
+        at_m + camera.right() * way_m.x - camera.away() * way_m.y
+    })
 }

@@ -1,6 +1,7 @@
 //! The 3-D view of the operating field: triangles built by [`stage`], drawn by the GPU ([`gl`]) inside egui's frame,
 //! with labels by egui's painter over them. Without a GPU (in tests) everything but the triangles is drawn.
 
+mod aim;
 pub mod camera;
 pub mod extras;
 pub mod gl;
@@ -8,6 +9,7 @@ mod lead;
 pub mod mesh;
 mod objects;
 mod pick;
+mod reach;
 mod shadows;
 pub mod stage;
 mod training;
@@ -24,6 +26,7 @@ use nima_world::scene::Scene;
 pub use camera::Camera;
 
 use self::{
+    aim::Aim,
     extras::Extras,
     gl::Renderer,
     lead::Lead,
@@ -114,7 +117,7 @@ impl SceneView {
     }
 
     /// Whether the instrument is led from the window.
-    pub const fn is_led(&self) -> bool {
+    pub fn is_led(&self) -> bool {
         self.lead.is_on()
     }
 
@@ -156,7 +159,14 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
     let camera = view.camera(&live.scene);
     let arms: Vec<Arm> = live.sides().filter_map(|side| arm(live, side)).collect();
     let painter = ui.painter_at(rect);
-    if let Some(callback) = triangles(rect, live, view, &arms) {
+    let led = view.lead.side();
+    let shown = Shown::of(live, led);
+    let reach = shown.as_ref().and_then(|shown| shown.reach);
+    if let Some(arm) = arms.iter().find(|arm| Some(arm.side) == led) {
+        let ring_m = shown.as_ref().and_then(Shown::held_m);
+        Aim { scene: &live.scene, tip_m: arm.pose.tip_m, ring_m }.paint(&painter, rect, &camera);
+    }
+    if let Some(callback) = triangles(rect, live, view, &arms, shown) {
         painter.set(ground, callback);
     }
     if view.look == Look::Endoscope && view.extras.round {
@@ -166,7 +176,7 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         view.extras.paint(&painter, rect, &camera, &live.scene, &arms, live.gate_settings().ceiling_n);
     }
     for arm in &arms {
-        labels(&painter, rect, live, &camera, arm, view.figures);
+        labels(&painter, rect, live, &camera, arm, view);
     }
     if view.figures {
         readings(&painter, rect, live);
@@ -175,9 +185,9 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         axes(&painter, rect, &camera);
     }
     hint(&painter, rect, live, view);
-    training::line_ui(ui, rect, live, (view.lead.is_on(), view.figures));
-    // No hover texts in a surgeon's view.
-    let pointed_at = response.hover_pos().filter(|_| view.figures && !response.dragged());
+    training::line_ui(ui, rect, training::told(live, led, reach), readings_width(live), view.figures);
+    // No hover texts in a surgeon's view, nor over what is led.
+    let pointed_at = response.hover_pos().filter(|_| view.figures && !response.dragged() && !leading);
     if let Some(words) = pointed_at.and_then(|pointer| pick::pick(pointer, rect, &camera, &live.scene, &arms)) {
         response.on_hover_text_at_pointer(words);
     }
@@ -217,10 +227,16 @@ fn arm(live: &Live, side: Side) -> Option<Arm> {
     })
 }
 
-fn triangles(rect: Rect, live: &Live, view: &mut SceneView, arms: &[Arm]) -> Option<egui::PaintCallback> {
+fn triangles(
+    rect: Rect,
+    live: &Live,
+    view: &mut SceneView,
+    arms: &[Arm],
+    shown: Option<Shown>,
+) -> Option<egui::PaintCallback> {
     let renderer = view.renderer.clone()?;
     let camera = view.camera(&live.scene);
-    let (scene, shown) = (live.scene.name.clone(), Shown::of(live));
+    let scene = live.scene.name.clone();
     let (smooth, extras) = (view.smooth, view.extras);
     let wanted = Drawn { rect, scene, camera, smooth, extras, arms: arms.to_vec(), shown };
     if let Some((_, callback)) = view.drawn.as_ref().filter(|(drawn, _)| *drawn == wanted) {
@@ -252,11 +268,12 @@ fn triangles(rect: Rect, live: &Live, view: &mut SceneView, arms: &[Arm]) -> Opt
 const NAME_ABOVE_M: [f32; 2] = [0.05, 0.085];
 
 /// Names and numbers beside the objects of one side.
-fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm, figures: bool) {
+fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm, view: &SceneView) {
+    let figures = view.figures;
     let at = |point_m: Vector3<f32>| camera.project(&point_m, rect);
     let Arm { trocar_m, pose, side, .. } = arm;
     // Not below the readings.
-    let free = |place: &Pos2| !figures || place.y > rect.top() + 110.0 || place.x > rect.left() + 350.0;
+    let free = |place: &Pos2| !figures || place.y > rect.top() + 116.0 || place.x > rect.left() + readings_width(live);
     if let Some(place) = at(*trocar_m).filter(free) {
         label(
             painter,
@@ -268,12 +285,15 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
         );
     }
     let along = (trocar_m - pose.tip_m).try_normalize(1e-4).unwrap_or_else(Vector3::z);
-    if let (true, Some(place)) = (live.is_bimanual(), at(pose.tip_m + along * NAME_ABOVE_M[usize::from(figures)])) {
-        let (align, shift) = match side {
-            Side::Right => (Align2::LEFT_CENTER, vec2(20.0, 0.0)),
-            Side::Left => (Align2::RIGHT_CENTER, vec2(-20.0, 0.0)),
-        };
-        label(painter, place + shift, align, side_name(*side), theme::strong(15.0), theme::DARK.text);
+    let (align, shift) = match side {
+        Side::Right => (Align2::LEFT_CENTER, vec2(20.0, 0.0)),
+        Side::Left => (Align2::RIGHT_CENTER, vec2(-20.0, 0.0)),
+    };
+    let name_at = at(pose.tip_m + along * NAME_ABOVE_M[usize::from(figures)]).filter(free);
+    if let (true, Some(place)) = (live.is_bimanual(), name_at) {
+        let name = side_name(*side);
+        let words = if view.lead.side() == Some(*side) { text::field::led(name) } else { name.to_owned() };
+        label(painter, place + shift, align, &words, theme::strong(15.0), theme::DARK.text);
     }
     let right = camera.right();
     let [measured, rendered] = stage::arrow_bases_m(pose, trocar_m, &right);
@@ -313,6 +333,15 @@ fn label(painter: &Painter, place: Pos2, align: Align2, text: &str, font: FontId
     painter.text(place, align, text, font, colour);
 }
 
+/// Places of the columns of the readings, from the left of the view, points.
+const COLUMN: f32 = 226.0;
+const COLUMNS_APART: f32 = 112.0;
+
+/// Width of the readings with their distance from the left of the view, points.
+fn readings_width(live: &Live) -> f32 {
+    COLUMN + COLUMNS_APART * f32::from(u8::from(live.is_bimanual())) + 20.0
+}
+
 /// The forces in large figures, one column for each hand in their order on the screen, and gauges of both with the
 /// ceiling.
 fn readings(painter: &Painter, rect: Rect, live: &Live) {
@@ -321,7 +350,7 @@ fn readings(painter: &Painter, rect: Rect, live: &Live) {
     let both = sides.len() > 1;
     let corner = rect.left_top() + vec2(16.0, if both { 36.0 } else { 14.0 });
     let figures = &live.figures;
-    let column = |i: usize| corner.x + 210.0 + 112.0 * i as f32;
+    let column = |i: usize| rect.left() + COLUMN + COLUMNS_APART * i as f32;
     let plate =
         Rect::from_min_max(rect.left_top() + vec2(8.0, 8.0), pos2(column(sides.len() - 1) + 12.0, corner.y + 72.0));
     painter.rect_filled(plate, theme::CORNER, Color32::from_black_alpha(150));
@@ -376,7 +405,9 @@ fn axes(painter: &Painter, rect: Rect, camera: &Camera) {
 fn hint(painter: &Painter, rect: Rect, live: &Live, view: &SceneView) {
     let (words, colour) = match &view.problem {
         Some(problem) => (text::field::not_drawn(problem), theme::DARK.text),
-        None if view.lead.is_on() => (text::field::lead_hover(live.scene.objects.is_some()), theme::DARK.text),
+        None if view.lead.is_on() => {
+            (text::field::lead_hover(live.scene.objects.is_some(), live.is_bimanual()), theme::DARK.text)
+        }
         None if view.look == Look::Endoscope => (text::field::RESET_VIEW.to_owned(), theme::DARK.text_weak),
         None => (text::field::VIEW_HOVER.to_owned(), theme::DARK.text_weak),
     };

@@ -8,6 +8,7 @@ use nima_world::{LoopSeen, Training, scene::Scene};
 
 use super::{
     mesh::{Material, Mesh, Paint},
+    reach::Reach,
     shadows::Shadows,
 };
 use crate::console::live::Live;
@@ -15,6 +16,9 @@ use crate::console::live::Live;
 pub(super) const BOARD: Paint = Paint(Color32::from_rgb(0x3a, 0x45, 0x52), Material::Matte);
 const PEG: Paint = Paint(Color32::from_rgb(0xc9, 0xcf, 0xd6), Material::Matte);
 const RING: Paint = Paint(Color32::from_rgb(0xe0, 0x8a, 0x2e), Material::Matte);
+/// A ring that the jaws of the instrument that is led would take, and one that they hold.
+const RING_REACHED: Paint = Paint(Color32::from_rgb(0xf7, 0xdc, 0xb4), Material::Matte);
+const RING_HELD: Paint = Paint(Color32::from_rgb(0x9c, 0xe8, 0x7a), Material::Matte);
 const FINGER: Paint = Paint(Color32::from_rgb(0xb4, 0xbc, 0xc6), Material::Metal);
 const BOARD_THICKNESS_M: f32 = 0.003;
 
@@ -22,6 +26,8 @@ const BOARD_THICKNESS_M: f32 = 0.003;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
     rings: Vec<(Vector3<f32>, UnitQuaternion<f32>)>,
+    /// What the jaws of the instrument that is led would take or hold, if one is led.
+    pub(super) reach: Option<Reach>,
     /// Not known in sessions of older versions.
     opening_rad: [Option<f32>; SIDES],
     /// Places that were marked; whether a lump lies there, which is only shown when the trial is over.
@@ -32,8 +38,8 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// What was told last; `None` in a scene without a training task of its own.
-    pub(super) fn of(live: &Live) -> Option<Self> {
+    /// What was told last, with the instrument that is led; `None` in a scene without a training task of its own.
+    pub(super) fn of(live: &Live, led: Option<Side>) -> Option<Self> {
         if !live.scene.is_played() {
             return None;
         }
@@ -41,13 +47,33 @@ impl Shown {
         let Objects { rings, jaws, .. } = live.objects.as_ref().unwrap_or(&none);
         let training = live.training.as_ref().unwrap_or(&blank);
         let rings = rings.iter().flatten();
+        let rings: Vec<_> = rings.map(|ring| (ring.translation.vector.cast(), ring.rotation.cast())).collect();
+        let reach = led.and_then(|side| {
+            let (tick, jaws) = (live.tick_of(side)?, jaws[side.index()].as_ref()?);
+            Reach::of(live.scene.objects.as_ref()?, &rings, &tick.tip_m, jaws)
+        });
         Some(Self {
-            rings: rings.map(|ring| (ring.translation.vector.cast(), ring.rotation.cast())).collect(),
+            rings,
+            reach,
             opening_rad: jaws.map(|jaws| jaws.map(|jaws| jaws.opening_rad as f32)),
             marks: training.marks.iter().flatten().map(|mark| (mark.at_m.cast(), mark.is_true)).collect(),
             loops: training.loops,
             ended: training.ended,
         })
+    }
+
+    /// The middle of the ring that the jaws of the instrument that is led hold, m.
+    pub(super) fn held_m(&self) -> Option<Vector3<f32>> {
+        let held = self.reach.filter(|reach| matches!(reach, Reach::Held(_)))?;
+        self.rings.get(held.ring()).map(|(middle_m, _)| *middle_m)
+    }
+
+    fn paint_of(&self, ring: usize) -> Paint {
+        match self.reach.filter(|reach| reach.ring() == ring) {
+            None => RING,
+            Some(Reach::Above(_) | Reach::Between(_)) => RING_REACHED,
+            Some(Reach::Held(_)) => RING_HELD,
+        }
     }
 }
 
@@ -62,8 +88,8 @@ pub(super) fn board(mesh: &mut Mesh, board: &nima_physics::Board) {
 pub(super) fn ground(mesh: &mut Mesh, scene: &Scene, shown: &Shown, shadows: &mut Shadows) {
     let Some(setting) = &scene.objects else { return };
     let [tube_m, major_m] = [setting.ring.tube_radius_m, setting.ring.major_radius_m].map(|m| m as f32);
-    for (centre_m, turn) in &shown.rings {
-        mesh.torus(*centre_m, turn, [major_m, tube_m], RING);
+    for (i, (centre_m, turn)) in shown.rings.iter().enumerate() {
+        mesh.torus(*centre_m, turn, [major_m, tube_m], shown.paint_of(i));
         shadows.circle(centre_m, turn, [major_m, tube_m]);
     }
     let (radius_m, foot_m) = (setting.pegs.radius_m as f32, setting.board.z_m as f32);

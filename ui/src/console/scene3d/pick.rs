@@ -1,7 +1,7 @@
 //! Hover texts of the 3-D view: the object under the pointer, with numbers, units and frame.
 
 use egui::{Pos2, Rect};
-use nalgebra::{Vector3, Vector4};
+use nalgebra::Vector3;
 use nima_world::scene::Scene;
 
 use super::{
@@ -64,15 +64,9 @@ fn distance(point: Pos2, from: Pos2, to: Pos2) -> f32 {
 /// Where the ray through the pointer meets the tissue's surface at rest, m.
 fn on_tissue(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene) -> Option<Vector3<f32>> {
     let tissue = scene.tissue?;
-    let from_centre = pointer - rect.center();
-    let (x, y) = (2.0 * from_centre.x / rect.width(), -2.0 * from_centre.y / rect.height());
-    let workspace_from_clip = camera.clip_from_workspace(rect.aspect_ratio()).try_inverse()?;
-    let far = workspace_from_clip * Vector4::new(x, y, 1.0, 1.0);
-    let way = far.xyz() / far.w - camera.eye_m();
-    let steps = (tissue.surface_z_m as f32 - camera.eye_m().z) / way.z;
-    let place_m = camera.eye_m() + way * steps;
+    let place_m = camera.on_level(pointer, rect, tissue.surface_z_m as f32)?;
     let [half_x, half_y] = tissue.size_m.map(|size_m| 0.5 * size_m as f32);
-    (steps > 0.0 && place_m.x.abs() <= half_x && place_m.y.abs() <= half_y).then_some(place_m)
+    (place_m.x.abs() <= half_x && place_m.y.abs() <= half_y).then_some(place_m)
 }
 
 #[cfg(test)]

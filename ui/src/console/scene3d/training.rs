@@ -3,12 +3,14 @@
 use egui::{Color32, Label, Rect, RichText, Ui, vec2};
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_machine::rig::Side;
-use nima_world::scene::Scene;
+use nima_world::{Training, scene::Scene};
 
 use super::{
     mesh::{Material, Mesh, Paint},
     objects::{self, Shown},
+    reach::Reach,
     shadows::Shadows,
+    side_name,
 };
 use crate::console::{live::Live, text, theme};
 
@@ -24,8 +26,7 @@ const MARK_FALSE: Paint = Paint(Color32::from_rgb(0x3a, 0x42, 0x4c), Material::M
 const PIN: Paint = Paint(Color32::from_rgb(0xb4, 0xbc, 0xc6), Material::Metal);
 const LUMP: Paint = Paint(Color32::from_rgb(0x6a, 0x2f, 0x4e), Material::Matte);
 
-/// Width of the readings at the left of the view, and of the gauges at its right, points.
-const READINGS: f32 = 250.0;
+/// Width of the gauges at the right of the view, points.
 const GAUGES: f32 = 110.0;
 /// One of so many points of the wire's curve is drawn.
 const POINTS: usize = 3;
@@ -111,9 +112,14 @@ pub(super) fn board_of(scene: &Scene) -> Option<&nima_physics::Board> {
     under_pegs.or_else(|| scene.wire.as_ref().map(|setting| &setting.board))
 }
 
-/// How far the trial has come, in words; `None` in a scene where that is not known.
-pub(super) fn told(live: &Live, is_led: bool) -> Option<String> {
-    let training = live.training.as_ref()?;
+/// How far the trial has come, in words, and what the instrument that is led reaches; `None` in a scene where that is not known.
+pub(super) fn told(live: &Live, led: Option<Side>, reach: Option<Reach>) -> Option<String> {
+    let (training, is_led) = (live.training.as_ref()?, led.is_some());
+    if live.scene.objects.is_some() {
+        let jaws = led.map(|side| text::training::jaws(side_name(side), reach.map(name_of)));
+        let Training { passed, placed, dropped, .. } = training;
+        return Some(text::training::rings(jaws.as_deref(), [*passed, *placed, *dropped], training.ended));
+    }
     if live.scene.wire.is_some() {
         return Some(text::training::wire(training.touches, training.share, training.ended, is_led));
     }
@@ -126,12 +132,20 @@ pub(super) fn told(live: &Live, is_led: bool) -> Option<String> {
     })
 }
 
-/// The line, at the top of the view.
-pub(super) fn line_ui(ui: &mut Ui, rect: Rect, live: &Live, (is_led, figures): (bool, bool)) {
-    let Some(words) = told(live, is_led) else { return };
+const fn name_of(reach: Reach) -> &'static str {
+    match reach {
+        Reach::Above(_) => text::training::JAWS_ABOVE,
+        Reach::Between(_) => text::training::JAWS_AROUND,
+        Reach::Held(_) => text::training::JAWS_HOLD,
+    }
+}
+
+/// The line, at the top of the view; so wide are the readings at its left, if figures are shown.
+pub(super) fn line_ui(ui: &mut Ui, rect: Rect, words: Option<String>, readings: f32, figures: bool) {
+    let Some(words) = words else { return };
     // Between the readings and the gauges, where they are shown.
     let room = if figures {
-        Rect::from_min_max(rect.left_top() + vec2(READINGS, 0.0), rect.right_bottom() - vec2(GAUGES, 0.0))
+        Rect::from_min_max(rect.left_top() + vec2(readings, 0.0), rect.right_bottom() - vec2(GAUGES, 0.0))
     } else {
         rect
     };
@@ -144,7 +158,7 @@ pub(super) fn line_ui(ui: &mut Ui, rect: Rect, live: &Live, (is_led, figures): (
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigConfig;
-    use nima_world::{LoopSeen, MARKS_MAX, Mark, Training};
+    use nima_world::{LoopSeen, MARKS_MAX, Mark};
 
     use super::*;
 
@@ -164,7 +178,7 @@ mod tests {
 
     fn vertices(live: &Live) -> usize {
         let mut mesh = Mesh::default();
-        marks(&mut mesh, &live.scene, &Shown::of(live).unwrap(), |_, _| 0.0);
+        marks(&mut mesh, &live.scene, &Shown::of(live, None).unwrap(), |_, _| 0.0);
         mesh.vertices.len()
     }
 
@@ -176,10 +190,26 @@ mod tests {
         wrong.found = 0;
         let wrong = live("find_lumps", &wrong);
         assert_eq!(vertices(&during), vertices(&wrong), "a true mark looks as a false one does");
-        assert_eq!(told(&during, true), told(&wrong, true));
+        let led = Some(Side::Right);
+        assert_eq!(told(&during, led, None), told(&wrong, led, None));
         assert!(vertices(&after) > vertices(&during) + 1000, "the lumps");
-        assert_eq!(told(&after, false).unwrap(), "Lumps found: 1 of 5, false marks: 2");
-        assert_eq!(told(&live("lumps", &marked(true)), false), None, "nobody looks for them");
+        assert_eq!(told(&after, None, None).unwrap(), "Lumps found: 1 of 5, false marks: 2");
+        assert_eq!(told(&live("lumps", &marked(true)), None, None), None, "nobody looks for them");
+    }
+
+    #[test]
+    fn what_jaws_hold_is_told_with_what_was_counted() {
+        let training = Training { passed: 3, placed: 2, dropped: 1, ..Training::default() };
+        let told = |training: &Training, led, reach| told(&live("rings", training), led, reach).unwrap();
+        let counted = "passed 3, placed 2, dropped 1";
+        assert_eq!(told(&training, None, None), format!("Rings: {counted}"));
+        let left = |reach| told(&training, Some(Side::Left), reach);
+        assert_eq!(left(None), format!("Left instrument. Rings: {counted}"));
+        assert_eq!(left(Some(Reach::Held(4))), format!("Left instrument holds a ring. Rings: {counted}"));
+        assert_eq!(left(Some(Reach::Above(4))), format!("Left instrument above a ring. Rings: {counted}"));
+        assert_eq!(left(Some(Reach::Between(4))), format!("Left instrument around a ring. Rings: {counted}"));
+        let done = Training { passed: 12, placed: 12, ended: true, ..Training::default() };
+        assert_eq!(told(&done, None, None), "Task done. Rings: passed 12, placed 12, dropped 0");
     }
 
     #[test]
@@ -188,7 +218,7 @@ mod tests {
         training.loops[Side::Right.index()] = LoopSeen { touches: true, on_wire: true };
         let of = |training: &Training| {
             let live = live("wire", training);
-            let (mut mesh, shown) = (Mesh::default(), Shown::of(&live).unwrap());
+            let (mut mesh, shown) = (Mesh::default(), Shown::of(&live, None).unwrap());
             let (tip_m, trocar_m) = (Vector3::new(0.0, 0.0, 0.03), Vector3::new(0.0, -0.06, 0.14));
             let mut shadows = Shadows::on(board_of(&live.scene));
             let end_m = hoop(&mut mesh, &live.scene, &shown, (Side::Right, &tip_m, &trocar_m), &mut shadows).unwrap();

@@ -28,11 +28,19 @@ pub(in crate::console) const RESET_VIEW: &str = "Endoscope view";
 pub(in crate::console) const VIEW_HOVER: &str = "Drag to turn, wheel to zoom, double-click to reset";
 
 /// How the instrument is led.
-pub(in crate::console) fn lead_hover(has_jaws: bool) -> String {
-    let jaws = if has_jaws { "; G opens and closes the jaws" } else { "" };
-    format!(
-        "Drag to move the instrument, wheel or Page Up and Page Down to change its height, arrow keys for small steps{jaws}"
-    )
+pub(in crate::console) fn lead_hover(has_jaws: bool, is_bimanual: bool) -> String {
+    let jaws = if has_jaws { "\nG: open or close the jaws" } else { "" };
+    let other = match (is_bimanual, has_jaws) {
+        (false, _) => "",
+        (true, true) => ". H: the other instrument",
+        (true, false) => "\nH: the other instrument",
+    };
+    format!("Drag: move the instrument. Wheel, Page Up, Page Down: height. Arrow keys: small steps{jaws}{other}")
+}
+
+/// Name of the hand whose instrument is led.
+pub(in crate::console) fn led(side: &str) -> String {
+    format!("{side} (led)")
 }
 
 /// The view cannot be drawn.

@@ -31,3 +31,15 @@ pub(in crate::console) fn forces_of(side: &str) -> String {
 pub(in crate::console) fn before_now(ago_s: f64, axis: &str, measured_n: &str, rendered_n: &str) -> String {
     format!("{ago_s:.2} s before now\nmeasured {axis} {measured_n} N\nrendered {axis} {rendered_n} N")
 }
+
+pub(in crate::console) const TWIST_HOVER: &str = "Torque about the shaft of the instrument, against the clock as seen from the trocar: of what the jaws hold or touch, \
+    and on the wrist sensor as it reads it, with its bias. A ring that is held off its centre causes it. It is not rendered to the hand.";
+
+/// The torque about the shaft (mNm): of what the jaws hold, and at the wrist sensor, each where it is known.
+pub(in crate::console) fn twist([jaws_mnm, wrist_mnm]: [Option<f64>; 2]) -> String {
+    // Not `-0.0`.
+    let told = |mnm: f64, whose: &str| format!("{:+.2} mNm {whose}", (mnm * 100.0).round() / 100.0 + 0.0);
+    let both = [jaws_mnm.map(|mnm| told(mnm, "at the jaws")), wrist_mnm.map(|mnm| told(mnm, "at the wrist sensor"))];
+    let both: Vec<String> = both.into_iter().flatten().collect();
+    format!("Torque about the shaft: {}", both.join(", "))
+}

@@ -79,7 +79,7 @@ pub(in crate::console) const KEYS_HEADING: &str = "Keys";
 pub(in crate::console) const WORDS_HEADING: &str = "Terms";
 
 /// All keys with their functions.
-pub(in crate::console) const KEYS: [(&str, &str); 22] = [
+pub(in crate::console) const KEYS: [(&str, &str); 23] = [
     ("Space, Escape", "Stop, in every view. While you type a name, only Escape."),
     ("F1, F2, F3", "Surgeon, Technician, Demo."),
     ("F4", "This list of keys and terms."),
@@ -94,6 +94,7 @@ pub(in crate::console) const KEYS: [(&str, &str); 22] = [
     ("M", "Drive the instrument by mouse, or let it go."),
     ("Arrow keys", "Move the instrument by a small step while you drive it."),
     ("Page Up, Page Down", "Move the instrument up or down while you drive it."),
+    ("H", "While you drive: drive the other instrument; the one before stays where it is and holds what it holds."),
     ("G", "In a scene with rings: open or close the jaws of the instrument that you drive."),
     ("X", "In a palpation: mark the place under the tip of the instrument that you drive."),
     ("D", "In a palpation: end the trial."),

@@ -19,3 +19,20 @@ pub(in crate::console) fn wire(touches: u32, share: f64, ended: bool, is_led: bo
     }
     format!("Way to the goal: {:.0} %, touches: {touches}{keys}", 100.0 * share)
 }
+
+pub(in crate::console) const JAWS_ABOVE: &str = "above a ring";
+pub(in crate::console) const JAWS_AROUND: &str = "around a ring";
+pub(in crate::console) const JAWS_HOLD: &str = "holds a ring";
+
+/// The instrument that is led, and what its jaws do with a ring.
+pub(in crate::console) fn jaws(side: &str, with_ring: Option<&str>) -> String {
+    let with_ring = with_ring.map(|words| format!(" {words}")).unwrap_or_default();
+    format!("{side} instrument{with_ring}")
+}
+
+/// Peg transfer: `led` from [`jaws`], and how many rings were handed over in mid-air, put on pegs, and dropped.
+pub(in crate::console) fn rings(led: Option<&str>, [passed, placed, dropped]: [u32; 3], ended: bool) -> String {
+    let done = if ended { "Task done. " } else { "" };
+    let led = led.map(|words| format!("{words}. ")).unwrap_or_default();
+    format!("{done}{led}Rings: passed {passed}, placed {placed}, dropped {dropped}")
+}

@@ -31,6 +31,8 @@ const LIT_M: f64 = 0.11;
 /// A shaft is drawn in so many pieces, m, and followed this far, m.
 const PIECE_M: f64 = 0.002_5;
 const FOLLOWED_M: f64 = 0.25;
+/// A piece of a shaft ends a little beyond its ends, in lengths, so that bent ones leave no gap.
+const BESIDE: std::ops::RangeInclusive<f64> = -0.25..=1.25;
 /// What is farther outside than this is not drawn, px.
 const OUTSIDE_PX: f64 = 300.0;
 
@@ -136,7 +138,10 @@ impl Painter {
         for y in range(|place| place.y, height) {
             for x in columns.clone() {
                 let from = Vector2::new(x as f64 + 0.5, y as f64 + 0.5) - ends_px[0];
-                let along = if square > 0.0 { (from.dot(&way) / square).clamp(0.0, 1.0) } else { 0.0 };
+                let along = if square > 0.0 { from.dot(&way) / square } else { 0.0 };
+                if !BESIDE.contains(&along) {
+                    continue;
+                }
                 let away = (from - way * along).norm() / radius_px;
                 let at = 3 * (width * y + x);
                 if away <= 1.0

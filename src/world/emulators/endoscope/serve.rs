@@ -57,11 +57,12 @@ impl Endoscope {
 
     /// One part of the answer with the picture of this time.
     fn part(&mut self, now_s: f64, fault: EmulatedFault) -> Vec<u8> {
+        // Before it is looked: whoever reads this time knows that nothing in the picture is older.
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let instruments = (self.body)(now_s);
         let (camera, scene) = (self.emulated.camera, &self.scene);
         let painter = self.painter.get_or_insert_with(|| Painter::new(camera, scene));
         let size_px @ [width, _] = painter.size_px();
-        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let rgb = painter.draw(&instruments);
         let (quality, square_px) = (self.emulated.quality, self.emulated.square_px);
         if square_px > 0 {

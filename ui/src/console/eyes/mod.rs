@@ -163,7 +163,7 @@ impl Eyes {
             }
             wrong_ui(&painter, over, &tips, [&told, &cure], colour);
         }
-        self.figures_ui(&painter, view, &tips, look.as_ref(), now);
+        self.figures_ui(&painter, view, (&tips, fits), look.as_ref(), now);
         ui.ctx().request_repaint_after(until_told(look.as_ref(), is_good));
     }
 
@@ -200,7 +200,14 @@ impl Eyes {
     }
 
     /// Age, rate, and what the forces are, in a corner.
-    fn figures_ui(&mut self, painter: &Painter, view: Rect, tips: &[egui::Pos2], look: Option<&Newest>, now: Instant) {
+    fn figures_ui(
+        &mut self,
+        painter: &Painter,
+        view: Rect,
+        (tips, fits): (&[egui::Pos2], bool),
+        look: Option<&Newest>,
+        now: Instant,
+    ) {
         let Some(look) = look.filter(|look| look.picture.is_some()) else { return };
         if self.shown.as_ref().is_none_or(|(at, _)| now.duration_since(*at) >= FIGURES_EVERY) {
             let age = look.age.unwrap_or_default();
@@ -213,6 +220,8 @@ impl Eyes {
         }
         let forces = match (&self.camera, self.hides_forces) {
             (None, _) => text::eyes::NO_CAMERA,
+            // Where the picture is not of now, they would be at a wrong place.
+            _ if !fits => "",
             (_, true) => text::eyes::FORCES_HIDDEN,
             (_, false) => text::eyes::FORCES_DRAWN,
         };

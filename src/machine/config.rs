@@ -1,6 +1,7 @@
 //! Rig files (TOML). An unknown key is an error.
 
 mod anonymous;
+mod endoscope;
 mod files;
 mod identification;
 mod mounted;
@@ -20,6 +21,7 @@ use nima_recording::store::ReadyRecord;
 use serde::{Deserialize, Serialize};
 
 pub use anonymous::ANONYMOUS;
+pub use endoscope::{Endoscope, EndoscopeCamera};
 pub(crate) use files::parse_with;
 pub use files::{ConfigError, Ranges, parse, text};
 pub use identification::Identification;
@@ -68,6 +70,9 @@ pub struct RigConfig {
     /// Sensors and tools on the simulated arms of a rig without devices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub simulated: Option<SimulatedWrists>,
+    /// The endoscope's picture, for the surgeon's view.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub endoscope: Option<Endoscope>,
     /// The devices; if absent, everything is simulated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub devices: Option<rig::Settings>,
@@ -279,6 +284,7 @@ impl RigConfig {
         ranges.not_negative("gates.brake_n_s_m", gates.brake_n_s_m)?;
         let ages = gates.fade_after_s >= 0.0 && gates.zero_after_s > gates.fade_after_s;
         ranges.check("gates.zero_after_s", gates.zero_after_s, ages, "later than fade_after_s")?;
+        self.endoscope.as_ref().map_or(Ok(()), |endoscope| endoscope.check(&ranges))?;
         let devices = self.devices.as_ref().map_or(Ok(()), rig::Settings::check);
         devices
             .and_then(|()| self.check_simulated_wrists())

@@ -5,6 +5,7 @@
 mod connecting;
 mod device_faults;
 mod emulated_rig;
+mod endoscope;
 mod frames;
 mod killed;
 mod rig_diagnosis;

@@ -24,10 +24,11 @@ impl RigConfig {
             teleoperation: _,
             desk,
             simulated,
+            endoscope,
             devices,
         } = &mut self;
         ANONYMOUS.clone_into(name);
-        (*desk, *simulated, *devices) = (None, None, None);
+        (*desk, *simulated, *endoscope, *devices) = (None, None, None, None);
         self
     }
 }

@@ -14,6 +14,7 @@ mod frame_tests;
 mod guiding;
 #[cfg(test)]
 mod network_tests;
+mod picture;
 mod places;
 mod scene;
 mod screen;

@@ -60,6 +60,7 @@ pub const ALONE: &[(&str, Alone)] = &[
     ("bota-gen-a", |settings| super::bota::alone::sensor(Transport::GenA, settings)),
     ("bota-socket", |settings| super::bota::alone::sensor(Transport::Socket, settings)),
     ("dynamixel", super::dynamixel::alone::bus),
+    ("endoscope", super::endoscope::alone::endoscope),
     ("force-dimension", super::force_dimension::alone::handle),
     ("kinova", super::kinova::alone::arm),
     ("ndi", super::ndi::alone::network),

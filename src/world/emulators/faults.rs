@@ -39,10 +39,20 @@ pub enum EmulatedFault {
     DeviceFault,
     /// Numbers that are not finite.
     NotANumber,
+    /// A picture on which there is nothing to see.
+    Black,
+    /// Pictures whose end is missing.
+    Torn,
+    /// Pictures leave 400 ms late.
+    Late,
+    /// Pictures of half the size.
+    WrongSize,
+    /// Pictures of another format.
+    OtherFormat,
 }
 
 impl EmulatedFault {
-    /// All, without `None`.
+    /// All that concern every device, without `None`.
     pub const ALL: [Self; 11] = [
         Self::Loss,
         Self::Delay,
@@ -56,6 +66,8 @@ impl EmulatedFault {
         Self::DeviceFault,
         Self::NotANumber,
     ];
+    /// Those that only a camera has.
+    pub const OF_PICTURES: [Self; 5] = [Self::Black, Self::Torn, Self::Late, Self::WrongSize, Self::OtherFormat];
 
     /// Its name on the command line.
     pub const fn name(self) -> &'static str {
@@ -72,12 +84,22 @@ impl EmulatedFault {
             Self::Disconnect => "disconnect",
             Self::DeviceFault => "device-fault",
             Self::NotANumber => "not-a-number",
+            Self::Black => "black",
+            Self::Torn => "torn",
+            Self::Late => "late",
+            Self::WrongSize => "wrong-size",
+            Self::OtherFormat => "other-format",
         }
+    }
+
+    /// Every fault of every device, without `None`.
+    pub fn every() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().chain(Self::OF_PICTURES)
     }
 
     /// By its name.
     pub fn named(name: &str) -> Option<Self> {
-        if name == "none" { Some(Self::None) } else { Self::ALL.into_iter().find(|fault| fault.name() == name) }
+        if name == "none" { Some(Self::None) } else { Self::every().find(|fault| fault.name() == name) }
     }
 }
 
@@ -94,7 +116,7 @@ impl FaultSwitch {
     /// The fault in force.
     pub fn get(&self) -> EmulatedFault {
         let code = self.0.load(Ordering::Acquire);
-        EmulatedFault::ALL.into_iter().find(|fault| *fault as u32 == code).unwrap_or_default()
+        EmulatedFault::every().find(|fault| *fault as u32 == code).unwrap_or_default()
     }
 }
 

@@ -8,6 +8,7 @@
 mod alone;
 pub mod bota;
 pub mod dynamixel;
+pub mod endoscope;
 mod faults;
 pub mod force_dimension;
 #[cfg(target_os = "linux")]

@@ -38,6 +38,9 @@ pub(super) struct Arguments {
     /// With `rig`: the scene, by name or TOML file (default: `bimanual` for a rig with two arms, else `peg_transfer`)
     #[arg(long)]
     scene: Option<String>,
+    /// A fault that is in force from the beginning, as `fault NAME` on standard input sets it; an unknown name lists them
+    #[arg(long, value_name = "NAME")]
+    fault: Option<String>,
     /// End with standard input and without a word: whoever started this holds its other end
     #[arg(long, hide = true)]
     until_input_ends: bool,
@@ -50,6 +53,9 @@ struct Endpoint<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if arguments.fault.is_some() && arguments.devices.iter().any(|name| name == "rig" || name == "link") {
+        bail!("--fault is for single devices; with a rig or a link write `fault DEVICE NAME` on standard input");
+    }
     #[cfg(unix)]
     if arguments.devices == ["rig"] {
         return rig::run(
@@ -62,6 +68,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         return link::run(&arguments.set);
     }
     let settings = Settings::new(&arguments.set)?;
+    let fault = arguments.fault.as_deref().map(fault_named).transpose().map_err(anyhow::Error::msg)?;
     let mut emulated = Vec::new();
     for name in &arguments.devices {
         let Some((known, emulator)) = ALONE.iter().find(|(known, _)| known == name) else {
@@ -70,6 +77,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         };
         let serving = emulator(&settings).and_then(<dyn nima_world::emulators::Emulator>::serve);
         emulated.push((*known, serving.with_context(|| format!("cannot emulate {name}"))?));
+    }
+    for (_, serving) in &emulated {
+        serving.faults.set(fault.unwrap_or_default());
     }
     let served: Vec<_> = emulated.iter().map(|(device, serving)| (*device, serving)).collect();
     serve(&served, arguments.until_input_ends, |_| false)
@@ -129,6 +139,13 @@ fn plain(name: &str) -> String {
     name.trim_matches(['"', '\'']).replace('-', " ")
 }
 
+fn fault_named(name: &str) -> Result<EmulatedFault, String> {
+    EmulatedFault::named(name).ok_or_else(|| {
+        let known: Vec<_> = EmulatedFault::every().map(EmulatedFault::name).collect();
+        format!("unknown fault \"{name}\"; known: none, {}", known.join(", "))
+    })
+}
+
 fn obey(line: &str, emulated: &[(&str, &Serving)]) {
     let words: Vec<&str> = line.split_whitespace().collect();
     let (device, name) = match words[..] {
@@ -140,10 +157,12 @@ fn obey(line: &str, emulated: &[(&str, &Serving)]) {
             return;
         }
     };
-    let Some(fault) = EmulatedFault::named(name) else {
-        let known: Vec<_> = EmulatedFault::ALL.iter().map(|fault| fault.name()).collect();
-        tell(format_args!("unknown fault \"{name}\"; known: none, {}", known.join(", ")));
-        return;
+    let fault = match fault_named(name) {
+        Ok(fault) => fault,
+        Err(unknown) => {
+            tell(unknown);
+            return;
+        }
     };
     let meant = |known: &str| device.as_ref().is_none_or(|device| *device == plain(known));
     if !emulated.iter().any(|(known, _)| meant(known)) {

@@ -253,6 +253,7 @@ impl ConsoleApp {
         self.taken = Instant::now();
         let rate_hz = self.live.rig.rate_hz;
         let (wizards, in_force, diary) = (&mut self.wizards, &mut self.in_force, &mut self.diary);
+        let eyes = &mut self.panels.eyes;
         let (calibrated, mut check) = (in_force.side(), self.checking.run_mut());
         self.live.take_in(door, |news| {
             if let Some(check) = &mut check {
@@ -263,6 +264,7 @@ impl ConsoleApp {
                 wizards.tick(tick, rate_hz);
             }
             in_force.watch(tick);
+            eyes.note(tick);
             if tick.side == Side::Right {
                 diary.tick(tick);
             }
@@ -394,6 +396,8 @@ impl eframe::App for ConsoleApp {
         // Screenshots for the documents are antialiased, however long that takes.
         self.live.rough_edges = self.photographer.is_none() && (self.live.rough_edges || slow);
         self.panels.scene.smooth = !self.live.rough_edges;
+        self.panels.eyes.serve(self.live.rig.endoscope.as_ref(), &ctx);
+        self.panels.devices.picture = self.panels.eyes.told();
         menu::apply(&ctx, &mut self.settings.now);
         if keys::stop_pressed(&ctx) {
             self.outbox.push(Command::Stop);

@@ -7,6 +7,7 @@ mod connecting;
 mod console;
 mod desk;
 mod drift;
+mod eyes;
 mod identity;
 mod instruments;
 mod monitor;

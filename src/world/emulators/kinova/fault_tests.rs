@@ -28,7 +28,12 @@ fn is_noticed(fault: EmulatedFault, health: &Health, before: &Health) -> bool {
         EmulatedFault::Disconnect => lost_by(Loss::Disconnected),
         EmulatedFault::DeviceFault => lost_by(Loss::Device { code: faults::MAXIMUM_TORQUE }),
         EmulatedFault::NotANumber => lost_by(Loss::Implausible),
-        EmulatedFault::None => true,
+        EmulatedFault::None
+        | EmulatedFault::Black
+        | EmulatedFault::Torn
+        | EmulatedFault::Late
+        | EmulatedFault::WrongSize
+        | EmulatedFault::OtherFormat => true,
     }
 }
 

@@ -20,7 +20,13 @@ enum Outcome {
 fn outcome(fault: EmulatedFault) -> Outcome {
     use Outcome::{Disorder, Lags, Lost};
     match fault {
-        EmulatedFault::None | EmulatedFault::Delay => Lags,
+        EmulatedFault::None
+        | EmulatedFault::Delay
+        | EmulatedFault::Black
+        | EmulatedFault::Torn
+        | EmulatedFault::Late
+        | EmulatedFault::WrongSize
+        | EmulatedFault::OtherFormat => Lags,
         EmulatedFault::Reorder => Disorder,
         EmulatedFault::Loss | EmulatedFault::Freeze | EmulatedFault::Silence => Lost(&[Loss::Silent]),
         EmulatedFault::Garbage | EmulatedFault::BadChecksum => Lost(&[Loss::Corrupt, Loss::Silent]),

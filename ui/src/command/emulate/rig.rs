@@ -29,8 +29,12 @@ pub(super) fn run(rig: &str, scene: &str, until_input_ends: bool) -> anyhow::Res
         bail!("rig \"{}\" is for real devices; only a rig with emulated = true can be emulated", rig.name);
     }
     let scene = Scene::load(scene)?;
-    let emulated = EmulatedRig::start(devices, &scene, &[HandFrame::of(&rig.teleoperation.mapping()); 2])
-        .with_context(|| format!("rig \"{}\"", rig.name))?;
+    let named = || format!("rig \"{}\"", rig.name);
+    let mut emulated =
+        EmulatedRig::start(devices, &scene, &[HandFrame::of(&rig.teleoperation.mapping()); 2]).with_context(named)?;
+    if let Some(endoscope) = &rig.endoscope {
+        emulated.show(endoscope, devices, &scene).with_context(named)?;
+    }
     let served: Vec<_> = emulated.servings().iter().map(|device| (device.name.as_str(), &device.serving)).collect();
     super::serve(&served, until_input_ends, |line| obey(&emulated, line))
 }

@@ -10,7 +10,7 @@ use nima_machine::messages::LoopState;
 
 use super::ConsoleApp;
 use crate::{
-    console::{Options, diary::WithScreen, door::Door, frames::Picture, past::Past},
+    console::{Options, diary::WithScreen, door::Door, frames::Picture, past::Past, roles::Role},
     telling::tell,
 };
 
@@ -47,8 +47,11 @@ impl ConsoleApp {
         let next = if self.calm {
             self.until_change()
         } else {
-            // Measured from the start of this frame, so that its own duration counts.
-            FRAME.saturating_sub(self.framed.elapsed()).max(LEAST_REST)
+            // Measured from the start of this frame, so that its own duration counts. Pictures of an endoscope wake the window themselves: a
+            // frame of its own just before each of them would be drawn for nothing.
+            let frame =
+                if self.role() == Role::Surgeon && self.panels.eyes.wakes() { FRAME + FRAME / 2 } else { FRAME };
+            frame.saturating_sub(self.framed.elapsed()).max(LEAST_REST)
         };
         ctx.request_repaint_after(next);
     }

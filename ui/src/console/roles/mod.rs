@@ -14,6 +14,7 @@ pub use demo::DemoState;
 
 use super::{
     desk::Desk,
+    eyes::Eyes,
     in_force::InForce,
     live::Live,
     outbox::Outbox,
@@ -85,6 +86,8 @@ pub struct Panels {
     pub tradeoff: TradeoffState,
     /// The operating field.
     pub scene: SceneView,
+    /// The endoscope's picture of it.
+    pub eyes: Eyes,
     /// Side selected in the gates panel.
     pub gates: GatesState,
     /// Which device is which, and their tests.

@@ -1,4 +1,4 @@
-//! The surgeon's view: the endoscope's image of the field, and below it for each hand both forces with the ceiling, and
+//! The surgeon's view: the endoscope's picture of the field, drawn where the rig has no endoscope, and below it for each hand both forces with the ceiling, and
 //! the gain in between. At most six numbers: two forces of each hand, the gain, the ceiling.
 
 use egui::{Align2, CentralPanel, Frame, Margin, Panel, Rect, Sense, Ui, pos2, vec2};
@@ -43,7 +43,13 @@ pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outb
             });
         });
     });
-    CentralPanel::no_frame().show(ui, |ui| scene_ui(ui, live, &mut panels.scene, outbox));
+    CentralPanel::no_frame().show(ui, |ui| {
+        if panels.eyes.is_on() {
+            panels.eyes.ui(ui, live);
+        } else {
+            scene_ui(ui, live, &mut panels.scene, outbox);
+        }
+    });
 }
 
 /// Why a hand gets less force than it should, and which hand; otherwise the mode.

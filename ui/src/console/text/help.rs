@@ -91,6 +91,7 @@ pub(in crate::console) const KEYS: [(&str, &str); 23] = [
     ("A", "Acknowledge the alarms."),
     ("E", "Mark this moment in the traces and in the session that is being recorded."),
     ("K", "Keep the session that is being recorded, or no longer."),
+    ("O", "Draw the forces into the endoscope's picture, or hide them."),
     ("M", "Drive the instrument by mouse, or let it go."),
     ("Arrow keys", "Move the instrument by a small step while you drive it."),
     ("Page Up, Page Down", "Move the instrument up or down while you drive it."),

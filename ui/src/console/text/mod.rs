@@ -16,6 +16,7 @@ pub(super) mod correspondence;
 pub(super) mod degrees;
 pub(super) mod desk;
 pub(super) mod devices;
+pub(super) mod eyes;
 pub(super) mod feedback;
 pub(super) mod field;
 pub(super) mod force_space;

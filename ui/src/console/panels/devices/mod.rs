@@ -57,6 +57,8 @@ pub struct DevicesState {
     results: Vec<(usize, Checkup)>,
     chooser: Option<Chooser>,
     told: Option<String>,
+    /// How it stands with the endoscope's picture, and what to do; nothing where the rig has none.
+    pub(in crate::console) picture: Option<[String; 2]>,
     /// The machine is being started.
     pub(in crate::console) is_starting: bool,
     /// The panel was drawn in the last frame: lights are looked after while the window rests.
@@ -137,6 +139,7 @@ pub fn devices_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState) -> Option<
     if live.roster.is_empty() {
         ui.label(weak(text::devices::NONE));
         ui.add(Label::new(small(text::devices::NONE_TO_CONNECT)).wrap());
+        picture_ui(ui, state);
         return None;
     }
     state.follow_test(live);
@@ -165,7 +168,19 @@ pub fn devices_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState) -> Option<
             ui.add(Label::new(text::devices::not_to_be_engaged(side.word(), obstacle)).wrap());
         }
     }
+    picture_ui(ui, state);
     change
+}
+
+/// The endoscope's picture, which the loop knows nothing of.
+fn picture_ui(ui: &mut Ui, state: &DevicesState) {
+    let Some([told, cure]) = &state.picture else { return };
+    ui.add_space(6.0);
+    ui.label(small(text::eyes::ENDOSCOPE));
+    ui.add(Label::new(RichText::new(told)).wrap());
+    if !cure.is_empty() {
+        ui.add(Label::new(weak(cure)).wrap());
+    }
 }
 
 type Column = (Option<Side>, Vec<usize>);

@@ -1,0 +1,263 @@
+//! A source on threads of its own: one reads, one decodes, and whoever shows the picture takes the newest.
+
+use std::{
+    io,
+    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
+    thread::Builder,
+    time::{Duration, Instant},
+};
+
+use crate::{
+    Address, Compressed, Picture, Standing, Trouble,
+    jpeg::decode,
+    judge::Watch,
+    source::{Source, Wanted},
+};
+
+/// Time from a failure to the next attempt. With the time to reach the camera it stays below a second.
+const RETRY: Duration = Duration::from_millis(400);
+/// The first attempt after a picture was there comes sooner.
+const RETRY_FIRST: Duration = Duration::from_millis(50);
+/// Who has not looked for this long is not looking: then only some pictures are decoded, so that what is wrong with them is still told.
+const LOOKED: Duration = Duration::from_millis(500);
+const UNSEEN: Duration = Duration::from_millis(500);
+/// A thread that waits looks so often whether it is still wanted.
+const NAP: Duration = Duration::from_millis(50);
+
+/// Reads and decodes pictures until it is dropped. Dropping it waits for nobody.
+#[derive(Debug)]
+pub struct Feed {
+    shared: Arc<Shared>,
+}
+
+/// What is known of the picture at one moment.
+#[derive(Clone, Debug)]
+pub struct Look<T> {
+    /// The newest picture as it was prepared, and its number; `None` before the first.
+    pub picture: Option<(u64, T)>,
+    /// How it stands with it.
+    pub standing: Standing,
+    /// Time since its last byte arrived, and how long it was on its way beyond the least, where the camera tells.
+    pub age: Option<Duration>,
+    /// Pictures a second.
+    pub rate_hz: f64,
+    /// Time from the last byte of the newest picture until it could be taken.
+    pub work: Duration,
+}
+
+#[derive(Debug)]
+struct Shared {
+    wanted: Wanted,
+    state: Mutex<State>,
+    /// The newest picture that is not decoded: a queue of one.
+    waiting: Mutex<Option<Compressed>>,
+    came: Condvar,
+}
+
+#[derive(Debug)]
+struct State {
+    watch: Watch,
+    trouble: Option<Trouble>,
+    is_still: bool,
+    /// It has been open.
+    opened: bool,
+    newest: Option<Newest>,
+    shown: u64,
+    /// When somebody last took the picture, and when one was last decoded.
+    looked: Option<Instant>,
+    decoded: Option<Instant>,
+}
+
+#[derive(Debug)]
+struct Newest {
+    number: u64,
+    picture: Arc<Picture>,
+    arrived: Instant,
+    work: Duration,
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Feed {
+    /// Starts to read pictures from an address. `expected_px` is the size that they should have, if it is known; `wake` is called after every
+    /// picture and every failure.
+    ///
+    /// # Errors
+    /// If the operating system gives no thread.
+    pub fn start(
+        address: Address,
+        expected_px: Option<[usize; 2]>,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) -> io::Result<Self> {
+        let state = State {
+            watch: Watch::new(expected_px),
+            trouble: None,
+            is_still: false,
+            opened: false,
+            newest: None,
+            shown: 0,
+            looked: None,
+            decoded: None,
+        };
+        let shared = Arc::new(Shared {
+            wanted: Wanted::default(),
+            state: Mutex::new(state),
+            waiting: Mutex::default(),
+            came: Condvar::new(),
+        });
+        let feed = Self { shared: Arc::clone(&shared) };
+        let wake = Arc::new(wake);
+        let (reads, wakes) = (Arc::clone(&shared), Arc::clone(&wake));
+        Builder::new().name("endoscope".to_owned()).spawn(move || reads.read(&address, &*wakes))?;
+        Builder::new().name("picture".to_owned()).spawn(move || shared.decode(&*wake))?;
+        Ok(feed)
+    }
+
+    /// How it stands with the picture at this moment, for who does not show it.
+    pub fn standing(&self, now: Instant) -> Standing {
+        locked(&self.shared.state).standing(now)
+    }
+
+    /// The newest picture, and how it stands with it at this moment. Where nobody looks, only two pictures a second are decoded.
+    pub fn look(&self, now: Instant) -> Look<Arc<Picture>> {
+        let mut state = locked(&self.shared.state);
+        state.looked = Some(now);
+        let newest = state.newest.as_ref();
+        let on_its_way = state.watch.late().unwrap_or_default();
+        Look {
+            picture: newest.map(|newest| (newest.number, Arc::clone(&newest.picture))),
+            standing: state.standing(now),
+            age: newest.map(|newest| now.saturating_duration_since(newest.arrived) + on_its_way),
+            rate_hz: state.watch.rate_hz(now),
+            work: newest.map(|newest| newest.work).unwrap_or_default(),
+        }
+    }
+}
+
+impl Drop for Feed {
+    fn drop(&mut self) {
+        self.shared.wanted.end();
+        self.shared.came.notify_all();
+    }
+}
+
+impl State {
+    fn standing(&self, now: Instant) -> Standing {
+        if let Some(trouble) = &self.trouble {
+            return Standing::Lost(trouble.clone());
+        }
+        match self.watch.wrong(now) {
+            Some(wrong) => Standing::Wrong(wrong),
+            None if self.newest.is_none() => Standing::Opening,
+            None if self.is_still => Standing::Still,
+            None => Standing::Live,
+        }
+    }
+}
+
+impl State {
+    /// Whether a picture is decoded now.
+    fn wants(&self, now: Instant) -> bool {
+        let within = |at: Option<Instant>, time| at.is_some_and(|at| now.saturating_duration_since(at) < time);
+        self.is_still || within(self.looked, LOOKED) || !within(self.decoded, UNSEEN)
+    }
+}
+
+impl Shared {
+    /// Opens the source again and again.
+    fn read(&self, address: &Address, wake: &dyn Fn()) {
+        while !self.wanted.has_ended() {
+            let begin = Instant::now();
+            let trouble = match address.open() {
+                Ok(source) => self.read_from(source),
+                Err(trouble) => Some(trouble),
+            };
+            let Some(trouble) = trouble else { return };
+            let was_good = {
+                let mut state = locked(&self.state);
+                let was_good = state.trouble.is_none() && state.opened;
+                state.trouble = Some(trouble);
+                was_good
+            };
+            wake();
+            // A camera that lets itself be opened and closes at once is not asked without a pause.
+            let soon = was_good && begin.elapsed() > RETRY;
+            self.rest(if soon { RETRY_FIRST } else { RETRY });
+        }
+    }
+
+    /// Reads until something is wrong; `None` if nobody wants pictures any more.
+    fn read_from(&self, mut source: Box<dyn Source>) -> Option<Trouble> {
+        {
+            let mut state = locked(&self.state);
+            state.watch.opened(source.is_still());
+            state.is_still = source.is_still();
+        }
+        while !self.wanted.has_ended() {
+            match source.next() {
+                Ok(None) => {}
+                Ok(Some(compressed)) => {
+                    {
+                        let mut state = locked(&self.state);
+                        state.watch.arrived(compressed.arrived, compressed.stamp_s, &compressed.jpeg);
+                        (state.trouble, state.opened) = (None, true);
+                    }
+                    // What was not decoded yet is old now.
+                    *locked(&self.waiting) = Some(compressed);
+                    self.came.notify_one();
+                }
+                Err(trouble) => return Some(trouble),
+            }
+        }
+        None
+    }
+
+    fn rest(&self, whole: Duration) {
+        let begin = Instant::now();
+        while !self.wanted.has_ended() && begin.elapsed() < whole {
+            std::thread::sleep(NAP.min(whole));
+        }
+    }
+
+    /// Decodes the newest picture again and again.
+    fn decode(&self, wake: &dyn Fn()) {
+        while let Some(compressed) = self.next() {
+            if !locked(&self.state).wants(Instant::now()) {
+                continue;
+            }
+            let decoded = decode(&compressed.jpeg);
+            {
+                let mut state = locked(&self.state);
+                state.decoded = Some(Instant::now());
+                state.watch.decoded(compressed.arrived, decoded.as_ref());
+                if let Ok(picture) = decoded {
+                    state.shown += 1;
+                    let (number, arrived) = (state.shown, compressed.arrived);
+                    let work = arrived.elapsed();
+                    state.newest = Some(Newest { number, picture: Arc::new(picture), arrived, work });
+                }
+            }
+            wake();
+        }
+    }
+
+    /// Waits for a picture; `None` if nobody wants one any more.
+    fn next(&self) -> Option<Compressed> {
+        let mut waiting = locked(&self.waiting);
+        loop {
+            if self.wanted.has_ended() {
+                return None;
+            }
+            if let Some(compressed) = waiting.take() {
+                return Some(compressed);
+            }
+            // A word that was missed costs a nap, not the picture.
+            waiting = self.came.wait_timeout(waiting, NAP).unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

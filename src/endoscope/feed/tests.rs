@@ -1,0 +1,134 @@
+use std::{
+    io::{Read as _, Write as _},
+    net::{TcpListener, TcpStream},
+    sync::atomic::{AtomicUsize, Ordering},
+    thread,
+};
+
+use nima_testing::real_time;
+
+use super::*;
+use crate::{Wrong, jpeg::encode};
+
+fn frame(value: u8) -> Vec<u8> {
+    let jpeg = encode(&vec![value; 3 * 32 * 32], [32, 32], 80);
+    let head = format!("--f\r\nContent-Type: image/jpeg\r\nContent-Length: {}\r\n\r\n", jpeg.len());
+    [head.as_bytes(), &jpeg, b"\r\n"].concat()
+}
+
+/// Greets a client.
+fn greet(mut stream: &TcpStream) {
+    let mut request = [0; 1000];
+    assert!(stream.read(&mut request).unwrap() > 0);
+    stream.write_all(b"HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace;boundary=f\r\n\r\n").unwrap();
+}
+
+fn until(feed: &Feed, what: &str, wanted: impl Fn(&Look<Arc<Picture>>) -> bool) -> Look<Arc<Picture>> {
+    let begin = Instant::now();
+    loop {
+        let look = feed.look(Instant::now());
+        if wanted(&look) {
+            return look;
+        }
+        assert!(begin.elapsed() < Duration::from_secs(20), "not {what}: {:?}", look.standing);
+        thread::sleep(Duration::from_millis(1));
+    }
+}
+
+fn value(look: &Look<Arc<Picture>>) -> Option<u8> {
+    look.picture.as_ref().map(|(_, picture)| picture.rgba[0])
+}
+
+#[test]
+fn the_newest_picture_is_there_and_what_stops_is_frozen_then_lost_then_there_again() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = format!("http://{}/", listener.local_addr().unwrap()).parse().unwrap();
+    let wakes = Arc::new(AtomicUsize::new(0));
+    let counts = Arc::clone(&wakes);
+    let feed = Feed::start(address, None, move || {
+        counts.fetch_add(1, Ordering::Relaxed);
+    })
+    .unwrap();
+    let (mut first, _) = listener.accept().unwrap();
+    greet(&first);
+    assert_eq!(feed.look(Instant::now()).standing, Standing::Opening);
+    for number in 1..=20 {
+        first.write_all(&frame(10 * number)).unwrap();
+    }
+    // Not each of them is decoded, but the last one is.
+    let look = until(&feed, "the newest", |look| value(look) == Some(200));
+    assert!(look.rate_hz >= 1.0 && look.age.is_some(), "{look:?}");
+    assert!(wakes.load(Ordering::Relaxed) >= 1);
+    until(&feed, "frozen", |look| matches!(look.standing, Standing::Wrong(Wrong::Frozen(_))));
+    drop(first);
+    let lost = until(&feed, "lost", |look| matches!(look.standing, Standing::Lost(Trouble::Closed { .. })));
+    assert_eq!(value(&lost), Some(200), "the last picture stays");
+    let (mut second, _) = listener.accept().unwrap();
+    greet(&second);
+    second.write_all(&frame(90)).unwrap();
+    let look = until(&feed, "there again", |look| value(look) == Some(90));
+    assert!(!matches!(look.standing, Standing::Lost(_)), "{look:?}");
+}
+
+#[test]
+fn a_cut_is_mended_within_a_second() {
+    real_time::judged(|| {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = format!("http://{}/", listener.local_addr().unwrap()).parse().unwrap();
+        let feed = Feed::start(address, None, || {}).unwrap();
+        let (mut first, _) = listener.accept().unwrap();
+        greet(&first);
+        for number in 0..20 {
+            first.write_all(&frame(number)).unwrap();
+            thread::sleep(Duration::from_millis(33));
+        }
+        let cut = Instant::now();
+        drop(first);
+        let (mut second, _) = listener.accept().unwrap();
+        greet(&second);
+        second.write_all(&frame(200)).unwrap();
+        until(&feed, "there again", |look| value(look) == Some(200));
+        assert!(cut.elapsed() < Duration::from_secs(1), "{:?}", cut.elapsed());
+    });
+}
+
+#[test]
+fn a_torn_picture_is_told_and_the_last_whole_one_stays() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = format!("http://{}/", listener.local_addr().unwrap()).parse().unwrap();
+    let feed = Feed::start(address, Some([32, 32]), || {}).unwrap();
+    let (mut stream, _) = listener.accept().unwrap();
+    greet(&stream);
+    stream.write_all(&frame(50)).unwrap();
+    until(&feed, "there", |look| value(look) == Some(50));
+    let whole = frame(90);
+    let body = whole.windows(2).position(|two| two == [0xff, 0xd8]).unwrap();
+    let half = &whole[body..body + 300];
+    let torn = [b"--f\r\nContent-Length: 300\r\n\r\n", half, b"\r\n"].concat();
+    let begin = Instant::now();
+    loop {
+        stream.write_all(&torn).unwrap();
+        let look = feed.look(Instant::now());
+        assert_eq!(value(&look), Some(50));
+        if look.standing == Standing::Wrong(Wrong::Damaged(crate::Damage::Torn)) {
+            break;
+        }
+        assert!(begin.elapsed() < Duration::from_secs(20), "{:?}", look.standing);
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn a_feed_that_is_dropped_ends_its_threads() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = format!("http://{}/", listener.local_addr().unwrap()).parse().unwrap();
+    let alive = Arc::new(());
+    let held = Arc::clone(&alive);
+    let feed = Feed::start(address, None, move || drop(Arc::clone(&held))).unwrap();
+    drop(feed);
+    let begin = Instant::now();
+    while Arc::strong_count(&alive) > 1 {
+        assert!(begin.elapsed() < Duration::from_secs(20));
+        thread::sleep(Duration::from_millis(10));
+    }
+}

@@ -1,0 +1,226 @@
+//! Pictures from files: one JPEG, a folder of them, or one after the other in a `.mjpeg`; the latter two over and over, at the rate of a camera.
+
+use std::{
+    fs::{self, File},
+    io::Read as _,
+    path::{Path, PathBuf},
+    thread,
+    time::{Duration, Instant},
+};
+
+use crate::{Compressed, Source, Trouble, jpeg::Splitter};
+
+/// Time from one picture to the next.
+const PERIOD: Duration = Duration::from_nanos(33_333_333);
+/// A source gives the word back after this time.
+const PATIENCE: Duration = Duration::from_millis(100);
+/// Longest file that is taken for one picture, and the most files of a folder.
+const BYTES_MOST: u64 = 16 << 20;
+const FILES_MOST: usize = 100_000;
+const READ_BYTES: usize = 256 << 10;
+
+pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, Trouble> {
+    let about = fs::metadata(path).map_err(|error| trouble(path, &error))?;
+    if about.is_dir() {
+        return Ok(Box::new(Paced::of(Folder { path: path.to_owned(), files: Vec::new().into_iter() })));
+    }
+    if is_jpeg(path) {
+        return Ok(Box::new(Still { path: path.to_owned(), given: false }));
+    }
+    Ok(Box::new(Paced::of(Film::open(path)?)))
+}
+
+fn trouble(path: &Path, error: &std::io::Error) -> Trouble {
+    let reason = match error.kind() {
+        std::io::ErrorKind::NotFound => "it is not there".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "this user may not read it".to_owned(),
+        _ => error.to_string(),
+    };
+    Trouble::File { path: path.display().to_string(), reason }
+}
+
+fn without_pictures(path: &Path) -> Trouble {
+    Trouble::File { path: path.display().to_string(), reason: "there is no whole JPEG in it".to_owned() }
+}
+
+fn is_jpeg(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("jpg") || ending.eq_ignore_ascii_case("jpeg"))
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, Trouble> {
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(|error| trouble(path, &error))?;
+    file.take(BYTES_MOST + 1).read_to_end(&mut bytes).map_err(|error| trouble(path, &error))?;
+    if bytes.len() as u64 > BYTES_MOST {
+        let reason = format!("a picture has at most {} MB", BYTES_MOST >> 20);
+        return Err(Trouble::File { path: path.display().to_string(), reason });
+    }
+    Ok(bytes)
+}
+
+fn now(jpeg: Vec<u8>) -> Compressed {
+    Compressed { jpeg, arrived: Instant::now(), stamp_s: None }
+}
+
+/// One picture.
+struct Still {
+    path: PathBuf,
+    given: bool,
+}
+
+impl Source for Still {
+    fn next(&mut self) -> Result<Option<Compressed>, Trouble> {
+        if self.given {
+            thread::sleep(PATIENCE);
+            return Ok(None);
+        }
+        self.given = true;
+        Ok(Some(now(read(&self.path)?)))
+    }
+
+    fn is_still(&self) -> bool {
+        true
+    }
+}
+
+/// Pictures one after the other, as fast as they are asked for.
+trait Series: Send {
+    fn next(&mut self) -> Result<Vec<u8>, Trouble>;
+}
+
+/// Gives a series at the rate of a camera.
+struct Paced<S> {
+    series: S,
+    due: Instant,
+}
+
+impl<S: Series> Paced<S> {
+    fn of(series: S) -> Self {
+        Self { series, due: Instant::now() }
+    }
+}
+
+impl<S: Series> Source for Paced<S> {
+    fn next(&mut self) -> Result<Option<Compressed>, Trouble> {
+        let jpeg = self.series.next()?;
+        let now_is = Instant::now();
+        thread::sleep(self.due.saturating_duration_since(now_is));
+        // What was missed is not caught up.
+        self.due = self.due.max(now_is) + PERIOD;
+        Ok(Some(now(jpeg)))
+    }
+}
+
+/// The JPEGs of a folder in the order of their names; looked for again after the last one.
+struct Folder {
+    path: PathBuf,
+    files: std::vec::IntoIter<PathBuf>,
+}
+
+impl Series for Folder {
+    fn next(&mut self) -> Result<Vec<u8>, Trouble> {
+        if let Some(file) = self.files.next() {
+            return read(&file);
+        }
+        let entries = fs::read_dir(&self.path).map_err(|error| trouble(&self.path, &error))?;
+        let paths = entries.flatten().map(|entry| entry.path()).filter(|path| is_jpeg(path));
+        let mut files: Vec<PathBuf> = paths.take(FILES_MOST).collect();
+        files.sort();
+        self.files = files.into_iter();
+        self.files.next().map_or_else(|| Err(without_pictures(&self.path)), |file| read(&file))
+    }
+}
+
+/// JPEGs one after the other in one file.
+struct Film {
+    path: PathBuf,
+    file: File,
+    splitter: Splitter,
+    buffer: Vec<u8>,
+    /// Pictures since the beginning of the file.
+    found: u64,
+}
+
+impl Film {
+    fn open(path: &Path) -> Result<Self, Trouble> {
+        let file = File::open(path).map_err(|error| trouble(path, &error))?;
+        let (splitter, buffer) = (Splitter::default(), vec![0; READ_BYTES]);
+        Ok(Self { path: path.to_owned(), file, splitter, buffer, found: 0 })
+    }
+}
+
+impl Series for Film {
+    fn next(&mut self) -> Result<Vec<u8>, Trouble> {
+        loop {
+            if let Some(jpeg) = self.splitter.next() {
+                self.found += 1;
+                return Ok(jpeg);
+            }
+            let count = self.file.read(&mut self.buffer).map_err(|error| trouble(&self.path, &error))?;
+            self.splitter.take(&self.buffer[..count]);
+            if count == 0 {
+                if self.found == 0 {
+                    return Err(without_pictures(&self.path));
+                }
+                *self = Self::open(&self.path)?;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Address, jpeg};
+
+    fn grey(value: u8) -> Vec<u8> {
+        jpeg::encode(&[value; 3 * 64], [8, 8], 90)
+    }
+
+    fn next(source: &mut dyn Source) -> Result<Compressed, Trouble> {
+        loop {
+            if let Some(compressed) = source.next()? {
+                return Ok(compressed);
+            }
+        }
+    }
+
+    #[test]
+    fn a_film_and_a_folder_begin_again_and_a_picture_stands_still() {
+        let folder = tempfile::tempdir().unwrap();
+        let film = folder.path().join("a.mjpeg");
+        fs::write(&film, [grey(10), grey(100), grey(200)].concat()).unwrap();
+        let mut source = Address::File(film).open().unwrap();
+        let seen: Vec<Vec<u8>> = (0..4).map(|_| next(&mut *source).unwrap().jpeg).collect();
+        assert_eq!(seen, [grey(10), grey(100), grey(200), grey(10)]);
+        assert!(!source.is_still());
+
+        for (name, value) in [("2.jpg", 50), ("1.JPEG", 40), ("notes.txt", 60)] {
+            fs::write(folder.path().join(name), grey(value)).unwrap();
+        }
+        let mut source = Address::File(folder.path().to_owned()).open().unwrap();
+        let seen: Vec<Vec<u8>> = (0..3).map(|_| next(&mut *source).unwrap().jpeg).collect();
+        assert_eq!(seen, [grey(40), grey(50), grey(40)]);
+
+        let mut source = Address::File(folder.path().join("2.jpg")).open().unwrap();
+        assert_eq!(next(&mut *source).unwrap().jpeg, grey(50));
+        assert!(source.is_still() && source.next().unwrap().is_none());
+    }
+
+    #[test]
+    fn what_is_not_there_or_has_no_picture_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let told = |path: PathBuf| {
+            let mut source = match Address::File(path).open() {
+                Ok(source) => source,
+                Err(trouble) => return trouble.to_string(),
+            };
+            next(&mut *source).unwrap_err().to_string()
+        };
+        assert!(told(folder.path().join("missing.mjpeg")).contains("not there"));
+        assert!(told(folder.path().to_owned()).contains("no whole JPEG"));
+        let text = folder.path().join("text");
+        fs::write(&text, "no picture").unwrap();
+        assert!(told(text).contains("no whole JPEG"));
+    }
+}

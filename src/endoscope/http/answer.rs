@@ -1,0 +1,228 @@
+//! Takes an answer apart as its bytes come, without input and output: head, chunks if there are any, parts.
+
+use std::collections::VecDeque;
+
+use super::{
+    chunked::Chunked,
+    head::{Head, end, status},
+};
+
+/// Longest head of an answer, and of a part.
+const HEAD_MOST: usize = 16 << 10;
+/// Longest picture.
+pub(super) const PICTURE_MOST: usize = 8 << 20;
+/// Pictures that are kept for whoever reads slowly; older ones are dropped.
+const PARTS_MOST: usize = 8;
+
+/// One picture as it was sent.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Part {
+    pub(super) body: Vec<u8>,
+    pub(super) stamp_s: Option<f64>,
+}
+
+/// Why there will be no picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Wrong {
+    Status(u16),
+    Format(String),
+    Unreadable(&'static str),
+    Ended,
+}
+
+/// An answer, as far as it has come.
+#[derive(Debug, Default)]
+pub(super) struct Answer {
+    state: State,
+    chunked: Option<Chunked>,
+    boundary: Vec<u8>,
+    held: Vec<u8>,
+    /// So far `held` was searched for the next boundary.
+    searched: usize,
+}
+
+/// What a step came to.
+enum Step {
+    /// More bytes are needed.
+    Wait,
+    /// The next step can be made.
+    On,
+    Give(Part),
+}
+
+#[derive(Debug, Default)]
+enum State {
+    #[default]
+    Head,
+    /// Before a boundary.
+    Between,
+    PartHead,
+    Body(Head),
+}
+
+impl Answer {
+    /// Takes bytes as they come; adds the pictures that are whole with them.
+    pub(super) fn take(&mut self, bytes: &[u8], parts: &mut VecDeque<Part>) -> Result<(), Wrong> {
+        match &mut self.chunked {
+            Some(chunked) => chunked.take(bytes, &mut self.held)?,
+            None => self.held.extend_from_slice(bytes),
+        }
+        loop {
+            match self.step()? {
+                Step::Wait => return Ok(()),
+                Step::On => {}
+                Step::Give(part) => {
+                    parts.push_back(part);
+                    if parts.len() > PARTS_MOST {
+                        parts.pop_front();
+                    }
+                }
+            }
+        }
+    }
+
+    /// Bytes in memory, for a test.
+    #[cfg(test)]
+    pub(super) fn held(&self) -> usize {
+        self.held.capacity()
+    }
+
+    /// One step further.
+    fn step(&mut self) -> Result<Step, Wrong> {
+        match std::mem::take(&mut self.state) {
+            State::Head => self.head(),
+            State::Between => self.between(),
+            State::PartHead => self.part_head(),
+            State::Body(head) => match head.length {
+                Some(length) => Ok(self.counted(head, length)),
+                None => self.searched_for(head),
+            },
+        }
+    }
+
+    fn head(&mut self) -> Result<Step, Wrong> {
+        let Some([ends, begins]) = end(&self.held) else {
+            // Who speaks another language is told so at its first line.
+            if self.held.len() >= 5 && !self.held.starts_with(b"HTTP/") {
+                return Err(Wrong::Unreadable("an answer that is not HTTP"));
+            }
+            return if self.held.len() > HEAD_MOST {
+                Err(Wrong::Unreadable("a head that does not end"))
+            } else {
+                Ok(Step::Wait)
+            };
+        };
+        let first = self.held[..ends].iter().position(|byte| *byte == b'\n').unwrap_or(ends);
+        let status = status(&self.held[..first])?;
+        if status != 200 {
+            return Err(Wrong::Status(status));
+        }
+        let head = Head::parse(&self.held[first..ends])?;
+        let kind = head.kind();
+        self.boundary = match (kind.as_str(), head.boundary()) {
+            (kind, Some(boundary)) if kind.starts_with("multipart/") => boundary,
+            ("", _) => return Err(Wrong::Format("something without a type".to_owned())),
+            (kind, _) if kind.starts_with("multipart/") => return Err(Wrong::Unreadable("parts without a boundary")),
+            ("image/jpeg", _) => return Err(Wrong::Format("a single picture".to_owned())),
+            (kind, _) => return Err(Wrong::Format(short(kind))),
+        };
+        let rest = self.held.split_off(begins);
+        self.held.clear();
+        if head.is_chunked {
+            self.chunked.insert(Chunked::default()).take(&rest, &mut self.held)?;
+        } else {
+            self.held = rest;
+        }
+        Ok(self.to(State::Between, 0))
+    }
+
+    fn between(&mut self) -> Result<Step, Wrong> {
+        self.state = State::Between;
+        let Some(at) = self.find_boundary() else {
+            let gone = self.searched;
+            self.skip(gone);
+            return Ok(Step::Wait);
+        };
+        let behind = at + 2 + self.boundary.len();
+        let Some(next) = self.held.get(behind..behind + 2) else { return Ok(Step::Wait) };
+        if next == b"--" {
+            return Err(Wrong::Ended);
+        }
+        Ok(self.to(State::PartHead, behind))
+    }
+
+    fn part_head(&mut self) -> Result<Step, Wrong> {
+        let Some([ends, begins]) = end(&self.held) else {
+            self.state = State::PartHead;
+            return if self.held.len() > HEAD_MOST {
+                Err(Wrong::Unreadable("a head that does not end"))
+            } else {
+                Ok(Step::Wait)
+            };
+        };
+        let head = Head::parse(&self.held[..ends])?;
+        if head.length.is_some_and(|length| length > PICTURE_MOST) {
+            return Err(Wrong::Unreadable("a picture that is too long"));
+        }
+        match head.kind().as_str() {
+            "" | "image/jpeg" | "image/jpg" => Ok(self.to(State::Body(head), begins)),
+            kind => Err(Wrong::Format(short(kind))),
+        }
+    }
+
+    /// A picture whose length is known.
+    fn counted(&mut self, head: Head, length: usize) -> Step {
+        if self.held.len() < length {
+            self.state = State::Body(head);
+            return Step::Wait;
+        }
+        let rest = self.held.split_off(length);
+        let body = std::mem::replace(&mut self.held, rest);
+        (self.state, self.searched) = (State::Between, 0);
+        Step::Give(Part { body, stamp_s: head.stamp_s })
+    }
+
+    /// A picture that ends where the next boundary is.
+    fn searched_for(&mut self, head: Head) -> Result<Step, Wrong> {
+        let Some(at) = self.find_boundary() else {
+            self.state = State::Body(head);
+            let too_long = self.held.len() > PICTURE_MOST;
+            return if too_long { Err(Wrong::Unreadable("a picture that is too long")) } else { Ok(Step::Wait) };
+        };
+        let rest = self.held.split_off(at);
+        let mut body = std::mem::replace(&mut self.held, rest);
+        // What belongs to the boundary: a JPEG ends with neither.
+        while body.last().is_some_and(|byte| matches!(byte, b'\r' | b'\n' | b'-')) {
+            body.pop();
+        }
+        (self.state, self.searched) = (State::Between, 0);
+        Ok(Step::Give(Part { body, stamp_s: head.stamp_s }))
+    }
+
+    /// Where the next boundary begins, with its two dashes; what was searched is not searched again.
+    fn find_boundary(&mut self) -> Option<usize> {
+        let length = 2 + self.boundary.len();
+        let is_boundary = |window: &[u8]| window.starts_with(b"--") && window[2..] == self.boundary;
+        let found = self.held[self.searched..].windows(length).position(is_boundary);
+        if found.is_none() {
+            self.searched = (self.held.len() + 1).saturating_sub(length);
+        }
+        found.map(|at| self.searched + at)
+    }
+
+    fn skip(&mut self, count: usize) {
+        self.held.drain(..count);
+        self.searched = 0;
+    }
+
+    fn to(&mut self, state: State, gone: usize) -> Step {
+        self.skip(gone);
+        self.state = state;
+        Step::On
+    }
+}
+
+/// A type as the other end wrote it, fit for a message.
+fn short(kind: &str) -> String {
+    kind.chars().filter(char::is_ascii_graphic).take(60).collect()
+}

@@ -1,0 +1,215 @@
+use std::{
+    io::{Read as _, Write as _},
+    net::{TcpListener, TcpStream},
+    thread,
+};
+
+use nima_testing::fuzz;
+use proptest::prelude::*;
+
+use super::{answer::PICTURE_MOST, *};
+
+const HEAD: &str = "HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace; boundary=frame\r\n\r\n";
+
+fn body(number: usize) -> Vec<u8> {
+    let mut body = vec![0xff, 0xd8];
+    body.extend((0..50 + 37 * number).map(|at| (at * 7 + number) as u8));
+    // Something that looks like the beginning of a boundary.
+    body.extend_from_slice(b"\r\n--fram\xff\xd9");
+    body
+}
+
+/// Three pictures, with or without a length.
+fn parts(with_length: bool) -> Vec<u8> {
+    let mut bytes = b"\r\n".to_vec();
+    for number in 0..3 {
+        let body = body(number);
+        let length = if with_length { format!("content-length: {}\r\n", body.len()) } else { String::new() };
+        let head = format!("--frame\r\nContent-Type: image/jpeg\r\n{length}X-Timestamp: {number}.5\r\n\r\n");
+        bytes.extend_from_slice(head.as_bytes());
+        bytes.extend_from_slice(&body);
+        bytes.extend_from_slice(b"\r\n");
+    }
+    bytes.extend_from_slice(b"--frame");
+    bytes
+}
+
+fn in_chunks(bytes: &[u8], chunk: usize) -> Vec<u8> {
+    bytes
+        .chunks(chunk)
+        .flat_map(|part| [format!("{:x};a=b\r\n", part.len()).as_bytes(), part, b"\r\n"].concat())
+        .collect()
+}
+
+fn taken(bytes: &[u8], chunk: usize) -> Result<Vec<Part>, Wrong> {
+    let (mut answer, mut parts) = (Answer::default(), VecDeque::new());
+    for chunk in bytes.chunks(chunk) {
+        answer.take(chunk, &mut parts)?;
+    }
+    Ok(parts.into())
+}
+
+fn expected() -> Vec<Part> {
+    (0..3).map(|number| Part { body: body(number), stamp_s: Some(number as f64 + 0.5) }).collect()
+}
+
+proptest! {
+    #[test]
+    fn the_pictures_are_the_same_however_they_are_cut(
+        chunk in 1_usize..400, sent in 1_usize..300, with_length: bool, chunked: bool,
+    ) {
+        let bytes = if chunked {
+            let head = HEAD.replace("\r\n\r\n", "\r\nTransfer-Encoding: chunked\r\n\r\n");
+            [head.into_bytes(), in_chunks(&parts(with_length), sent)].concat()
+        } else {
+            [HEAD.as_bytes(), &parts(with_length)].concat()
+        };
+        prop_assert_eq!(taken(&bytes, chunk), Ok(expected()));
+    }
+}
+
+#[test]
+fn habits_of_cameras_are_understood() {
+    for (from, to) in [
+        ("boundary=frame", "boundary=\"frame\""),
+        ("boundary=frame", "boundary=--frame"),
+        ("boundary=frame", "charset=x; Boundary = frame "),
+        ("HTTP/1.1 200 OK", "HTTP/1.0 200 Fine"),
+    ] {
+        let bytes = [HEAD.replace(from, to).into_bytes(), parts(true)].concat();
+        assert_eq!(taken(&bytes, 100), Ok(expected()), "{to}");
+    }
+    let bare = [HEAD.as_bytes(), &parts(true)].concat();
+    let text: Vec<u8> = bare.iter().copied().filter(|byte| *byte != b'\r').collect();
+    // Bodies lose their carriage returns too; that the lines are understood is what counts.
+    assert!(taken(&text, 64).is_ok());
+}
+
+#[test]
+fn what_is_no_motion_jpeg_is_told() {
+    let of = |head: &str| taken(format!("{head}\r\n\r\n").as_bytes(), 7).unwrap_err();
+    assert_eq!(of("HTTP/1.1 404 Not Found"), Wrong::Status(404));
+    assert_eq!(of("HTTP/1.1 200 OK\r\nContent-Type: text/html; a"), Wrong::Format("text/html".to_owned()));
+    assert_eq!(of("HTTP/1.1 200 OK\r\nContent-Type: image/jpeg"), Wrong::Format("a single picture".to_owned()));
+    assert_eq!(of("HTTP/1.1 200 OK"), Wrong::Format("something without a type".to_owned()));
+    assert!(matches!(of("SSH-2.0-OpenSSH_9.6"), Wrong::Unreadable(_)));
+    assert!(matches!(of("HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace"), Wrong::Unreadable(_)));
+    let png = [HEAD, "--frame\r\nContent-Type: image/png\r\n\r\n"].concat();
+    assert_eq!(taken(png.as_bytes(), 9), Err(Wrong::Format("image/png".to_owned())));
+    let end = [HEAD, "--frame--"].concat();
+    assert_eq!(taken(end.as_bytes(), 9), Err(Wrong::Ended));
+}
+
+#[test]
+fn what_is_too_long_is_refused_and_memory_stays_small() {
+    let mut answer = Answer::default();
+    let mut parts = VecDeque::new();
+    let endless = [HEAD, "--frame\r\n\r\n"].concat();
+    answer.take(endless.as_bytes(), &mut parts).unwrap();
+    let mut told = Ok(());
+    for _ in 0..3 * PICTURE_MOST / READ_BYTES {
+        told = answer.take(&vec![7; READ_BYTES], &mut parts);
+        if told.is_err() {
+            break;
+        }
+    }
+    assert!(told.is_err() && answer.held() < 3 * PICTURE_MOST, "{} bytes", answer.held());
+    let says = |length: &str| [HEAD, "--frame\r\nContent-Length: ", length, "\r\n\r\n"].concat();
+    for length in ["99999999999", "-1", "99999999999999999999999"] {
+        assert!(taken(says(length).as_bytes(), 50).is_err(), "{length}");
+    }
+    assert!(taken(&[&b"HTTP/1.1 200 OK\r\nX: "[..], &vec![b'a'; 40_000]].concat(), 999).is_err());
+}
+
+/// Damages answers at random.
+fn mutate(seed: u64, count: usize) {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let chunked = HEAD.replace("\r\n\r\n", "\r\nTransfer-Encoding: chunked\r\n\r\n");
+    let answers = [
+        [HEAD.as_bytes(), &parts(true)].concat(),
+        [HEAD.as_bytes(), &parts(false)].concat(),
+        [chunked.as_bytes(), &in_chunks(&parts(true), 100)].concat(),
+    ];
+    for _ in 0..count {
+        let mut bytes = random.choice(&answers).unwrap().clone();
+        for _ in 0..random.usize(1..8) {
+            let at = random.usize(..bytes.len());
+            match random.u8(..4) {
+                0 => bytes[at] = random.u8(..),
+                1 => bytes[at] ^= 1 << random.u8(..8),
+                2 => drop(bytes.drain(at..(at + random.usize(1..60)).min(bytes.len()))),
+                _ => {
+                    let copied = bytes[at..(at + random.usize(1..60)).min(bytes.len())].to_vec();
+                    bytes.splice(at..at, copied);
+                }
+            }
+            if bytes.is_empty() {
+                bytes.push(b'H');
+            }
+        }
+        let chunk = random.usize(1..300);
+        let (mut answer, mut parts) = (Answer::default(), VecDeque::new());
+        for chunk in bytes.chunks(chunk) {
+            if answer.take(chunk, &mut parts).is_err() {
+                break;
+            }
+        }
+        assert!(answer.held() < 1 << 16);
+    }
+}
+
+#[test]
+fn damaged_answers_never_panic() {
+    mutate(1, 10_000);
+}
+
+#[test]
+#[ignore = "as long as ./dev fuzz asks for"]
+fn fuzz_damaged_answers() {
+    fuzz::rounds(|seed| mutate(seed, 100_000));
+}
+
+/// A camera that answers one client so.
+fn camera(act: impl FnOnce(TcpStream) + Send + 'static) -> u16 {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = listener.local_addr().unwrap().port();
+    thread::spawn(move || {
+        let (mut stream, _) = listener.accept().unwrap();
+        let mut request = [0; 1000];
+        let count = stream.read(&mut request).unwrap();
+        assert!(request[..count].starts_with(b"GET /a?b HTTP/1.1\r\nHost: 127.0.0.1:"));
+        act(stream);
+    });
+    port
+}
+
+#[test]
+fn pictures_come_over_a_connection_and_its_end_is_told() {
+    let port = camera(|mut stream| {
+        stream.write_all(HEAD.as_bytes()).unwrap();
+        stream.write_all(&parts(true)).unwrap();
+    });
+    let mut source = Http::open("127.0.0.1", port, "/a?b").unwrap();
+    let mut seen = Vec::new();
+    let told = loop {
+        match source.next() {
+            Ok(Some(compressed)) => seen.push(Part { body: compressed.jpeg, stamp_s: compressed.stamp_s }),
+            Ok(None) => {}
+            Err(trouble) => break trouble,
+        }
+    };
+    assert_eq!((seen, told), (expected(), Trouble::Closed { place: format!("127.0.0.1:{port}") }));
+}
+
+#[test]
+fn who_does_not_listen_or_does_not_speak_http_is_told_with_a_cure() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = listener.local_addr().unwrap().port();
+    drop(listener);
+    let told = Http::open("127.0.0.1", port, "/").err().unwrap();
+    assert!(matches!(told, Trouble::NobodyListens { .. }) && told.cure().contains("port"), "{told}");
+    let port = camera(|mut stream| stream.write_all(b"220 mail ready\r\n").unwrap());
+    let mut source = Http::open("127.0.0.1", port, "/a?b").unwrap();
+    let told = std::iter::repeat_with(|| source.next()).find_map(Result::err).unwrap();
+    assert!(told.to_string().contains("not HTTP") && told.cure().contains("another program"), "{told}");
+}

@@ -1,0 +1,206 @@
+//! JPEGs: decoded for the screen, found in a file, and made by emulators.
+
+mod encode;
+mod split;
+
+use zune_jpeg::{
+    JpegDecoder,
+    errors::DecodeErrors,
+    zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions},
+};
+
+pub use encode::encode;
+pub(crate) use split::Splitter;
+
+/// The longest side of a picture, and the most pixels: somewhat more than 4096 x 2160. What is larger is refused before memory is taken for it.
+const SIDE_MOST_PX: usize = 4096;
+const PIXELS_MOST: usize = 9_500_000;
+/// Bytes of padding that may follow the end of a picture.
+const PADDING_MOST: usize = 64;
+const BEGIN: [u8; 2] = [0xff, 0xd8];
+const END: [u8; 2] = [0xff, 0xd9];
+
+/// A picture as the screen takes it.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Picture {
+    /// Width and height, px.
+    pub size_px: [usize; 2],
+    /// Red, green, blue and 255 for each pixel, row by row from the upper left corner.
+    pub rgba: Vec<u8>,
+}
+
+/// What is wrong with one picture, so that it cannot be shown.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum Damage {
+    #[error("it is not a JPEG")]
+    NotJpeg,
+    /// Its end is missing.
+    #[error("its end is missing")]
+    Torn,
+    #[error("{} x {} pixels are too many", .size_px[0], .size_px[1])]
+    TooLarge { size_px: [usize; 2] },
+    #[error("it cannot be decoded: {reason}")]
+    Undecodable { reason: String },
+}
+
+/// Brightness up to which a picture is black: what a sensor shows with its cap on, of 255.
+const BLACK_MEAN: u32 = 6;
+/// And the brightest pixel of a black picture.
+const BLACK_MOST: u32 = 40;
+/// Every so many pixels one is looked at.
+const BLACK_STEP: usize = 61;
+
+impl std::fmt::Debug for Picture {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        // Not millions of numbers.
+        f.debug_struct("Picture").field("size_px", &self.size_px).finish_non_exhaustive()
+    }
+}
+
+impl Picture {
+    /// There is nothing to see on it.
+    pub fn is_black(&self) -> bool {
+        let brightness = |pixel: &[u8]| pixel[..3].iter().map(|&value| u32::from(value)).max().unwrap_or(0);
+        let (mut sum, mut most, mut count) = (0, 0, 0);
+        for pixel in self.rgba.chunks_exact(4).step_by(BLACK_STEP) {
+            let value = brightness(pixel);
+            (sum, most, count) = (sum + value, most.max(value), count + 1);
+        }
+        count > 0 && sum <= BLACK_MEAN * count && most <= BLACK_MOST
+    }
+}
+
+/// Decodes a JPEG to pixels. Takes memory only for what the header asks for within the limits.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn decode(jpeg: &[u8]) -> Result<Picture, Damage> {
+    if !jpeg.starts_with(&BEGIN) {
+        return Err(Damage::NotJpeg);
+    }
+    let tail = &jpeg[jpeg.len().saturating_sub(PADDING_MOST)..];
+    if !tail.windows(2).any(|two| two == END) {
+        return Err(Damage::Torn);
+    }
+    // Strict: what is damaged in the middle of a picture would else be grey without a word. What is cut out of its middle, with the end in
+    // place, is grey all the same: the library does not tell.
+    let options = DecoderOptions::new_fast()
+        .set_strict_mode(true)
+        .set_max_width(SIDE_MOST_PX)
+        .set_max_height(SIDE_MOST_PX)
+        .jpeg_set_out_colorspace(ColorSpace::RGBA);
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(jpeg), options);
+    decoder.decode_headers().map_err(damage)?;
+    let info = decoder.info().ok_or(Damage::NotJpeg)?;
+    let size_px = [usize::from(info.width), usize::from(info.height)];
+    if size_px[0] * size_px[1] > PIXELS_MOST {
+        return Err(Damage::TooLarge { size_px });
+    }
+    let mut rgba = vec![255; 4 * size_px[0] * size_px[1]];
+    if decoder.output_buffer_size() != Some(rgba.len()) {
+        return Err(Damage::Undecodable { reason: "its colours are not those of a camera".to_owned() });
+    }
+    decoder.decode_into(&mut rgba).map_err(damage)?;
+    Ok(Picture { size_px, rgba })
+}
+
+fn damage(error: DecodeErrors) -> Damage {
+    match error {
+        DecodeErrors::ExhaustedData => Damage::Torn,
+        DecodeErrors::IllegalMagicBytes(_) => Damage::NotJpeg,
+        DecodeErrors::LargeDimensions(side) => Damage::TooLarge { size_px: [side; 2] },
+        // One line, however long the library's is.
+        other => {
+            Damage::Undecodable { reason: format!("{other:?}").chars().filter(|c| !c.is_control()).take(120).collect() }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_testing::fuzz;
+
+    use super::*;
+
+    /// A picture with edges and slopes.
+    pub(super) fn pattern(size_px: [usize; 2]) -> Vec<u8> {
+        let value = |x: usize, y: usize| {
+            if (x / 24 + y / 24).is_multiple_of(2) {
+                [(4 * x % 256) as u8, (3 * y % 256) as u8, 90]
+            } else {
+                [200, 120, (x + y) as u8]
+            }
+        };
+        (0..size_px[1]).flat_map(|y| (0..size_px[0]).flat_map(move |x| value(x, y))).collect()
+    }
+
+    #[test]
+    fn what_is_cut_off_or_another_format_is_told() {
+        let whole = encode(&pattern([320, 200]), [320, 200], 85);
+        assert!(decode(&whole).is_ok());
+        assert_eq!(decode(&whole[..whole.len() / 2]), Err(Damage::Torn));
+        assert_eq!(decode(b"\x89PNG\r\n"), Err(Damage::NotJpeg));
+        assert_eq!(decode(b""), Err(Damage::NotJpeg));
+        let mut padded = whole;
+        padded.extend_from_slice(&[0; 7]);
+        assert!(decode(&padded).is_ok());
+    }
+
+    #[test]
+    fn a_picture_that_says_it_is_huge_takes_no_memory() {
+        let mut jpeg = encode(&pattern([32, 32]), [32, 32], 85);
+        let frame = jpeg.windows(2).position(|two| two == [0xff, 0xc0]).unwrap();
+        for (height, width) in [(4000_u16, 4000_u16), (60_000, 60_000)] {
+            jpeg[frame + 5..frame + 7].copy_from_slice(&height.to_be_bytes());
+            jpeg[frame + 7..frame + 9].copy_from_slice(&width.to_be_bytes());
+            let told = decode(&jpeg).unwrap_err();
+            assert!(matches!(told, Damage::TooLarge { .. } | Damage::Undecodable { .. }), "{told}");
+        }
+    }
+
+    #[test]
+    fn black_is_black_and_dark_is_not() {
+        let flat = |value: u8| decode(&encode(&vec![value; 3 * 64 * 64], [64, 64], 85)).unwrap();
+        assert!(flat(0).is_black() && flat(4).is_black());
+        assert!(!flat(20).is_black() && !flat(255).is_black());
+        let mut lit = vec![0; 3 * 256 * 256];
+        lit[..3 * 256 * 40].fill(200);
+        assert!(!decode(&encode(&lit, [256, 256], 85)).unwrap().is_black());
+    }
+
+    /// Decodes so many pictures with random damage.
+    fn mutate(seed: u64, count: usize) {
+        let mut random = fastrand::Rng::with_seed(seed);
+        let originals = [[64, 48], [33, 17]].map(|size_px| encode(&pattern(size_px), size_px, 80));
+        for _ in 0..count {
+            let mut jpeg = random.choice(&originals).unwrap().clone();
+            for _ in 0..random.usize(1..6) {
+                let at = random.usize(..jpeg.len());
+                match random.u8(..4) {
+                    0 => jpeg[at] = random.u8(..),
+                    1 => jpeg[at] ^= 1 << random.u8(..8),
+                    2 => drop(jpeg.drain(at..(at + random.usize(1..40)).min(jpeg.len()))),
+                    _ => jpeg.insert(at, if random.bool() { 0xff } else { random.u8(..) }),
+                }
+                if jpeg.is_empty() {
+                    jpeg.push(0xff);
+                }
+            }
+            if let Ok(picture) = decode(&jpeg) {
+                assert_eq!(picture.rgba.len(), 4 * picture.size_px[0] * picture.size_px[1]);
+            }
+        }
+    }
+
+    #[test]
+    fn damaged_pictures_never_panic() {
+        mutate(1, 3000);
+    }
+
+    #[test]
+    #[ignore = "as long as ./dev fuzz asks for"]
+    fn fuzz_damaged_pictures() {
+        fuzz::rounds(|seed| mutate(seed, 10_000));
+    }
+}

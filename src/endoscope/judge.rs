@@ -1,0 +1,295 @@
+//! What is wrong with a picture that comes: it stands still, is black, cannot be read, has another size, or is old. Time is handed in.
+
+use std::{
+    collections::VecDeque,
+    hash::{DefaultHasher, Hash as _, Hasher as _},
+    time::{Duration, Instant},
+};
+
+use crate::{Damage, Picture};
+
+/// A picture that does not change for this long is frozen.
+pub const FROZEN: Duration = Duration::from_millis(200);
+/// A picture that is this old when it arrives is late.
+pub const LATE: Duration = Duration::from_millis(200);
+/// A damaged picture is told for this long.
+const DAMAGE_TOLD: Duration = Duration::from_millis(500);
+/// Period over which the rate is counted, and the most arrivals that are remembered.
+const RATE_OVER: Duration = Duration::from_secs(1);
+const ARRIVALS_MOST: usize = 512;
+/// The camera's clock may run this much slower than ours: 200 parts in a million.
+const DRIFT: f64 = 2e-4;
+
+/// What is wrong with the picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Wrong {
+    /// No picture came, or always the same one, for so long.
+    Frozen(Duration),
+    /// The last picture could not be shown.
+    Damaged(Damage),
+    /// It has another size than the camera of the rig, or than the first one: what it has, and what is expected.
+    Size([usize; 2], [usize; 2]),
+    /// There is nothing to see.
+    Black,
+    /// It was this old when it arrived.
+    Late(Duration),
+}
+
+/// How it stands with the picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// Not yet there, for the first time.
+    Opening,
+    /// Pictures come.
+    Live,
+    /// One picture, of which no more is expected.
+    Still,
+    /// Pictures come, or came, and something is wrong with them.
+    Wrong(Wrong),
+    /// There is none: why, and what to do.
+    Lost(crate::Trouble),
+}
+
+/// Follows the pictures of one source.
+#[derive(Debug)]
+pub(crate) struct Watch {
+    /// Known in advance, or that of the first picture.
+    expected_px: Option<[usize; 2]>,
+    is_still: bool,
+    hash: Option<u64>,
+    /// When a picture last came that was not the one before.
+    changed: Option<Instant>,
+    arrivals: VecDeque<Instant>,
+    damage: Option<(Instant, Damage)>,
+    shown: Option<Shown>,
+    delay: Delay,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Shown {
+    size_px: [usize; 2],
+    is_black: bool,
+}
+
+impl Watch {
+    /// `expected_px`: the size that the rig's camera has, if it is known.
+    pub(crate) fn new(expected_px: Option<[usize; 2]>) -> Self {
+        Self {
+            expected_px,
+            is_still: false,
+            hash: None,
+            changed: None,
+            arrivals: VecDeque::new(),
+            damage: None,
+            shown: None,
+            delay: Delay::default(),
+        }
+    }
+
+    /// The source was opened, again or for the first time.
+    pub(crate) fn opened(&mut self, is_still: bool) {
+        self.is_still = is_still;
+        self.delay = Delay::default();
+        self.damage = None;
+    }
+
+    /// A picture came, not decoded yet.
+    pub(crate) fn arrived(&mut self, at: Instant, stamp_s: Option<f64>, jpeg: &[u8]) {
+        let mut hasher = DefaultHasher::new();
+        jpeg.hash(&mut hasher);
+        let hash = Some(hasher.finish());
+        if self.hash != hash {
+            (self.hash, self.changed) = (hash, Some(at));
+        }
+        self.arrivals.push_back(at);
+        let begin = at.checked_sub(RATE_OVER);
+        while self.arrivals.len() > ARRIVALS_MOST || self.arrivals.front().is_some_and(|first| Some(*first) < begin) {
+            self.arrivals.pop_front();
+        }
+        self.delay.take(at, stamp_s);
+    }
+
+    /// The picture that came at this moment was decoded.
+    pub(crate) fn decoded(&mut self, at: Instant, decoded: Result<&Picture, &Damage>) {
+        match decoded {
+            Ok(picture) => {
+                self.expected_px.get_or_insert(picture.size_px);
+                self.shown = Some(Shown { size_px: picture.size_px, is_black: picture.is_black() });
+            }
+            Err(damage) => self.damage = Some((at, damage.clone())),
+        }
+    }
+
+    /// How old the newest picture was when it arrived, beyond the least that was seen; `None` where the camera sends no stamps.
+    pub(crate) fn late(&self) -> Option<Duration> {
+        self.delay.late()
+    }
+
+    /// Pictures a second.
+    pub(crate) fn rate_hz(&self, now: Instant) -> f64 {
+        let begin = now.checked_sub(RATE_OVER);
+        self.arrivals.iter().filter(|at| Some(**at) >= begin).count() as f64 / RATE_OVER.as_secs_f64()
+    }
+
+    /// What is wrong now; what hides the most comes first.
+    pub(crate) fn wrong(&self, now: Instant) -> Option<Wrong> {
+        if self.is_still {
+            return self.damage.as_ref().map(|(_, damage)| Wrong::Damaged(damage.clone()));
+        }
+        let since = |at: Instant| now.saturating_duration_since(at);
+        let arrived = self.arrivals.back().copied();
+        let comes = arrived.is_some_and(|at| since(at) < FROZEN);
+        if let Some((_, damage)) = self.damage.as_ref().filter(|(at, _)| comes && since(*at) < DAMAGE_TOLD) {
+            return Some(Wrong::Damaged(damage.clone()));
+        }
+        if let Some(stood) = self.changed.map(since).filter(|stood| *stood >= FROZEN) {
+            return Some(Wrong::Frozen(stood));
+        }
+        let (shown, expected_px) = (self.shown?, self.expected_px?);
+        if shown.size_px != expected_px {
+            return Some(Wrong::Size(shown.size_px, expected_px));
+        }
+        if shown.is_black {
+            return Some(Wrong::Black);
+        }
+        self.late().filter(|late| *late >= LATE).map(Wrong::Late)
+    }
+}
+
+/// How late pictures are, from the camera's own stamps: the least difference of both clocks is that of a picture that was not held up.
+#[derive(Debug, Default)]
+struct Delay {
+    begin: Option<Instant>,
+    least_s: f64,
+    late_s: Option<f64>,
+    last_s: f64,
+}
+
+impl Delay {
+    fn take(&mut self, at: Instant, stamp_s: Option<f64>) {
+        let Some(stamp_s) = stamp_s else {
+            self.late_s = None;
+            return;
+        };
+        let at_s = at.saturating_duration_since(*self.begin.get_or_insert(at)).as_secs_f64();
+        let difference_s = at_s - stamp_s;
+        self.least_s = match self.late_s {
+            Some(_) => difference_s.min(self.least_s + DRIFT * (at_s - self.last_s)),
+            None => difference_s,
+        };
+        (self.late_s, self.last_s) = (Some(difference_s - self.least_s), at_s);
+    }
+
+    fn late(&self) -> Option<Duration> {
+        self.late_s.and_then(|late_s| Duration::try_from_secs_f64(late_s).ok())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PERIOD: Duration = Duration::from_millis(33);
+
+    fn picture(value: u8, size_px: [usize; 2]) -> Picture {
+        Picture { size_px, rgba: vec![value; 4 * size_px[0] * size_px[1]] }
+    }
+
+    /// A camera on a clock of its own.
+    struct Bench {
+        watch: Watch,
+        now: Instant,
+        count: u8,
+    }
+
+    impl Bench {
+        fn new() -> Self {
+            let mut watch = Watch::new(None);
+            watch.opened(false);
+            Self { watch, now: Instant::now(), count: 0 }
+        }
+
+        fn frame(&mut self, value: u8, size_px: [usize; 2]) {
+            self.count = self.count.wrapping_add(1);
+            self.come(&[self.count], Ok(&picture(value, size_px)));
+        }
+
+        fn come(&mut self, jpeg: &[u8], decoded: Result<&Picture, &Damage>) {
+            self.now += PERIOD;
+            self.watch.arrived(self.now, None, jpeg);
+            self.watch.decoded(self.now, decoded);
+        }
+    }
+
+    #[test]
+    fn a_picture_that_moves_is_fine_and_its_rate_is_counted() {
+        let mut bench = Bench::new();
+        for _ in 0..90 {
+            bench.frame(100, [64, 48]);
+            assert_eq!(bench.watch.wrong(bench.now), None);
+        }
+        assert!((bench.watch.rate_hz(bench.now) - 30.0).abs() <= 1.0);
+        assert!(bench.watch.rate_hz(bench.now + Duration::from_secs(2)) < 0.5);
+    }
+
+    #[test]
+    fn a_frozen_picture_is_told_at_200_ms_whether_none_comes_or_always_the_same() {
+        let mut bench = Bench::new();
+        bench.frame(100, [64, 48]);
+        let frozen = |bench: &Bench, after| matches!(bench.watch.wrong(bench.now + after), Some(Wrong::Frozen(_)));
+        assert!(!frozen(&bench, Duration::from_millis(199)) && frozen(&bench, Duration::from_millis(200)));
+        for _ in 0..6 {
+            bench.come(b"the same", Ok(&picture(100, [64, 48])));
+        }
+        assert!(!frozen(&bench, Duration::ZERO), "it stands for 5 periods of 33 ms");
+        bench.come(b"the same", Ok(&picture(100, [64, 48])));
+        bench.come(b"the same", Ok(&picture(100, [64, 48])));
+        assert!(frozen(&bench, Duration::ZERO));
+        bench.frame(100, [64, 48]);
+        assert!(!frozen(&bench, Duration::ZERO));
+    }
+
+    #[test]
+    fn black_another_size_and_damage_are_told_with_the_first_picture_that_has_them() {
+        let mut bench = Bench::new();
+        bench.frame(100, [64, 48]);
+        bench.frame(0, [64, 48]);
+        assert_eq!(bench.watch.wrong(bench.now), Some(Wrong::Black));
+        bench.frame(100, [32, 48]);
+        assert_eq!(bench.watch.wrong(bench.now), Some(Wrong::Size([32, 48], [64, 48])));
+        bench.come(b"half", Err(&Damage::Torn));
+        assert_eq!(bench.watch.wrong(bench.now), Some(Wrong::Damaged(Damage::Torn)));
+        for _ in 0..16 {
+            bench.frame(100, [64, 48]);
+        }
+        assert_eq!(bench.watch.wrong(bench.now), None);
+    }
+
+    #[test]
+    fn a_late_picture_is_told_by_the_cameras_own_stamps() {
+        let mut bench = Bench::new();
+        let mut come = |late_ms: u64, stamp_s: f64| {
+            bench.now += PERIOD;
+            bench.count = bench.count.wrapping_add(1);
+            bench.watch.arrived(bench.now + Duration::from_millis(late_ms), Some(stamp_s), &[bench.count]);
+            bench.watch.decoded(bench.now, Ok(&picture(100, [64, 48])));
+            bench.watch.wrong(bench.now + Duration::from_millis(late_ms))
+        };
+        let stamp_s = |number: u32| 1e6 + 0.033 * f64::from(number);
+        for number in 0..100 {
+            assert_eq!(come(u64::from(number % 3), stamp_s(number)), None);
+        }
+        let told = come(300, stamp_s(100));
+        assert!(matches!(told, Some(Wrong::Late(late)) if late.as_millis().abs_diff(300) < 5), "{told:?}");
+    }
+
+    #[test]
+    fn a_still_picture_is_not_frozen() {
+        let mut watch = Watch::new(None);
+        watch.opened(true);
+        let now = Instant::now();
+        watch.arrived(now, None, b"one");
+        watch.decoded(now, Ok(&picture(100, [8, 8])));
+        assert_eq!(watch.wrong(now + Duration::from_mins(1)), None);
+    }
+}

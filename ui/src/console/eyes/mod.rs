@@ -1,0 +1,297 @@
+//! The endoscope's picture in the surgeon's view: taken from a feed with threads of its own, uploaded once, and told in words when it is not what
+//! happens now. Nothing of it touches the loop.
+
+mod overlay;
+mod place;
+mod poses;
+#[cfg(test)]
+mod tests;
+
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+use egui::{
+    Align2, Color32, ColorImage, Context, Key, Mesh, Painter, Rect, Sense, TextureHandle, TextureOptions, Ui, vec2,
+};
+use nima_endoscope::{Address, Camera, FROZEN, Feed, Look, Picture, Standing, Wrong};
+use nima_machine::{config::Endoscope, messages::Tick};
+use nima_world::emulators::endoscope::camera_of;
+
+use self::{place::Place, poses::Poses};
+use super::{live::Live, text, theme};
+
+/// The figures stand still for so long, so that they can be read.
+const FIGURES_EVERY: Duration = Duration::from_millis(250);
+/// Time from one frame to the next where the words have a clock, and no picture wakes the window.
+const CLOCK: Duration = Duration::from_millis(100);
+/// From this rate on pictures wake the window often enough.
+const WAKES_HZ: f64 = 24.0;
+/// What remains of a picture that is not of now.
+const PAST: Color32 = Color32::from_gray(110);
+/// Size of the words about what is wrong, and of what to do, points.
+const WRONG_SIZE: f32 = 24.0;
+const CURE_SIZE: f32 = 16.0;
+/// Distance of words from the edge of the picture, and from a tip, points.
+const MARGIN: f32 = 16.0;
+const CLEAR: f32 = 24.0;
+
+type Newest = Look<Arc<Picture>>;
+
+/// The picture, or nothing where the rig has no endoscope.
+#[derive(Default)]
+pub struct Eyes {
+    /// As the rig file has it.
+    wanted: Option<Endoscope>,
+    feed: Option<Feed>,
+    /// Why its address cannot be used.
+    refused: Option<String>,
+    camera: Option<Camera>,
+    /// Two, so that one is shown while the other is written.
+    textures: [Option<TextureHandle>; 2],
+    front: usize,
+    /// Number of the picture on the screen.
+    number: u64,
+    shown: Option<(Instant, String)>,
+    rate_hz: f64,
+    hides_forces: bool,
+    poses: Poses,
+}
+
+impl std::fmt::Debug for Eyes {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Eyes").field("wanted", &self.wanted).field("number", &self.number).finish_non_exhaustive()
+    }
+}
+
+impl Eyes {
+    /// Takes the picture that the rig file names; called in every frame.
+    pub(in crate::console) fn serve(&mut self, wanted: Option<&Endoscope>, ctx: &Context) {
+        if self.wanted.as_ref() == wanted {
+            return;
+        }
+        *self = Self { wanted: wanted.cloned(), hides_forces: self.hides_forces, ..Self::default() };
+        let Some(Endoscope { url, camera, .. }) = wanted else { return };
+        self.camera = camera.as_ref().map(camera_of);
+        let address = match url.parse::<Address>() {
+            Ok(address) => address,
+            Err(error) => {
+                self.refused = Some(text::eyes::refused(&error.to_string()));
+                return;
+            }
+        };
+        let ctx = ctx.clone();
+        let size_px = self.camera.map(|camera| camera.lens.size_px);
+        match Feed::start(address, size_px, move || ctx.request_repaint()) {
+            Ok(feed) => self.feed = Some(feed),
+            Err(error) => self.refused = Some(text::eyes::refused(&error.to_string())),
+        }
+    }
+
+    /// The rig has an endoscope.
+    pub(in crate::console) const fn is_on(&self) -> bool {
+        self.wanted.is_some()
+    }
+
+    /// Pictures wake the window often enough for everything else that moves.
+    pub(in crate::console) fn wakes(&self) -> bool {
+        self.rate_hz >= WAKES_HZ
+    }
+
+    /// A tick of the loop: where a tip is at its time.
+    pub(in crate::console) fn note(&mut self, tick: &Tick) {
+        if self.camera.is_some() {
+            self.poses.note(tick, Instant::now());
+        }
+    }
+
+    /// How it stands with the picture and what to do, for the list of devices; nothing where there is no endoscope.
+    pub(in crate::console) fn told(&self) -> Option<[String; 2]> {
+        self.wanted.as_ref()?;
+        Some(self.standing_told(&self.feed.as_ref().map_or(Standing::Opening, |feed| feed.standing(Instant::now()))))
+    }
+
+    /// What is wrong, and what to do; how it stands and nothing, if all is well.
+    fn standing_told(&self, standing: &Standing) -> [String; 2] {
+        if let Some(refused) = &self.refused {
+            return [refused.clone(), text::eyes::REFUSED_CURE.to_owned()];
+        }
+        match standing {
+            Standing::Opening => [text::eyes::WAITING.to_owned(), String::new()],
+            Standing::Live => [text::eyes::LIVE.to_owned(), String::new()],
+            Standing::Still => [text::eyes::STILL.to_owned(), String::new()],
+            Standing::Wrong(wrong) => wrong_told(wrong),
+            Standing::Lost(trouble) => [text::eyes::lost(&trouble.to_string()), trouble.cure().to_owned()],
+        }
+    }
+
+    /// Draws the picture over the available space.
+    pub(in crate::console) fn ui(&mut self, ui: &mut Ui, live: &Live) {
+        let now = Instant::now();
+        let look = self.feed.as_ref().map(|feed| feed.look(now));
+        self.rate_hz = look.as_ref().map_or(0.0, |look| look.rate_hz);
+        if !ui.ctx().text_edit_focused() && ui.input(|input| input.modifiers.is_none() && input.key_pressed(Key::O)) {
+            self.hides_forces ^= true;
+        }
+        let (view, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+        let standing = look.as_ref().map_or(Standing::Opening, |look| look.standing.clone());
+        let [told, cure] = self.standing_told(&standing);
+        let words = text::eyes::picture(&told);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &words));
+        let painter = ui.painter_at(view);
+        painter.rect_filled(view, 0.0, Color32::BLACK);
+        let is_good = self.refused.is_none() && matches!(standing, Standing::Live | Standing::Still);
+        let shows_past = matches!(standing, Standing::Lost(_) | Standing::Wrong(Wrong::Frozen(_)));
+        let place = look.as_ref().and_then(|look| self.picture_ui(ui.ctx(), &painter, view, look, shows_past));
+        let fits = is_good || matches!(standing, Standing::Wrong(Wrong::Late(_) | Wrong::Damaged(_)));
+        let mut tips = Vec::new();
+        if let (Some(place), Some(camera), true) = (&place, &self.camera, fits) {
+            let age = look.as_ref().and_then(|look| look.age).unwrap_or_default();
+            let seen = overlay::Seen { painter: &painter, place, camera, ceiling_n: live.gate_settings().ceiling_n };
+            tips = seen.draw(live.sides().filter_map(|side| self.poses.at(side, now, age)), self.hides_forces);
+        }
+        if !is_good {
+            let colour = if standing == Standing::Opening && self.refused.is_none() {
+                theme::DARK.text
+            } else {
+                theme::DARK.alarm_high
+            };
+            let over = place.as_ref().map_or(view, |place| place.rect);
+            if shows_past {
+                painter.rect_stroke(over, 0.0, egui::Stroke::new(3.0, colour), egui::StrokeKind::Inside);
+            }
+            wrong_ui(&painter, over, &tips, [&told, &cure], colour);
+        }
+        self.figures_ui(&painter, view, (&tips, fits), look.as_ref(), now);
+        ui.ctx().request_repaint_after(until_told(look.as_ref(), is_good));
+    }
+
+    /// Uploads a new picture and draws it as large as it can be; gives its place.
+    fn picture_ui(
+        &mut self,
+        ctx: &Context,
+        painter: &Painter,
+        view: Rect,
+        look: &Newest,
+        shows_past: bool,
+    ) -> Option<Place> {
+        let (number, picture) = look.picture.as_ref()?;
+        if self.number != *number {
+            let image = ColorImage::from_rgba_premultiplied(picture.size_px, &picture.rgba);
+            self.front = 1 - self.front;
+            let back = &mut self.textures[self.front];
+            match back {
+                Some(texture) => texture.set(image, TextureOptions::LINEAR),
+                None => *back = Some(ctx.load_texture("endoscope", image, TextureOptions::LINEAR)),
+            }
+            self.number = *number;
+        }
+        let place = Place::new(view, picture.size_px, self.wanted.as_ref()?);
+        let mut mesh = Mesh::with_texture(self.textures[self.front].as_ref()?.id());
+        for (corner, at) in place.corners() {
+            let colour = if shows_past { PAST } else { Color32::WHITE };
+            mesh.vertices.push(egui::epaint::Vertex { pos: at, uv: corner, color: colour });
+        }
+        mesh.add_triangle(0, 1, 2);
+        mesh.add_triangle(2, 1, 3);
+        painter.add(mesh);
+        Some(place)
+    }
+
+    /// Age, rate, and what the forces are, in a corner.
+    fn figures_ui(
+        &mut self,
+        painter: &Painter,
+        view: Rect,
+        (tips, fits): (&[egui::Pos2], bool),
+        look: Option<&Newest>,
+        now: Instant,
+    ) {
+        let Some(look) = look.filter(|look| look.picture.is_some()) else { return };
+        if self.shown.as_ref().is_none_or(|(at, _)| now.duration_since(*at) >= FIGURES_EVERY) {
+            let age = look.age.unwrap_or_default();
+            let figures = if look.standing == Standing::Still {
+                text::eyes::STILL.to_owned()
+            } else {
+                text::eyes::figures(age, look.rate_hz)
+            };
+            self.shown = Some((now, figures));
+        }
+        let forces = match (&self.camera, self.hides_forces) {
+            (None, _) => text::eyes::NO_CAMERA,
+            // Where the picture is not of now, they would be at a wrong place.
+            _ if !fits => "",
+            (_, true) => text::eyes::FORCES_HIDDEN,
+            (_, false) => text::eyes::FORCES_DRAWN,
+        };
+        let figures = self.shown.as_ref().map(|(_, figures)| figures.as_str()).unwrap_or_default();
+        let lines = [(figures, 15.0, theme::DARK.text), (forces, 13.0, theme::DARK.text_weak)];
+        let inner = view.shrink(MARGIN);
+        let corners = [
+            (inner.left_bottom(), Align2::LEFT_BOTTOM),
+            (inner.right_bottom(), Align2::RIGHT_BOTTOM),
+            (inner.left_top(), Align2::LEFT_TOP),
+        ];
+        plate(painter, &corners, tips, &lines);
+    }
+}
+
+fn wrong_told(wrong: &Wrong) -> [String; 2] {
+    let (words, cure) = match wrong {
+        Wrong::Frozen(stood) => (text::eyes::frozen(*stood), text::eyes::FROZEN_CURE),
+        Wrong::Black => (text::eyes::BLACK.to_owned(), text::eyes::BLACK_CURE),
+        Wrong::Late(late) => (text::eyes::late(*late), text::eyes::LATE_CURE),
+        Wrong::Damaged(damage) => (text::eyes::damaged(&damage.to_string()), text::eyes::DAMAGED_CURE),
+        Wrong::Size(has, wanted) => (text::eyes::size(*has, *wanted), text::eyes::SIZE_CURE),
+    };
+    [words, cure.to_owned()]
+}
+
+/// When the window has something else to say, though no picture came.
+fn until_told(look: Option<&Newest>, is_good: bool) -> Duration {
+    let age = look.and_then(|look| look.age).unwrap_or_default();
+    let frozen = FROZEN.saturating_sub(age) + Duration::from_millis(2);
+    if is_good { frozen.max(Duration::from_millis(10)) } else { CLOCK }
+}
+
+fn wrong_ui(painter: &Painter, over: Rect, tips: &[egui::Pos2], [told, cure]: [&str; 2], colour: Color32) {
+    let inner = over.shrink(MARGIN);
+    let places = [
+        (inner.center_top() + vec2(0.0, MARGIN), Align2::CENTER_TOP),
+        (inner.center_bottom() - vec2(0.0, 4.0 * MARGIN), Align2::CENTER_BOTTOM),
+        (inner.left_center(), Align2::LEFT_CENTER),
+        (inner.right_center(), Align2::RIGHT_CENTER),
+    ];
+    plate(painter, &places, tips, &[(told, WRONG_SIZE, colour), (cure, CURE_SIZE, theme::DARK.text)]);
+}
+
+/// Words on a dark ground, legible over any tissue, at the first of these places that covers no tip.
+fn plate(painter: &Painter, places: &[(egui::Pos2, Align2)], tips: &[egui::Pos2], lines: &[(&str, f32, Color32)]) {
+    let width = (painter.clip_rect().width() - 4.0 * MARGIN).max(100.0);
+    let lines = lines.iter().filter(|(words, ..)| !words.is_empty()).map(|(words, size, colour)| {
+        let font = if *size > CURE_SIZE { theme::strong(*size) } else { theme::regular(*size) };
+        (painter.layout((*words).to_owned(), font, *colour, width), *colour)
+    });
+    let lines: Vec<_> = lines.collect();
+    let size =
+        lines.iter().fold(egui::Vec2::ZERO, |size, (line, _)| vec2(size.x.max(line.size().x), size.y + line.size().y));
+    let rects = places.iter().map(|(at, align)| (align.anchor_size(*at, size + vec2(20.0, 12.0)), *align));
+    let is_clear = |rect: &Rect| !tips.iter().any(|tip| rect.expand(CLEAR).contains(*tip));
+    let mut rects = rects.collect::<Vec<_>>().into_iter();
+    let Some(first) = rects.clone().find(|(rect, _)| is_clear(rect)).or_else(|| rects.next()) else { return };
+    let (rect, align) = first;
+    painter.rect_filled(rect, theme::CORNER, Color32::from_black_alpha(185));
+    let mut top = rect.top() + 6.0;
+    for (line, colour) in lines {
+        let inner = rect.shrink2(vec2(10.0, 0.0));
+        let left = match align.x() {
+            egui::Align::Min => inner.left(),
+            egui::Align::Center => inner.center().x - 0.5 * line.size().x,
+            egui::Align::Max => inner.right() - line.size().x,
+        };
+        let height = line.size().y;
+        painter.galley(egui::pos2(left, top), line, colour);
+        top += height;
+    }
+}

@@ -1,0 +1,116 @@
+use std::{
+    sync::Mutex,
+    thread,
+    time::{SystemTime, UNIX_EPOCH},
+};
+
+use egui::{Pos2, pos2};
+use nalgebra::{Vector2, Vector3};
+use nima_endoscope::time_code;
+use nima_world::{
+    emulators::endoscope::{Emulated, Instrument, SQUARE_PX, usual},
+    scene::Scene,
+};
+
+use super::{overlay::Seen, *};
+
+/// Bright green, which nothing else in the picture is.
+fn is_mark(pixel: &[u8]) -> bool {
+    pixel[1] > 150 && pixel[0] < 90 && pixel[2] < 150
+}
+
+fn mark_px(picture: &Picture) -> Vector2<f64> {
+    let [width, _] = picture.size_px;
+    let marked = picture.rgba.chunks_exact(4).enumerate().filter(|(_, pixel)| is_mark(pixel));
+    let places: Vec<_> =
+        marked.map(|(at, _)| Vector2::new((at % width) as f64 + 0.5, (at / width) as f64 + 0.5)).collect();
+    assert!(places.len() > 20, "{} pixels of the mark", places.len());
+    places.iter().sum::<Vector2<f64>>() / places.len() as f64
+}
+
+fn now_us() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_micros() as u64
+}
+
+/// A picture that was made after this moment.
+fn picture_after(feed: &Feed, begin_us: u64) -> Arc<Picture> {
+    let begin = Instant::now();
+    loop {
+        let picture = feed.look(Instant::now()).picture.map(|(_, picture)| picture);
+        let made = |picture: &Picture| {
+            time_code::read(SQUARE_PX, |x, y| picture.rgba[4 * (picture.size_px[0] * y + x) + 1]).unwrap_or_default()
+        };
+        if let Some(picture) = picture.filter(|picture| made(picture) > begin_us) {
+            return picture;
+        }
+        assert!(begin.elapsed() < Duration::from_mins(1), "no picture");
+        thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[test]
+fn forces_are_drawn_where_the_tip_is_seen_through_the_distortion_of_the_lens() {
+    let scene = Scene::load("bimanual").unwrap();
+    for k1 in [-0.3, 0.3] {
+        let tip_m = Arc::new(Mutex::new(Vector3::zeros()));
+        let shown = Arc::clone(&tip_m);
+        let mut settings = usual(&scene);
+        settings.k1 = k1;
+        let endoscope = Endoscope { url: String::new(), rotation_deg: 0, mirror: false, camera: Some(settings) };
+        let camera = camera_of(&settings);
+        let body = move |_: f64| vec![Instrument { tip_m: *shown.lock().unwrap(), trocar_m: scene_trocar() }];
+        let serving = Emulated { camera, ..Emulated::of(&scene, 0) }.with(&scene, Box::new(body)).serve().unwrap();
+        let feed = Feed::start(serving.endpoint.parse().unwrap(), Some([1280, 720]), || {}).unwrap();
+        let ctx = Context::default();
+        let view = Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 720.0));
+        let place = Place::new(view, [1280, 720], &endoscope);
+        let painter = Painter::new(ctx, egui::LayerId::background(), view);
+        let seen = Seen { painter: &painter, place: &place, camera: &camera, ceiling_n: 4.0 };
+        let mut squares = 0.0;
+        let tips = [[0.0, 0.0], [0.03, 0.02], [-0.03, 0.02], [0.025, -0.025], [-0.04, -0.01], [0.0, 0.035]];
+        for [x_m, y_m] in tips {
+            *tip_m.lock().unwrap() = Vector3::new(x_m, y_m, 0.004);
+            let picture = picture_after(&feed, now_us());
+            let is = place.at(&mark_px(&picture));
+            let drawn = seen.at(&Vector3::new(x_m, y_m, 0.004)).unwrap();
+            squares += (is - drawn).length_sq();
+        }
+        let rms = (squares / tips.len() as f32).sqrt();
+        assert!(rms <= 5.0, "k1 {k1}: {rms} points, one of which is a pixel here");
+    }
+}
+
+fn scene_trocar() -> Vector3<f64> {
+    Vector3::new(0.05, -0.06, 0.14)
+}
+
+/// The filled rectangles that a plate leaves.
+fn plates(tips: &[Pos2]) -> Vec<Rect> {
+    let view = Rect::from_min_size(pos2(0.0, 0.0), vec2(900.0, 470.0));
+    let mut plates = Vec::new();
+    let ctx = Context::default();
+    theme::apply(&ctx);
+    let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
+        let painter = ui.ctx().layer_painter(egui::LayerId::background()).with_clip_rect(view);
+        let cure = text::eyes::FROZEN_CURE;
+        wrong_ui(&painter, view, tips, [&text::eyes::frozen(Duration::from_secs(2)), cure], Color32::RED);
+    });
+    output.textures_delta.clear();
+    for clipped in output.shapes {
+        if let egui::Shape::Rect(rect) = clipped.shape {
+            plates.push(rect.rect);
+        }
+    }
+    plates
+}
+
+#[test]
+fn words_over_the_picture_never_cover_a_tip() {
+    let free = plates(&[]);
+    assert_eq!(free.len(), 1, "{free:?}");
+    let covered = free[0].center();
+    let other = plates(&[covered]);
+    assert!(other.len() == 1 && !other[0].contains(covered), "{other:?}");
+    let both = plates(&[covered, other[0].center()]);
+    assert!(both.len() == 1 && !both[0].contains(covered) && !both[0].contains(other[0].center()), "{both:?}");
+}

@@ -1,0 +1,68 @@
+//! The endoscope's picture.
+
+use std::time::Duration;
+
+pub(in crate::console) const WAITING: &str = "Waiting for the endoscope's picture";
+pub(in crate::console) const ENDOSCOPE: &str = "Endoscope";
+pub(in crate::console) const STILL: &str = "One picture, which does not move";
+pub(in crate::console) const BLACK: &str = "Picture is black";
+pub(in crate::console) const BLACK_CURE: &str = "Switch the light source on, and take the cap off the lens";
+pub(in crate::console) const FROZEN_CURE: &str = "What you see is the past. Check the camera and its cable.";
+pub(in crate::console) const LATE_CURE: &str = "Move slowly. Give the camera a line of its own, or a smaller picture.";
+pub(in crate::console) const DAMAGED_CURE: &str = "The last whole picture is shown. Check the cable to the camera.";
+pub(in crate::console) const SIZE_CURE: &str =
+    "Set the camera to the size that the rig file has. Until then no forces are drawn.";
+pub(in crate::console) const FORCES_DRAWN: &str = "Forces are drawn at the tips; O hides them";
+pub(in crate::console) const FORCES_HIDDEN: &str = "O draws the forces at the tips";
+pub(in crate::console) const NO_CAMERA: &str = "No forces are drawn: the rig file has no [endoscope.camera]";
+
+/// No new picture for so long.
+pub(in crate::console) fn frozen(stood: Duration) -> String {
+    format!("Picture is frozen: nothing new for {:.1} s", stood.as_secs_f64())
+}
+
+/// How old a late picture is.
+pub(in crate::console) fn late(late: Duration) -> String {
+    format!("Picture is {} ms old", 10 * (late.as_millis() / 10))
+}
+
+/// A picture that cannot be shown.
+pub(in crate::console) fn damaged(why: &str) -> String {
+    format!("Picture is damaged: {why}")
+}
+
+/// A picture of another size, px.
+pub(in crate::console) fn size([width, height]: [usize; 2], [wanted_width, wanted_height]: [usize; 2]) -> String {
+    format!("Picture is {width} x {height} pixels, not {wanted_width} x {wanted_height}")
+}
+
+/// There is no picture.
+pub(in crate::console) fn lost(why: &str) -> String {
+    format!("Picture is lost: {why}")
+}
+
+/// The address cannot be used.
+pub(in crate::console) fn refused(why: &str) -> String {
+    format!("No picture: {why}")
+}
+
+/// What to do about an address that cannot be used.
+pub(in crate::console) const REFUSED_CURE: &str = "Correct endoscope.url in the rig file";
+
+/// Age and rate of the picture.
+pub(in crate::console) fn figures(age: Duration, rate_hz: f64) -> String {
+    format!("{} ms old, {rate_hz:.0} pictures a second", age.as_millis())
+}
+
+/// The whole picture in words.
+pub(in crate::console) fn picture(standing: &str) -> String {
+    format!("Endoscope's picture: {standing}")
+}
+
+/// A picture that comes as it should.
+pub(in crate::console) const LIVE: &str = "live";
+
+/// Label of a force at a tip, N.
+pub(in crate::console) fn force(size_n: f64) -> String {
+    format!("{size_n:.1} N")
+}

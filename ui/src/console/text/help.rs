@@ -79,7 +79,7 @@ pub(in crate::console) const KEYS_HEADING: &str = "Keys";
 pub(in crate::console) const WORDS_HEADING: &str = "Terms";
 
 /// All keys with their functions.
-pub(in crate::console) const KEYS: [(&str, &str); 23] = [
+pub(in crate::console) const KEYS: [(&str, &str); 24] = [
     ("Space, Escape", "Stop, in every view. While you type a name, only Escape."),
     ("F1, F2, F3", "Surgeon, Technician, Demo."),
     ("F4", "This list of keys and terms."),

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use nima_core::impedance::Mode;
 use nima_machine::{
     messages::{Command, Tick},
-    rig::Act,
+    rig::{Act, Side},
 };
 use nima_tests::plan;
 use nima_world::scene::Scene;
@@ -72,13 +72,13 @@ fn commands_are_replayed_when_they_came() {
 /// Somebody leads the right instrument by the screen for a while, opens and closes its jaws, and begins the trial anew.
 fn by_mouse(tick: &Tick) -> Option<Command> {
     Some(match tick.index {
-        9_000 => Command::Guide(Some(Vector3::new(0.02, -0.01, 0.02))),
-        9_500 => Command::Grip(Some(0.7)),
-        11_000 => Command::Guide(Some(Vector3::new(0.02, 0.0, 0.004))),
-        12_000 => Command::Grip(Some(0.0)),
-        13_000 => Command::Task(Act::Begin),
-        14_000 => Command::Grip(None),
-        14_500 => Command::Guide(None),
+        9_000 => Command::Guide(Side::Right, Some(Vector3::new(0.02, -0.01, 0.02))),
+        9_500 => Command::Grip(Side::Right, Some(0.7)),
+        11_000 => Command::Guide(Side::Right, Some(Vector3::new(0.02, 0.0, 0.004))),
+        12_000 => Command::Grip(Side::Right, Some(0.0)),
+        13_000 => Command::Task(Side::Right, Act::Begin),
+        14_000 => Command::Grip(Side::Right, None),
+        14_500 => Command::Guide(Side::Right, None),
         _ => return None,
     })
 }

@@ -4,6 +4,7 @@
 mod console;
 mod first_day;
 mod past;
+mod player;
 mod playing;
 mod real_window;
 mod server;

@@ -11,7 +11,7 @@ use nima_machine::{
     rig::{Act, SIDES, Side},
 };
 
-use super::{Camera, Live, Outbox};
+use super::{Camera, Live, Outbox, training};
 use crate::console::{text, theme};
 
 /// Motion per press of an arrow key, m.
@@ -19,11 +19,13 @@ const STEP_M: f32 = 0.001;
 /// How far the key opens the jaws, rad; jaws that hold a ring are nearer to closed than this share of it.
 const OPEN_RAD: f64 = 0.6;
 const OPEN_SHARE: f64 = 0.8;
-/// Change of height per point of the wheel, m.
-const WHEEL_M: f32 = 0.0001;
+/// Change of height per point of the wheel, m: 4 mm for a notch.
+const WHEEL_M: f32 = 0.00005;
 /// Space in which the instrument may be led: half width, half depth, lowest and highest, m.
 const SIDE_M: f32 = 0.055;
 const HEIGHT_M: std::ops::RangeInclusive<f32> = -0.02..=0.095;
+/// Deepest into a board, m: the simulated hand presses on it with 2 N then.
+const INTO_BOARD_M: f32 = 0.002;
 
 /// Which instrument is led, and to which position.
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,6 +38,8 @@ pub(super) struct Lead {
     open: [Option<bool>; SIDES],
     /// Where the pointer was last, while it drags the instrument.
     drag: Option<Pos2>,
+    /// How low it may be led, m.
+    lowest_m: f32,
 }
 
 impl Lead {
@@ -69,6 +73,8 @@ impl Lead {
 
     /// Begins: every instrument is held where its hand is now, and one of them is led.
     fn take(&mut self, live: &Live, outbox: &mut Outbox) {
+        let board_m = training::board_of(&live.scene).map(|board| board.z_m as f32 - INTO_BOARD_M);
+        self.lowest_m = board_m.unwrap_or(*HEIGHT_M.start());
         for side in live.sides() {
             let at_m = live.tick_of(side).map(|tick| tick.leader_m.cast());
             self.at_m[side.index()] = at_m;
@@ -182,7 +188,7 @@ impl Lead {
     /// Moves the instrument that is led so far, m.
     fn step(&mut self, way_m: Vector3<f32>) {
         if let Some(at_m) = &mut self.at_m[self.side.index()] {
-            *at_m = within(*at_m + way_m);
+            *at_m = within(*at_m + way_m, self.lowest_m);
         }
     }
 
@@ -190,15 +196,15 @@ impl Lead {
     /// for a click and leaves out what came with the release.
     fn drag_to(&mut self, pos: Pos2, camera: &Camera, rect: Rect) {
         let (Some(from), Some(at_m)) = (&mut self.drag, &mut self.at_m[self.side.index()]) else { return };
-        *at_m = within(moved_m(at_m, pos - std::mem::replace(from, pos), camera, rect));
+        *at_m = within(moved_m(at_m, pos - std::mem::replace(from, pos), camera, rect), self.lowest_m);
     }
 }
 
-fn within(at_m: Vector3<f32>) -> Vector3<f32> {
+fn within(at_m: Vector3<f32>, lowest_m: f32) -> Vector3<f32> {
     Vector3::new(
         at_m.x.clamp(-SIDE_M, SIDE_M),
         at_m.y.clamp(-SIDE_M, SIDE_M),
-        at_m.z.clamp(*HEIGHT_M.start(), *HEIGHT_M.end()),
+        at_m.z.min(*HEIGHT_M.end()).max(lowest_m),
     )
 }
 
@@ -213,4 +219,27 @@ fn moved_m(at_m: &Vector3<f32>, way: Vec2, camera: &Camera, rect: Rect) -> Vecto
         let way_m = way * camera.metres_per_point(rect.height());
         at_m + camera.right() * way_m.x - camera.away() * way_m.y
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::pos2;
+    use nima_world::scene::Scene;
+
+    use super::*;
+
+    #[test]
+    fn the_tip_stays_under_the_pointer_and_within_the_space_where_it_may_be_led() {
+        let rect = Rect::from_min_max(pos2(100.0, 50.0), pos2(900.0, 650.0));
+        let camera = Camera::of(&Scene::load("rings").unwrap());
+        let (at_m, way) = (Vector3::new(0.01, -0.01, 0.03), vec2(37.0, -21.0));
+        let to_m = moved_m(&at_m, way, &camera, rect);
+        let went = camera.project(&to_m, rect).unwrap() - camera.project(&at_m, rect).unwrap();
+        assert!((went - way).length() < 0.05 && (to_m.z - at_m.z).abs() < 1e-6, "{went:?}");
+        let flat = Camera { pitch: 0.05, ..camera };
+        assert!((moved_m(&at_m, way, &flat, rect) - at_m).norm() < 0.03, "seen flat, a point is no more than it was");
+        let low = within(Vector3::new(0.2, -0.2, -0.1), -0.002);
+        assert_eq!(low, Vector3::new(SIDE_M, -SIDE_M, -0.002));
+        assert!((within(Vector3::z(), -0.002).z - HEIGHT_M.end()).abs() < 1e-9);
+    }
 }

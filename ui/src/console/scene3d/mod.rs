@@ -267,6 +267,9 @@ fn triangles(
 /// enough for the endoscope to see it.
 const NAME_ABOVE_M: [f32; 2] = [0.05, 0.085];
 
+/// Least distance between the names of a hand and of its trocar, points.
+const NAMES_APART: f32 = 30.0;
+
 /// Names and numbers beside the objects of one side.
 fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm, view: &SceneView) {
     let figures = view.figures;
@@ -274,7 +277,16 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
     let Arm { trocar_m, pose, side, .. } = arm;
     // Not below the readings.
     let free = |place: &Pos2| !figures || place.y > rect.top() + 116.0 || place.x > rect.left() + readings_width(live);
-    if let Some(place) = at(*trocar_m).filter(free) {
+    let along = (trocar_m - pose.tip_m).try_normalize(1e-4).unwrap_or_else(Vector3::z);
+    let (align, shift) = match side {
+        Side::Right => (Align2::LEFT_CENTER, vec2(20.0, 0.0)),
+        Side::Left => (Align2::RIGHT_CENTER, vec2(-20.0, 0.0)),
+    };
+    let name_at = at(pose.tip_m + along * NAME_ABOVE_M[usize::from(figures)]);
+    let name_at = name_at.filter(|place| live.is_bimanual() && free(place));
+    // The name of a hand that is held high is there.
+    let beside_name = |place: &Pos2| name_at.is_none_or(|name| name.distance(*place) > NAMES_APART);
+    if let Some(place) = at(*trocar_m).filter(free).filter(beside_name) {
         label(
             painter,
             place + vec2(18.0, 0.0),
@@ -284,13 +296,7 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
             theme::DARK.text_weak,
         );
     }
-    let along = (trocar_m - pose.tip_m).try_normalize(1e-4).unwrap_or_else(Vector3::z);
-    let (align, shift) = match side {
-        Side::Right => (Align2::LEFT_CENTER, vec2(20.0, 0.0)),
-        Side::Left => (Align2::RIGHT_CENTER, vec2(-20.0, 0.0)),
-    };
-    let name_at = at(pose.tip_m + along * NAME_ABOVE_M[usize::from(figures)]).filter(free);
-    if let (true, Some(place)) = (live.is_bimanual(), name_at) {
+    if let Some(place) = name_at {
         let name = side_name(*side);
         let words = if view.lead.side() == Some(*side) { text::field::led(name) } else { name.to_owned() };
         label(painter, place + shift, align, &words, theme::strong(15.0), theme::DARK.text);
@@ -407,6 +413,9 @@ fn hint(painter: &Painter, rect: Rect, live: &Live, view: &SceneView) {
         Some(problem) => (text::field::not_drawn(problem), theme::DARK.text),
         None if view.lead.is_on() => {
             (text::field::lead_hover(live.scene.objects.is_some(), live.is_bimanual()), theme::DARK.text)
+        }
+        None if training::needs_another_mode(live) => {
+            (format!("{}\n{}", text::training::CHOOSE_MATCHED, text::field::VIEW_HOVER), theme::DARK.text)
         }
         None if view.look == Look::Endoscope => (text::field::RESET_VIEW.to_owned(), theme::DARK.text_weak),
         None => (text::field::VIEW_HOVER.to_owned(), theme::DARK.text_weak),

@@ -2,6 +2,7 @@
 
 use egui::{Color32, Label, Rect, RichText, Ui, vec2};
 use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::impedance::Mode;
 use nima_machine::rig::Side;
 use nima_world::{Training, scene::Scene};
 
@@ -132,6 +133,16 @@ pub(super) fn told(live: &Live, led: Option<Side>, reach: Option<Reach>) -> Opti
     })
 }
 
+/// Above this delay, s, two hands that hold one ring drive each other through the link with the modes that carry force.
+const LONG_S: f64 = 0.01;
+
+/// Whether the rings will end in a fault with the present mode.
+pub(super) fn needs_another_mode(live: &Live) -> bool {
+    let carries_force = matches!(live.mode(), Mode::Best | Mode::Anchored);
+    let shares_rings = live.scene.objects.is_some() && live.is_bimanual();
+    shares_rings && carries_force && live.delay_s() > LONG_S && !live.is_shown_only()
+}
+
 const fn name_of(reach: Reach) -> &'static str {
     match reach {
         Reach::Above(_) => text::training::JAWS_ABOVE,
@@ -210,6 +221,18 @@ mod tests {
         assert_eq!(left(Some(Reach::Between(4))), format!("Left instrument around a ring. Rings: {counted}"));
         let done = Training { passed: 12, placed: 12, ended: true, ..Training::default() };
         assert_eq!(told(&done, None, None), "Task done. Rings: passed 12, placed 12, dropped 0");
+    }
+
+    #[test]
+    fn two_hands_on_rings_are_told_which_mode_they_need() {
+        let needs = |scene: &str, mode: Mode, delay_s: f64| {
+            let mut rig = RigConfig::load("simulated").unwrap();
+            (rig.mode, rig.delay_s) = (mode, delay_s);
+            needs_another_mode(&Live::new(rig, Scene::load(scene).unwrap()))
+        };
+        assert!(needs("rings", Mode::Best, 0.05) && needs("rings", Mode::Anchored, 0.05));
+        assert!(!needs("rings", Mode::Matched, 0.05) && !needs("rings", Mode::Best, 0.0));
+        assert!(!needs("bimanual", Mode::Best, 0.05), "there each hand presses for itself");
     }
 
     #[test]

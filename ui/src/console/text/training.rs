@@ -36,3 +36,6 @@ pub(in crate::console) fn rings(led: Option<&str>, [passed, placed, dropped]: [u
     let led = led.map(|words| format!("{words}. ")).unwrap_or_default();
     format!("{done}{led}Rings: passed {passed}, placed {placed}, dropped {dropped}")
 }
+
+pub(in crate::console) const CHOOSE_MATCHED: &str =
+    "Two hands on one ring need the mode Matched: with this one the loop ends in a fault";

@@ -1,0 +1,454 @@
+//! A person at mouse and keyboard of the real window, who plays with rings.
+//!
+//! The player knows the board and from where the camera looks, and sees the rest: where the tip is by the circle and the line below it, where a
+//! ring lies by its colour, and by a second circle that the jaws hold it.
+#![cfg(target_os = "linux")]
+use std::{
+    path::{Path, PathBuf},
+    process::Command,
+    thread,
+    time::{Duration, Instant},
+};
+
+use eframe::App as _;
+use egui::{Pos2, Rect, Vec2, pos2, vec2};
+use egui_kittest::{Harness, kittest::Queryable as _};
+use nalgebra::Vector3;
+use nima_console::console::{ConsoleApp, scene3d::Camera};
+use nima_machine::rig::{SIDES, Side};
+use nima_world::{scene::Scene, start_watched};
+
+use crate::{
+    console::{Console, read},
+    server::Xvfb,
+};
+
+const WINDOW: [f32; 2] = [1600.0, 1000.0];
+const ENGAGE: (i32, i32) = (1380, 36);
+/// Colour of the circle around the tip that is led, and where between it and a double one the width of what is seen lies, points.
+const MARK: [u8; 3] = [0x9c, 0xe8, 0x7a];
+const MARK_PIXELS: usize = 20;
+const DOUBLE: f32 = 27.0;
+/// Colours of alarms (`theme::Palette`), and fewer pixels than the frame of one has.
+const ALARMS: [[u8; 3]; 3] = [[0xff, 0x4d, 0x4d], [0xff, 0xd7, 0x3d], [0x41, 0xd6, 0xe0]];
+const ALARM_PIXELS: usize = 800;
+/// So near to where it was led the tip is there, points; patience of a player who waits for that.
+const NEAR: f32 = 3.0;
+const PATIENCE: Duration = Duration::from_secs(12);
+const LOOKS_AGAIN: Duration = Duration::from_secs(2);
+/// From the middle of a ring to that of its tube, m.
+const RIM_M: f32 = 0.00725;
+/// Heights of the tip, m: with an empty hand and with a ring above the pegs, above a ring that the other hand holds, at a ring on the board,
+/// and where a ring is let go over its peg.
+const PARKED_M: f32 = 0.060;
+const CARRIED_M: f32 = 0.037;
+const OVER_RING_M: f32 = 0.058;
+const LOW_M: f32 = 0.001;
+const LET_GO_M: f32 = 0.015;
+/// Height of the middle of a ring on the board, m, and how far from its peg's middle a ring's own can be seen, m.
+const LIES_M: f32 = 0.00175;
+const AROUND_M: f32 = 0.0135;
+
+/// Part of the screen.
+struct Picture {
+    corner: Pos2,
+    width: usize,
+    rgb: Vec<u8>,
+}
+
+impl Picture {
+    /// Middles of the pixels of such a colour.
+    fn places(&self, is_so: impl Fn([u8; 3]) -> bool) -> Vec<Pos2> {
+        let pixels = self.rgb.chunks_exact(3).enumerate();
+        let wanted = pixels.filter(|(_, pixel)| is_so([pixel[0], pixel[1], pixel[2]]));
+        let place = |i: usize| self.corner + vec2((i % self.width) as f32 + 0.5, (i / self.width) as f32 + 0.5);
+        wanted.map(|(i, _)| place(i)).collect()
+    }
+
+    /// The middle of the circle around the tip, and whether it is double: the jaws hold a ring.
+    fn mark(&self) -> Option<(Pos2, bool)> {
+        let places = self.places(|pixel| pixel == MARK);
+        let around = around(&places).filter(|_| places.len() >= MARK_PIXELS)?;
+        Some((around.center(), around.width() > DOUBLE))
+    }
+}
+
+/// The rectangle around these places; `None` if there are none.
+fn around(places: &[Pos2]) -> Option<Rect> {
+    (!places.is_empty()).then(|| Rect::from_points(places))
+}
+
+/// A ring that no jaws are near, however it is lit.
+fn is_of_ring([r, g, b]: [u8; 3]) -> bool {
+    let [r, g, b] = [r, g, b].map(i32::from);
+    r > g + 25 && g > b + 12
+}
+
+/// The circle, the line and the mark below, where nothing else is green.
+fn is_green([r, g, b]: [u8; 3]) -> bool {
+    let [r, g, b] = [r, g, b].map(i32::from);
+    g > r + 20 && g > b + 25
+}
+
+pub(crate) struct Player<'a> {
+    console: Console<'a>,
+    scene: Scene,
+    camera: Camera,
+    views: Views,
+    /// The one of them that is on the screen.
+    view: Rect,
+    led: Side,
+    /// Where the tips were led to, m, and where they were dragged to last.
+    at_m: [Vector3<f32>; SIDES],
+    goal: [Option<[f32; 2]>; SIDES],
+    /// What `xdotool` will do.
+    steps: Vec<String>,
+}
+
+/// Where the operating field is in the window, without and with the strip of an alarm above it.
+#[derive(Clone, Copy)]
+pub(crate) struct Views {
+    calm: Rect,
+    alarmed: Rect,
+}
+
+/// The same window without a screen tells where the field is.
+pub(crate) fn field() -> Views {
+    let plan = nima_tests::plan("rings");
+    let (handle, objects) = start_watched(&plan, 1.0).unwrap();
+    let mut window: Harness<'_, ConsoleApp> = Harness::builder()
+        .with_size(WINDOW)
+        .build_eframe(move |cc| ConsoleApp::new(cc, handle, plan.rig, plan.scene).with_objects(objects));
+    window.run_steps(4);
+    let calm = window.get_by_label("Operating field").rect();
+    window.state_mut().on_exit(None);
+    // A loop that does not run any more is an alarm.
+    let began = Instant::now();
+    loop {
+        window.run_steps(2);
+        let alarmed = window.get_by_label("Operating field").rect();
+        if alarmed != calm {
+            return Views { calm, alarmed };
+        }
+        assert!(began.elapsed() < PATIENCE, "no strip moves the field");
+        thread::sleep(Duration::from_millis(50));
+    }
+}
+
+impl<'a> Player<'a> {
+    pub(crate) fn begin(x: &'a Xvfb, views: Views) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("console.json"), r#"{"toured":true}"#).unwrap();
+        let rig = include_str!("../../../config/rigs/simulated.toml").replace("\"best\"", "\"matched\"");
+        std::fs::write(folder.path().join("rig.toml"), rig).unwrap();
+        let rig = folder.path().join("rig.toml").display().to_string();
+        let options = ["--rig", &rig, "--scene", "rings", "--role", "technician", "--at-rest"];
+        let console = Console::begin(x, folder, &options);
+        let scene = Scene::load("rings").unwrap();
+        let camera = Camera::of(&scene);
+        let (view, at_m, goal) = (views.calm, [Vector3::zeros(); SIDES], [None; SIDES]);
+        let (led, steps) = (Side::Right, Vec::new());
+        let mut player = Self { console, scene, camera, views, view, led, at_m, goal, steps };
+        player.keys("m", 1);
+        player.perform();
+        thread::sleep(Duration::from_millis(300));
+        player.console.click(ENGAGE);
+        for _ in Side::ALL {
+            player.find_tip();
+            player.change();
+            player.perform();
+        }
+        player
+    }
+
+    fn picture(&self, part: Rect) -> Picture {
+        let part = part.intersect(Rect::from_min_size(Pos2::ZERO, WINDOW.into()));
+        let (corner, size) = (part.min.round(), part.size().round());
+        let crop = format!("{}x{}+{}+{}", size.x, size.y, corner.x, corner.y);
+        let mut import = self.console.x.command("import");
+        // The loop needs the other processors.
+        import.env("MAGICK_THREAD_LIMIT", "1");
+        let rgb = import.args(["-window", "root", "-crop", &crop, "-depth", "8", "rgb:-"]).output().unwrap().stdout;
+        assert_eq!(rgb.len(), 3 * size.x as usize * size.y as usize, "{crop}");
+        Picture { corner, width: size.x as usize, rgb }
+    }
+
+    fn place(&self, at_m: &Vector3<f32>) -> Pos2 {
+        self.camera.project(at_m, self.view).unwrap()
+    }
+
+    fn level(&self, place: Pos2, height_m: f32) -> Vector3<f32> {
+        self.camera.on_level(place, self.view, height_m).unwrap()
+    }
+
+    fn at(&self) -> Vector3<f32> {
+        self.at_m[self.led.index()]
+    }
+
+    /// Where the tip is, which is on its own side: the line below it ends on the board.
+    fn find_tip(&mut self) {
+        let began = Instant::now();
+        self.at_m[self.led.index()] = loop {
+            let picture = self.picture(self.view);
+            let green = picture.places(is_green);
+            let lowest = green.iter().copied().max_by(|one, other| one.y.total_cmp(&other.y));
+            let is_right = self.led == Side::Right;
+            let mark = picture.mark().filter(|(tip, _)| (tip.x > self.view.center().x) == is_right);
+            if let Some(((tip, _), lowest)) = mark.zip(lowest) {
+                // Half of the mark below.
+                let foot_m = self.level(lowest - vec2(0.0, 2.0), 0.0);
+                let height = |z: f32| (self.place(&Vector3::new(foot_m.x, foot_m.y, z)).y - tip.y).abs();
+                let heights = (0..1000).map(|i| 0.0001 * i as f32);
+                let z = heights.min_by(|one, other| height(*one).total_cmp(&height(*other))).unwrap_or_default();
+                break self.level(tip, z);
+            }
+            assert!(began.elapsed() < PATIENCE, "there is no circle around the tip of the {} side", self.led.word());
+            thread::sleep(Duration::from_millis(100));
+        };
+    }
+
+    /// Notes something to be done by `xdotool`, which [`Self::perform`] does: one process, not dozens.
+    fn tool(&mut self, steps: &[&str]) {
+        self.steps.extend(steps.iter().map(|step| (*step).to_owned()));
+    }
+
+    fn keys(&mut self, key: &str, times: usize) {
+        if times > 0 {
+            self.tool(&["key", "--delay", "1"]);
+            self.steps.extend(std::iter::repeat_n(key.to_owned(), times));
+        }
+    }
+
+    fn perform(&mut self) {
+        let steps = std::mem::take(&mut self.steps);
+        if !steps.is_empty() {
+            assert!(self.console.x.command("xdotool").args(&steps).status().unwrap().success(), "{steps:?}");
+        }
+    }
+
+    /// Leads the other instrument.
+    pub(crate) fn change(&mut self) {
+        self.keys("h", 1);
+        self.led = self.led.other();
+    }
+
+    /// Opens or closes the jaws.
+    pub(crate) fn jaws(&mut self) {
+        self.keys("g", 1);
+    }
+
+    fn height(&mut self, to_m: f32) {
+        let steps = ((to_m - self.at().z) * 1e3).round();
+        self.keys(if steps > 0.0 { "Page_Up" } else { "Page_Down" }, steps.abs() as usize);
+        self.at_m[self.led.index()].z += steps * 1e-3;
+    }
+
+    /// Drags the tip to this place, at its height.
+    pub(crate) fn drag(&mut self, [x, y]: [f32; 2]) {
+        let at_m = self.at();
+        self.goal[self.led.index()] = Some([x, y]);
+        let from = self.place(&at_m);
+        let way = (self.place(&Vector3::new(x, y, at_m.z)) - from).round();
+        if way == Vec2::ZERO {
+            return;
+        }
+        // Within the view, and not where its buttons are.
+        let inside = self.view.shrink(60.0);
+        let room = Rect::from_min_max(inside.min - way.min(Vec2::ZERO), inside.max - way.max(Vec2::ZERO));
+        let press = from.clamp(room.min, room.max).round();
+        let to = press + way;
+        let word = |number: f32| format!("{number:.0}");
+        for (place, then) in [(press, "mousedown"), (press + 0.5 * way, ""), (to, "mouseup")] {
+            self.tool(&["mousemove", &word(place.x), &word(place.y)]);
+            if !then.is_empty() {
+                self.tool(&[then, "1"]);
+            }
+        }
+        self.at_m[self.led.index()] = self.level(from + way, at_m.z);
+    }
+
+    /// Does what was noted and waits until the tip is where it was led, and holds a ring or not as wanted.
+    pub(crate) fn settle(&mut self, what: &str, holds: bool) {
+        self.perform();
+        let (began, mut looked) = (Instant::now(), Instant::now());
+        loop {
+            let wanted = self.place(&self.at());
+            let seen = self.picture(Rect::from_center_size(wanted, Vec2::splat(80.0))).mark();
+            if seen.is_some_and(|(tip, held)| held == holds && tip.distance(wanted) < NEAR) {
+                return;
+            }
+            if looked.elapsed() > LOOKS_AGAIN {
+                self.look_again();
+                looked = Instant::now();
+            }
+            if began.elapsed() > PATIENCE {
+                let anywhere = self.picture(self.view).mark();
+                self.keep_picture();
+                panic!(
+                    "{what}, {} side: wanted at {wanted:?}, holding {holds}; seen there {seen:?}, anywhere {anywhere:?}",
+                    self.led.word()
+                );
+            }
+        }
+    }
+
+    /// A loop that this machine holds up raises an alarm, whose strip moves the field.
+    fn sees_alarm(&self) -> bool {
+        let strip = Rect::from_min_size(pos2(0.0, 60.0), vec2(WINDOW[0], 70.0));
+        self.picture(strip).places(|pixel| ALARMS.contains(&pixel)).len() > ALARM_PIXELS
+    }
+
+    /// Finds the field again.
+    fn find_field(&mut self) {
+        // The strip may flash.
+        let is_alarmed = (0..4).any(|_| {
+            thread::sleep(Duration::from_millis(150));
+            self.sees_alarm()
+        });
+        self.view = if is_alarmed { self.views.alarmed } else { self.views.calm };
+    }
+
+    /// Where a tip is not where it was dragged to, the field has moved meanwhile: the tip is dragged once more.
+    fn look_again(&mut self) {
+        self.find_field();
+        let (mark, goal) = (self.picture(self.view).mark(), self.goal[self.led.index()]);
+        if let Some(((tip, _), goal)) = mark.zip(goal) {
+            self.at_m[self.led.index()] = self.level(tip, self.at().z);
+            self.drag(goal);
+            self.perform();
+        }
+    }
+
+    /// For whoever wants to see what went wrong: where `NIMA_PICTURES` says.
+    pub(crate) fn keep_picture(&self) {
+        if let Some(folder) = std::env::var_os("NIMA_PICTURES") {
+            let path = Path::new(&folder).join("playing.png");
+            self.console.x.command("import").args(["-window", "root"]).arg(path).status().unwrap();
+        }
+    }
+
+    /// The outer rim of a ring with its middle here, seen from a side.
+    pub(crate) fn rim(side: Side, [x, y]: [f32; 2]) -> [f32; 2] {
+        [if side == Side::Left { x - RIM_M } else { x + RIM_M }, y]
+    }
+
+    fn peg(&self, number: usize) -> [f32; 2] {
+        self.scene.objects.as_ref().unwrap().pegs.at_m[number].map(|m| m as f32)
+    }
+
+    /// Where the middle of the ring is that lies around this peg.
+    fn ring_around(&mut self, peg: [f32; 2]) -> [f32; 2] {
+        for _ in 0..4 {
+            if let Some(ring) = self.sees_ring(peg) {
+                return ring;
+            }
+            self.find_field();
+        }
+        self.keep_picture();
+        panic!("no ring lies around the peg at {peg:?} m");
+    }
+
+    fn sees_ring(&self, [x, y]: [f32; 2]) -> Option<[f32; 2]> {
+        let foot_m = Vector3::new(x, y, LIES_M);
+        let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
+        let corners = corners.map(|[right, away]| self.place(&(foot_m + Vector3::new(right, away, 0.0) * AROUND_M)));
+        let orange = self.picture(Rect::from_points(&corners)).places(is_of_ring);
+        let on_board = orange.iter().map(|place| self.level(*place, LIES_M) - foot_m);
+        let near: Vec<Pos2> =
+            on_board.filter(|from_foot_m| from_foot_m.norm() < AROUND_M).map(|from| pos2(from.x, from.y)).collect();
+        let ring = around(&near).filter(|ring| (0.015..0.021).contains(&ring.width()))?;
+        Some([x + ring.center().x, y + ring.center().y])
+    }
+
+    /// Takes a ring from its peg: with jaws that are open, from where it is above the pegs.
+    pub(crate) fn take(&mut self, side: Side, peg: usize) {
+        assert_eq!(self.led, side);
+        self.perform();
+        if self.sees_alarm() != (self.view == self.views.alarmed) {
+            self.find_field();
+        }
+        let ring = self.ring_around(self.peg(peg));
+        self.height(CARRIED_M);
+        self.drag(Self::rim(side, ring));
+        self.settle("above the ring", false);
+        self.height(LOW_M);
+        self.settle("around the ring", false);
+        self.jaws();
+        self.settle("closed", true);
+        self.height(CARRIED_M);
+        self.settle("lifted", true);
+    }
+
+    /// The other hand waits in the middle with open jaws, and takes over the ring that is brought there.
+    fn hand_over(&mut self) {
+        self.drag(Self::rim(self.led, [0.0, 0.0]));
+        self.settle("in the middle", true);
+        self.change();
+        self.height(CARRIED_M);
+        self.settle("around the ring in the middle", false);
+        self.jaws();
+        self.settle("closed in the middle", true);
+        self.change();
+        self.jaws();
+        self.settle("let go in the middle", false);
+        self.height(OVER_RING_M);
+        self.settle("out of the way", false);
+        self.change();
+    }
+
+    fn put(&mut self, peg: [f32; 2]) {
+        self.drag(Self::rim(self.led, peg));
+        self.settle("above the peg", true);
+        self.height(LET_GO_M);
+        self.settle("over the peg", true);
+        self.jaws();
+        self.settle("let go", false);
+        self.height(CARRIED_M);
+    }
+
+    /// Both hands stand above the middle, with open jaws; the one of this side is led.
+    pub(crate) fn get_ready(&mut self, first: Side) {
+        for side in [first.other(), first] {
+            if self.led != side {
+                self.change();
+            }
+            self.height(PARKED_M);
+            self.settle("parked", false);
+            self.drag(Self::rim(side, [0.0, 0.0]));
+            self.height(OVER_RING_M);
+            self.settle("ready", false);
+        }
+    }
+
+    /// A ring goes over from a peg to that one on the other side.
+    pub(crate) fn over(&mut self, giver: Side, from: usize, to: usize) {
+        if self.led != giver {
+            self.change();
+        }
+        self.take(giver, from);
+        self.hand_over();
+        self.put(self.peg(to));
+        // Back to where it will take over the next one.
+        let taker = giver.other();
+        self.height(OVER_RING_M);
+        self.drag(Self::rim(taker, [0.0, 0.0]));
+        self.settle("back in the middle", false);
+    }
+
+    /// The score of the session that was recorded, when the window was closed.
+    pub(crate) fn end(mut self) -> serde_json::Value {
+        thread::sleep(Duration::from_millis(1200));
+        let summary = self.console.end();
+        let states = summary["screen"]["states"].to_string();
+        assert!(!states.contains("Fault"), "the loop ended in a fault: {states}");
+        let sessions = self.console.folder.path().join("sessions");
+        let paths = std::fs::read_dir(sessions).unwrap().map(|entry| entry.unwrap().path());
+        let paths: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|of| of == "mcap")).collect();
+        assert_eq!(paths.len(), 1, "{paths:?}");
+        let score = Command::new(env!("CARGO_BIN_EXE_nima")).arg("score").args(&paths).arg("--json").output().unwrap();
+        assert!(score.status.success(), "{}", String::from_utf8_lossy(&score.stderr));
+        let out = self.console.folder.path().join("score.json");
+        std::fs::write(&out, score.stdout).unwrap();
+        read(&out)
+    }
+}

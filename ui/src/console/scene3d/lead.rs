@@ -29,6 +29,8 @@ pub(super) struct Lead {
     at_m: Option<Vector3<f32>>,
     /// The jaws are held open; not known before the first press of the key.
     open: Option<bool>,
+    /// It is led all the time and cannot be let go: the hand of a study's participant.
+    pub(super) is_held: bool,
 }
 
 impl Lead {
@@ -62,7 +64,7 @@ impl Lead {
     }
 
     /// What else is done in a training task, by keys.
-    fn acts(ui: &Ui, live: &Live, outbox: &mut Outbox) {
+    fn acts(&self, ui: &Ui, live: &Live, outbox: &mut Outbox) {
         if ui.ctx().text_edit_focused() {
             return;
         }
@@ -71,7 +73,7 @@ impl Lead {
         for (key, act, has) in [
             (Key::X, Act::Mark, is_searched),
             (Key::D, Act::End, is_searched),
-            (Key::N, Act::Begin, is_searched || on_wire),
+            (Key::N, Act::Begin, (is_searched || on_wire) && !self.is_held),
         ] {
             if has && pressed(key) {
                 outbox.push(Command::Task(act));
@@ -98,9 +100,13 @@ impl Lead {
         let text = if self.is_on() { text::field::LEAD_END } else { text::field::LEAD };
         let button =
             Button::selectable(self.is_on(), RichText::new(text).font(theme::strong(14.0))).frame_when_inactive(true);
-        let clicked = ui.add_enabled_ui(runs, |ui| ui.put(rect.intersect(place), button).clicked()).inner;
-        let pressed = !ui.ctx().text_edit_focused() && ui.input(|input| input.key_pressed(Key::M));
-        if runs && (clicked || pressed) {
+        let asked = if self.is_held {
+            !self.is_on() && live.first_tick().is_some()
+        } else {
+            let clicked = ui.add_enabled_ui(runs, |ui| ui.put(rect.intersect(place), button).clicked()).inner;
+            clicked || !ui.ctx().text_edit_focused() && ui.input(|input| input.key_pressed(Key::M))
+        };
+        if runs && asked {
             self.at_m = match self.at_m {
                 Some(_) => None,
                 None => live.first_tick().map(|tick| tick.leader_m.cast()),
@@ -108,11 +114,15 @@ impl Lead {
             outbox.push(Command::Guide(self.at_m.map(Vector3::cast)));
             if self.at_m.is_none() {
                 self.leave_jaws(outbox);
+            } else if self.is_held && live.scene.objects.is_some() {
+                // A simulated hand must not move the jaws of a participant.
+                self.open = Some(true);
+                outbox.push(Command::Grip(Some(OPEN_RAD)));
             }
         }
         if self.at_m.is_some() {
             self.jaws(ui, live, outbox);
-            Self::acts(ui, live, outbox);
+            self.acts(ui, live, outbox);
         }
         let Some(at_m) = &mut self.at_m else { return false };
         let before_m = *at_m;

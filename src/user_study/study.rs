@@ -1,26 +1,24 @@
 //! The folder of a study, and all that can be done with it.
 
+mod acts;
+mod making;
 mod sessions;
 
 use std::{
     fmt,
-    fs::{self, File},
-    io,
     path::{Path, PathBuf},
 };
 
-use nima_score::Score;
-
 use crate::{
-    Answers, Condition, Ending, Event, Exclusion, Label, Learning, Measures, Opened, Participant, Plan, State, Step,
-    StudyError, StudyFile, Table, TrialId,
-    entry::measures,
+    Event, Exclusion, Learning, Opened, Plan, State, Step, StudyError, Table,
     exclusion::exclusions,
     journal::{self, Journal},
     learning::learning,
     seal::{self, Key},
-    table, telling,
+    table,
 };
+
+pub use acts::Running;
 
 /// The journal's name in its folder.
 pub const JOURNAL: &str = "journal.jsonl";
@@ -58,63 +56,7 @@ impl fmt::Debug for Study {
     }
 }
 
-/// A trial that has begun. Its `Debug` does not tell the condition.
-#[derive(Debug)]
-pub struct Running {
-    participant: String,
-    trial: TrialId,
-    label: Option<Label>,
-    condition: Condition,
-    session: Option<PathBuf>,
-}
-
-impl Running {
-    /// Which trial.
-    pub const fn trial(&self) -> TrialId {
-        self.trial
-    }
-
-    /// What stands for its condition; nothing in practice.
-    pub const fn label(&self) -> Option<Label> {
-        self.label
-    }
-
-    /// What the hand is to feel: for the loop alone, nothing may show it.
-    pub const fn condition(&self) -> &Condition {
-        &self.condition
-    }
-
-    /// Where to record it, if it is to be recorded. Encrypted when the trial is over.
-    pub fn session(&self) -> Option<&Path> {
-        self.session.as_deref()
-    }
-}
-
 impl Study {
-    /// Makes the folder of a study: whole, or not at all. `scene` is the text of the scene file, which is kept in the folder.
-    ///
-    /// # Errors
-    /// A folder with something in it, mistakes in the file, whatever the system says.
-    pub fn create(folder: &Path, file: &StudyFile, scene: &str, at: &str) -> Result<Self, StudyError> {
-        file.check()?;
-        let is_empty = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
-        if folder.symlink_metadata().is_ok() && !is_empty {
-            return Err(StudyError::Exists { folder: folder.to_owned() });
-        }
-        let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-        fs::create_dir_all(parent).map_err(StudyError::io(parent))?;
-        let made = tempfile::Builder::new().prefix(".study-").tempdir_in(parent).map_err(StudyError::io(parent))?;
-        let failed = StudyError::io(folder);
-        let commitment = fill(made.path(), file, scene).map_err(failed)?;
-        let mut journal = Journal::create(&made.path().join(JOURNAL))?;
-        journal.append(at, Event::StudyMade { commitment })?;
-        drop(journal);
-        synced(made.path()).map_err(StudyError::io(folder))?;
-        fs::rename(made.path(), folder).map_err(StudyError::io(folder))?;
-        synced(parent).map_err(StudyError::io(parent))?;
-        Self::open(folder, at)
-    }
-
     /// Opens it to go on, for this program alone. A trial that had begun and has not ended was interrupted: that is written down.
     ///
     /// # Errors
@@ -213,140 +155,6 @@ impl Study {
         Ok(self.state.next(&self.plan, self.plan.participant(participant)?))
     }
 
-    /// Begins the trial that comes next; it is in the journal when this returns.
-    ///
-    /// # Errors
-    /// [`StudyError::NotNow`] if something else comes next.
-    pub fn begin_trial(&mut self, participant: &str, simulated: bool, at: &str) -> Result<Running, StudyError> {
-        let who = self.plan.participant(participant)?.clone();
-        let next = self.state.next(&self.plan, &who);
-        let (trial, label) = next.trial().ok_or_else(|| not_now(participant, "a trial", &next))?;
-        let condition = self.condition(&who, trial, label).cloned();
-        let condition = condition.ok_or_else(|| StudyError::Refused("the assignment has no such label".to_owned()))?;
-        let session = self.plan.record.then(|| self.session_of(participant, trial)).transpose()?;
-        if !self.state.progress(participant).is_some_and(|progress| progress.began) {
-            self.write(at, Event::ParticipantBegan { participant: participant.to_owned() })?;
-        }
-        self.write(at, Event::TrialBegan { participant: participant.to_owned(), trial, label, simulated })?;
-        Ok(Running { participant: participant.to_owned(), trial, label, condition, session })
-    }
-
-    fn condition(&self, who: &Participant, trial: TrialId, label: Option<Label>) -> Option<&Condition> {
-        if let Some(label) = label {
-            return self.secret.condition(label);
-        }
-        // Without a condition of its own, practice takes each in turn.
-        let turn = (trial.number as usize).checked_sub(1)? % who.order.len().max(1);
-        self.secret.practice().or_else(|| self.secret.condition(*who.order.get(turn)?))
-    }
-
-    /// Ends a trial that has a result.
-    ///
-    /// # Errors
-    /// Whatever the system says while writing.
-    pub fn end_trial(&mut self, running: Running, ending: Ending, score: &Score, at: &str) -> Result<(), StudyError> {
-        let is_told = self.state.is_open(&self.plan);
-        let (telling, told): (Measures, Measures) =
-            measures(score).into_iter().partition(|(key, _)| !is_told && telling::tells(key));
-        let withheld = (!telling.is_empty()).then(|| {
-            let text = serde_json::to_vec(&telling).map_err(io::Error::from)?;
-            self.key.seal(MEASURES, &text)
-        });
-        let withheld = withheld.transpose().map_err(StudyError::io(&self.folder))?;
-        let session = running.session.as_deref().filter(|path| path.is_file());
-        let session = session.map(|path| self.put_away(path)).transpose()?;
-        let Running { participant, trial, .. } = running;
-        self.write(at, Event::TrialEnded { participant, trial, ending, measures: told, withheld, session })
-    }
-
-    /// Gives up a trial; the rule of the study says what follows.
-    ///
-    /// # Errors
-    /// Whatever the system says while writing.
-    pub fn abort_trial(&mut self, running: Running, why: &str, at: &str) -> Result<(), StudyError> {
-        if let Some(path) = running.session.as_deref().filter(|path| path.is_file()) {
-            self.put_away(path)?;
-        }
-        let Running { participant, trial, .. } = running;
-        self.write(at, Event::TrialAborted { participant, trial, why: why.to_owned() })
-    }
-
-    /// Writes down a break, also one that was not due.
-    ///
-    /// # Errors
-    /// [`StudyError::Refused`] if it was shorter than the study asks for.
-    pub fn take_break(&mut self, participant: &str, seconds: f64, simulated: bool, at: &str) -> Result<(), StudyError> {
-        let next = self.next(participant)?;
-        if let Step::Break { least_s } = next
-            && seconds < least_s
-        {
-            return Err(StudyError::Refused(format!(
-                "{participant}: the break has to last {least_s:.0} s, and it was {seconds:.0} s"
-            )));
-        }
-        if matches!(next, Step::Running { .. }) || !seconds.is_finite() {
-            return Err(not_now(participant, "a break", &next));
-        }
-        self.write(at, Event::BreakTaken { participant: participant.to_owned(), seconds, simulated })
-    }
-
-    /// Takes the answers to the questionnaire that comes next.
-    ///
-    /// # Errors
-    /// [`StudyError::NotNow`] if another one comes next, [`StudyError::Answers`] if the form does not allow an answer.
-    pub fn answer(&mut self, participant: &str, answers: Answers, simulated: bool, at: &str) -> Result<(), StudyError> {
-        let next = self.next(participant)?;
-        let Step::Questionnaire { questionnaire, after } = next else {
-            return Err(not_now(participant, "a questionnaire", &next));
-        };
-        if questionnaire != answers.questionnaire() {
-            return Err(not_now(participant, answers.questionnaire().name(), &next));
-        }
-        answers.check().map_err(|why| StudyError::Answers { participant: participant.to_owned(), why })?;
-        self.write(at, Event::Answered { participant: participant.to_owned(), after, answers, simulated })
-    }
-
-    /// Leaves a participant out of the analysis, or one trial.
-    ///
-    /// # Errors
-    /// A trial that was not made.
-    pub fn exclude(&mut self, participant: &str, number: Option<u32>, why: &str, at: &str) -> Result<(), StudyError> {
-        self.plan.participant(participant)?;
-        if why.trim().is_empty() {
-            return Err(StudyError::Refused("an exclusion needs a reason".to_owned()));
-        }
-        self.write(at, Event::Excluded { participant: participant.to_owned(), number, why: why.to_owned() })
-    }
-
-    /// Keeps a note.
-    ///
-    /// # Errors
-    /// An unknown participant.
-    pub fn note(&mut self, participant: Option<&str>, text: &str, at: &str) -> Result<(), StudyError> {
-        participant.map(|name| self.plan.participant(name)).transpose()?;
-        self.write(at, Event::Noted { participant: participant.map(str::to_owned), text: text.to_owned() })
-    }
-
-    /// Opens the assignment: an act that is written down. From then on the tables name the conditions.
-    ///
-    /// # Errors
-    /// [`StudyError::Refused`] without a name and a reason, in a study that is not blind, and the second time.
-    pub fn unblind(&mut self, who: &str, why: &str, at: &str) -> Result<(), StudyError> {
-        let refused = |why: String| Err(StudyError::Refused(why));
-        if who.trim().is_empty() || why.trim().is_empty() {
-            return refused("an unblinding needs a name and a reason".to_owned());
-        }
-        if !self.plan.blind {
-            return refused("the study is not blind: its conditions are known".to_owned());
-        }
-        if let Some(before) = &self.state.unblinding {
-            return refused(format!("the study was unblinded already, by {} at {}", before.who, before.at));
-        }
-        let [who, why] = [who, why].map(|text| text.trim().to_owned());
-        self.write(at, Event::Unblinded { who, why, commitment: self.plan.commitment.clone() })?;
-        self.tidy()
-    }
-
     /// The table of trials for `nima study trials`.
     pub fn trials(&self) -> Table {
         let withheld = |sealed: &str| serde_json::from_slice(&self.key.open(MEASURES, sealed).ok()?).ok();
@@ -367,42 +175,4 @@ impl Study {
     pub fn learning(&self) -> Vec<Learning> {
         learning(&self.state)
     }
-
-    fn write(&mut self, at: &str, event: Event) -> Result<(), StudyError> {
-        let Some(journal) = &mut self.journal else { return Err(StudyError::ReadOnly) };
-        // What the state refuses must not stand in the journal, which could then not be read any more.
-        let mut state = self.state.clone();
-        let refused = |why: String| StudyError::Refused(why);
-        state.take(&self.plan, &crate::Entry { n: 0, at: at.to_owned(), event: event.clone() }).map_err(refused)?;
-        journal.append(at, event)?;
-        self.state = state;
-        Ok(())
-    }
-}
-
-fn not_now(participant: &str, asked: &str, next: &Step) -> StudyError {
-    StudyError::NotNow { participant: participant.to_owned(), asked: asked.to_owned(), next: next.to_string() }
-}
-
-/// Writes the files of a new study; gives the commitment.
-fn fill(folder: &Path, file: &StudyFile, scene: &str) -> io::Result<String> {
-    let key = Key::new()?;
-    let secret = serde_json::to_string_pretty(&Opened::draw(file)?)? + "\n";
-    let commitment = seal::hash(secret.as_bytes());
-    let plan = Plan::draw(file, commitment.clone())?;
-    let plan = toml::to_string(&plan).map_err(io::Error::other)?;
-    for (name, text) in
-        [(PLAN, &plan), (SCENE, &scene.to_owned()), (SEALED, &(key.seal(CONDITIONS, secret.as_bytes())? + "\n"))]
-    {
-        let path = folder.join(name);
-        nima_files::write_atomically(&path, |file| file.write_all(text.as_bytes()))?;
-        File::open(path)?.sync_all()?;
-    }
-    nima_files::write_private(&folder.join(KEY), &(key.to_hex() + "\n"))?;
-    Ok(commitment)
-}
-
-/// Names in a folder are on the disk too.
-fn synced(folder: &Path) -> io::Result<()> {
-    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }

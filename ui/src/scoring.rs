@@ -9,6 +9,7 @@ use nima_session::scored::{Trial, side_of};
 use nima_world::Watched;
 
 /// Scores from the first tick in which an arm is engaged.
+#[derive(Debug)]
 pub(crate) struct Scoring {
     trial: Trial,
     watched: Option<Watched>,
@@ -61,6 +62,11 @@ impl Scoring {
     /// Whether the task is done, or its time is over: what follows does not count.
     pub(crate) fn is_over(&self) -> bool {
         self.ended || self.begun_s.is_some_and(|begun_s| self.newest_s - begun_s > self.limit_s)
+    }
+
+    /// Time since the first tick in which an arm was engaged, s.
+    pub(crate) fn elapsed_s(&self) -> f64 {
+        self.begun_s.map_or(0.0, |begun_s| self.newest_s - begun_s)
     }
 
     fn pass_on(&mut self) {

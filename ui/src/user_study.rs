@@ -1,24 +1,38 @@
 //! Trials of a user study in the loop: from the sealed condition to a rig, from a simulated person to a scene, from a run to a score.
 
+use std::path::{Path, PathBuf};
+
 use anyhow::{Context as _, anyhow, bail};
 use nima_core::impedance::Mode;
 use nima_machine::{
     config::{ConfigError, RigConfig, text},
-    messages::{Command, LoopState, Tick},
+    messages::{Command, Fault, LoopState, Tick},
     runtime::{self, Assembly},
 };
 use nima_recording::store::utc_now;
+use nima_score::TaskFile;
 use nima_session::outlet::Destination;
-use nima_user_study::{Condition, Ending, Phase, Step, Study, StudyFile, TrialId, simulated::Hand};
+use nima_user_study::{
+    Condition, Ending, Mistakes, Phase, Running, Step, Study, StudyError, StudyFile, TrialId, simulated::Hand,
+};
 use nima_world::{Plan, Watched, scene::Scene};
 
 use crate::{leaving::Leave, objects::OfSimulation, recording, scoring::Scoring, words::Remedy as _};
 
+/// Names of the ready studies.
+pub(crate) const READY: [&str; 2] = ["paper", "short"];
 /// The ready study files.
 const STUDIES: [(&str, &str); 2] = [
     ("paper", include_str!("../../config/studies/paper.toml")),
     ("short", include_str!("../../config/studies/short.toml")),
 ];
+/// Why a trial was broken off that somebody gave up, for the journal.
+pub(crate) const GIVEN_UP: &str = "given up by the operator";
+/// The same for one that somebody stopped, whose loop ended, or whose window was closed.
+pub(crate) const STOPPED: &str = "stopped by the operator";
+pub(crate) const LOOP_ENDED: &str = "the loop ended";
+pub(crate) const CLOSED: &str = "the console was closed";
+pub(crate) const NOT_STARTED: &str = "the loop did not start";
 /// The loop engages within this time, s.
 const ENGAGES_S: f64 = 5.0;
 
@@ -36,6 +50,32 @@ pub(crate) struct Ran {
 pub(crate) fn study_file(name: &str) -> anyhow::Result<StudyFile> {
     let (path, text) = text("study", name, &STUDIES)?;
     StudyFile::from_toml(&text).with_context(|| path.display().to_string())
+}
+
+/// Everything that is wrong with a study: its file, its scene, and whether its rig allows every condition.
+pub(crate) fn mistakes(file: &StudyFile) -> Vec<String> {
+    let mut wrong = file.check().err().map_or_else(Vec::new, |Mistakes(wrong)| wrong);
+    wrong.extend(scene_of(file).err().map(|error| format!("{error:#}")));
+    match RigConfig::load(&file.rig) {
+        Err(error) => wrong.push(error.to_string()),
+        Ok(rig) if wrong.is_empty() => wrong.extend(file.conditions.iter().filter_map(|condition| {
+            let error = under(rig.clone(), condition).err()?;
+            Some(format!("condition \"{}\": {error}", condition.name))
+        })),
+        Ok(_) => {}
+    }
+    wrong
+}
+
+/// Makes the folder of a study.
+pub(crate) fn create(folder: &Path, file: &StudyFile) -> anyhow::Result<Study> {
+    let scene = scene_of(file)?;
+    let rig = RigConfig::load(&file.rig)?;
+    for condition in &file.conditions {
+        under(rig.clone(), condition).with_context(|| format!("condition \"{}\"", condition.name))?;
+    }
+    let scene = toml::to_string(&scene).context("the scene cannot be written")?;
+    Ok(Study::create(folder, file, &scene, &utc_now())?)
 }
 
 /// The scene of a study: with its task, and with so many rings as it asks for.
@@ -88,21 +128,60 @@ pub(crate) fn made(study: &Study, participant: &str) -> (u32, u32) {
 }
 
 fn scene_in(study: &Study) -> anyhow::Result<Scene> {
-    Ok(Scene::parse(&study.folder().join("scene.toml"), study.scene())?)
+    Ok(Scene::parse(&scene_file(study), study.scene())?)
+}
+
+/// The scene file of a study.
+pub(crate) fn scene_file(study: &Study) -> PathBuf {
+    study.folder().join("scene.toml")
+}
+
+/// The scene for a trial on this rig, with this hand and its random sequences, and its task.
+pub(crate) fn scene_for(study: &Study, rig: &RigConfig, hand: &Hand) -> anyhow::Result<(Scene, TaskFile)> {
+    let mut scene = scene_in(study)?;
+    (scene.hand.pace, scene.hand.tremor_m, scene.seed) = (hand.pace, hand.tremor_m, hand.seed);
+    scene.hand.intended_n = hand.intended_n;
+    let task = scene.task.clone().context("the scene of the study has no task")?;
+    Ok((scene.mounted_at(rig)?, task))
+}
+
+/// Writes down how a trial ended; `why` it was broken off, if it was.
+pub(crate) fn close(
+    study: &mut Study,
+    running: Running,
+    why: Option<String>,
+    scoring: Option<Scoring>,
+) -> Result<Ran, StudyError> {
+    let trial = running.trial();
+    let score = scoring.and_then(Scoring::end);
+    let ended = score.as_ref().and_then(|score| Some((Ending::of(score.outcome())?, score)));
+    match (why, ended) {
+        (None, Some((ending, score))) => {
+            study.end_trial(running, ending, score, &utc_now())?;
+            let completion_time_s = score.value("completion_time_s");
+            Ok(Ran { trial, ending: Some(ending), completion_time_s, why: None })
+        }
+        (why, _) => {
+            let why = why.unwrap_or_else(|| "the loop was never engaged".to_owned());
+            study.abort_trial(running, &why, &utc_now())?;
+            Ok(Ran { trial, ending: None, completion_time_s: None, why: Some(why) })
+        }
+    }
+}
+
+/// Why a trial was broken off by a fault, for the journal.
+pub(crate) fn ended_by(fault: Fault) -> String {
+    format!("the loop ended in a fault: {}", fault.cause())
 }
 
 /// Runs the trial that comes next, in the simulated rig on the virtual clock, by a simulated hand. `what` it was, it tells; under which
 /// condition it does not.
 pub(crate) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, leave: &Leave) -> anyhow::Result<Ran> {
-    let mut scene = scene_in(study)?;
     let rig = RigConfig::load(&study.plan().rig)?;
     if rig.devices.is_some() {
         bail!("rig \"{}\" has devices, which need the real clock: --virtual is for simulated rigs", rig.name);
     }
-    (scene.hand.pace, scene.hand.tremor_m, scene.seed) = (hand.pace, hand.tremor_m, hand.seed);
-    scene.hand.intended_n = hand.intended_n;
-    let task = scene.task.clone().context("the scene of the study has no task")?;
-    let scene = scene.mounted_at(&rig)?;
+    let (scene, task) = scene_for(study, &rig, hand)?;
     let mut plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
     if !plan.may_engage() {
         bail!("scene \"{}\" cannot be engaged: the force at its tip is not known", plan.scene.name);
@@ -131,26 +210,12 @@ pub(crate) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, lea
         recorder.end();
         recorder.finish().map(drop)
     })?;
-    let trial = running.trial();
     let why = match (fault, leave.is_asked()) {
-        (_, true) => Some("given up by the operator".to_owned()),
-        (Some(fault), _) => Some(format!("the loop ended in a fault: {}", fault.cause())),
+        (_, true) => Some(GIVEN_UP.to_owned()),
+        (Some(fault), _) => Some(ended_by(fault)),
         _ => None,
     };
-    let score = scoring.end();
-    let ended = score.as_ref().and_then(|score| Some((Ending::of(score.outcome())?, score)));
-    match (why, ended) {
-        (None, Some((ending, score))) => {
-            study.end_trial(running, ending, score, &utc_now())?;
-            let completion_time_s = score.value("completion_time_s");
-            Ok(Ran { trial, ending: Some(ending), completion_time_s, why: None })
-        }
-        (why, _) => {
-            let why = why.unwrap_or_else(|| "the loop was never engaged".to_owned());
-            study.abort_trial(running, &why, &utc_now())?;
-            Ok(Ran { trial, ending: None, completion_time_s: None, why: Some(why) })
-        }
-    }
+    Ok(close(study, running, why, Some(scoring))?)
 }
 
 impl Ran {

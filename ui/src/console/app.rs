@@ -8,6 +8,7 @@ mod opening;
 mod pace;
 mod reviewing;
 mod starting;
+mod studying;
 mod views;
 
 use std::{
@@ -48,6 +49,7 @@ use super::{
     sessions::Sessions,
     settings::{Kept, Settings},
     start::{Choice, StartPage},
+    studies::Studies,
     theme,
     wizards::Wizards,
 };
@@ -99,6 +101,8 @@ pub struct ConsoleApp {
     checking: Checking,
     listing: Listing,
     list: List,
+    /// User studies.
+    studies: Studies,
     /// A recorded session that is on the screen instead of the machine.
     past: Option<Past>,
     in_force: InForce,
@@ -175,6 +179,7 @@ impl ConsoleApp {
             checking: Checking::default(),
             listing: Listing::default(),
             list: List::default(),
+            studies: Studies::default(),
             past: None,
             watched: None,
             read: None,
@@ -255,6 +260,7 @@ impl ConsoleApp {
         let (wizards, in_force, diary) = (&mut self.wizards, &mut self.in_force, &mut self.diary);
         let eyes = &mut self.panels.eyes;
         let (calibrated, mut check) = (in_force.side(), self.checking.run_mut());
+        let mut trial = self.studies.trial.as_mut();
         self.live.take_in(door, |news| {
             if let Some(check) = &mut check {
                 check.take(news);
@@ -265,8 +271,11 @@ impl ConsoleApp {
             }
             in_force.watch(tick);
             eyes.note(tick);
-            if tick.side == Side::Right {
-                diary.tick(tick);
+            match &mut trial {
+                // The diary has the mode.
+                Some(trial) => trial.tick(tick),
+                None if tick.side == Side::Right => diary.tick(tick),
+                None => {}
             }
         });
         if in_force.meet(door.handle(), &self.live.rig)[calibrated.index()] {
@@ -302,9 +311,10 @@ impl ConsoleApp {
         let calibrations = self.in_force.calibrations(&rig);
         let rig = self.in_force.with_checked(rig);
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
-        let started = match self.simulated_speed {
-            Some(speed) => nima_world::start_watched(&plan, speed),
-            None => start_recorded(&plan, &mut self.sessions, line),
+        let started = match (&mut self.studies.trial, self.simulated_speed) {
+            (Some(trial), speed) => trial.start(&plan, speed),
+            (None, Some(speed)) => nima_world::start_watched(&plan, speed).map_err(|error| error.to_string()),
+            (None, None) => start_recorded(&plan, &mut self.sessions, line).map_err(|error| error.to_string()),
         };
         let started = started.map_err(|error| text::calibrations::not_started_again(&error));
         let rough_edges = self.live.rough_edges;
@@ -334,8 +344,10 @@ impl ConsoleApp {
     fn layout(&mut self, ui: &mut Ui) {
         let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
-            let calibrating = self.wizards.open.is_some() || self.checking.is_open();
+            let in_trial = self.in_trial();
+            let calibrating = self.wizards.open.is_some() || self.checking.is_open() || self.has_study() && !in_trial;
             let before = self.role();
+            self.top_bar.participant = self.studies.trial.as_ref().map(|trial| trial.participant.clone());
             self.top_bar.asked = self.checking.ask();
             self.top_bar.past = self.past.is_some();
             self.sessions.look_after();
@@ -352,13 +364,14 @@ impl ConsoleApp {
             if std::mem::take(&mut self.top_bar.keeps) || keys::keep_pressed(ui.ctx()) {
                 self.sessions.toggle_kept();
             }
-            let pressed = keys::role_pressed(ui.ctx()).filter(|_| !calibrating);
+            let pressed = keys::role_pressed(ui.ctx()).filter(|_| !calibrating && !in_trial);
             self.settings.now.role = pressed.unwrap_or(self.role());
             if wants_start && !self.start.is_open {
                 self.open_start();
             } else if self.starting.is_none() && (wants_start || pressed.is_some() || self.role() != before) {
                 self.start.is_open = false;
                 self.list.is_open = false;
+                self.studies.is_shown = false;
             }
             if std::mem::take(&mut self.top_bar.wants_sessions) && !calibrating {
                 self.toggle_list();
@@ -386,6 +399,7 @@ impl eframe::App for ConsoleApp {
         self.take_in();
         self.ask();
         self.go_on_checking();
+        self.go_on_studying();
     }
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
@@ -402,7 +416,8 @@ impl eframe::App for ConsoleApp {
         if keys::stop_pressed(&ctx) {
             self.outbox.push(Command::Stop);
         }
-        self.help.glossary ^= keys::glossary_pressed(&ctx);
+        self.help.glossary ^= keys::glossary_pressed(&ctx) && !self.in_trial();
+        self.obey_studies_key(&ctx);
         self.obey_start_key(&ctx);
         self.obey_past_keys(&ctx, f64::from(ui.input(|input| input.stable_dt)).min(0.1));
         if keys::mark_pressed(&ctx) && self.past.is_none() {
@@ -434,6 +449,7 @@ impl eframe::App for ConsoleApp {
             self.panels.scene.destroy(gl);
         }
         self.panels.tradeoff.cancel();
+        self.leave_study();
         self.write_figures();
         if let (Some(gl), Some(surface)) = (gl, &self.surface) {
             surface.destroy(gl);

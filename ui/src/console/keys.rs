@@ -58,6 +58,11 @@ pub(super) fn sessions_pressed(ctx: &Context) -> bool {
     ctx.input(|input| input.key_pressed(Key::F7))
 }
 
+/// Whether the key for user studies was pressed.
+pub(super) fn studies_pressed(ctx: &Context) -> bool {
+    ctx.input(|input| input.key_pressed(Key::F8))
+}
+
 /// Whether the key that leaves the past was pressed.
 pub(super) fn live_pressed(ctx: &Context) -> bool {
     !ctx.text_edit_focused() && ctx.input(|input| input.modifiers.is_none() && input.key_pressed(Key::L))

@@ -38,6 +38,7 @@ pub(crate) mod sessions;
 pub mod settings;
 pub mod start;
 pub mod stiffness;
+pub(crate) mod studies;
 pub mod text;
 pub mod theme;
 pub mod widgets;

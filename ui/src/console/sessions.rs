@@ -52,6 +52,8 @@ pub(crate) struct Sessions {
     looked: Option<Instant>,
     /// The disk is full in this time, at the present rate.
     full_in: Option<Duration>,
+    /// Loops that begin now are not recorded.
+    rests: bool,
 }
 
 /// The session that is being recorded.
@@ -97,13 +99,13 @@ impl Sessions {
     pub(crate) fn of_user(data_folder: Option<&Path>, second: Option<&Path>, servers: Servers) -> Self {
         let shelf = data_folder.map(|folder| Shelf::new(folder.join("sessions"), MOST_BYTES));
         let second = second.map(|folder| Shelf::new(folder, MOST_BYTES));
-        Self { shelf, second, servers, now: None, trouble: None, looked: None, full_in: None }
+        Self { shelf, second, servers, now: None, trouble: None, looked: None, full_in: None, rests: false }
     }
 
     /// Begins to record a loop of this plan; the tap is for it. `None` if nothing is recorded.
     pub(crate) fn begin(&mut self, plan: &Plan) -> Option<Tap> {
         self.end();
-        let shelf = self.shelf.as_ref()?;
+        let shelf = self.shelf.as_ref().filter(|_| !self.rests)?;
         self.trouble = None;
         let started = utc_now();
         let place = |shelf: &Shelf| {
@@ -136,6 +138,11 @@ impl Sessions {
                 None
             }
         }
+    }
+
+    /// Whether loops that begin from now on are left out.
+    pub(crate) fn rest(&mut self, rests: bool) {
+        self.rests = rests;
     }
 
     /// Records what this source tells of the objects of the scene too; to be called before the loop starts.
@@ -315,6 +322,18 @@ mod tests {
             let outcome = replay(file.journal().unwrap(), |_| ()).unwrap();
             assert!(outcome.differs.is_none() && outcome.closed && outcome.ticks > 0, "{outcome:?}");
         }
+    }
+
+    #[test]
+    fn while_it_rests_nothing_is_recorded() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut sessions = Sessions::of_user(Some(folder.path()), None, Servers::default());
+        sessions.rest(true);
+        assert!(sessions.begin(&plan()).is_none());
+        assert_eq!((sessions.shown(), sessions.trouble()), (None, None));
+        assert!(!folder.path().join("sessions").exists());
+        sessions.rest(false);
+        assert!(sessions.begin(&plan()).is_some());
     }
 
     #[test]

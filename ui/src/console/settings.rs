@@ -36,6 +36,8 @@ pub struct Settings {
     pub scale_percent: u16,
     /// Rigs and scenes that were used, the last one first.
     pub recent: Vec<Choice>,
+    /// Folders of user studies outside of the user's data.
+    pub studies: Vec<PathBuf>,
 }
 
 /// Smallest and largest scale, percent.
@@ -51,6 +53,7 @@ impl Default for Settings {
             toured: false,
             scale_percent: 100,
             recent: Vec::new(),
+            studies: Vec::new(),
         }
     }
 }

@@ -115,10 +115,17 @@ pub(crate) fn pick<A>(window: &mut Harness<'_, A>, label: &str) {
     window.run_steps(2);
 }
 
-/// Types into a field.
+/// Types into a field, of one line or of several.
 pub(crate) fn write_into<A>(window: &mut Harness<'_, A>, label: &str, text: &str) {
-    window.get_by_role_and_label(Role::TextInput, label).focus();
+    let field = |window: &Harness<'_, A>| {
+        [Role::TextInput, Role::MultilineTextInput]
+            .into_iter()
+            .find(|role| window.query_by_role_and_label(*role, label).is_some())
+            .unwrap_or_else(|| panic!("no field is called {label}; there is: {:?}", texts(window)))
+    };
+    let role = field(window);
+    window.get_by_role_and_label(role, label).focus();
     window.step();
-    window.get_by_role_and_label(Role::TextInput, label).type_text(text);
+    window.get_by_role_and_label(role, label).type_text(text);
     window.run_steps(2);
 }

@@ -3,6 +3,7 @@
 
 mod alarms;
 mod bench;
+mod blind;
 mod connecting;
 mod console;
 mod desk;
@@ -15,6 +16,7 @@ mod past;
 mod ready;
 mod roles;
 mod starting;
+mod studies;
 mod tradeoff;
 mod training;
 mod view;

@@ -20,7 +20,7 @@ use nima_machine::messages::LoopState;
 
 use crate::{
     bench::{self, console_of, until},
-    past,
+    past, studies,
 };
 
 /// Points: the smallest window, the sizes of common screens, and with them those screens at a scale of 150 or 200 %.
@@ -221,6 +221,52 @@ fn nothing_is_cut_or_overlaps_on_the_start_page() {
         let faults = faults(&mut harness, size, true);
         all.extend(faults.into_iter().map(|fault| format!("{size:?}: {fault}")));
     }
+    assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+}
+
+#[test]
+fn nothing_is_cut_or_overlaps_on_the_pages_of_a_study_and_in_a_trial() {
+    let folder = tempfile::tempdir().unwrap();
+    let rest = "[questionnaires]\nafter_condition = ['nasa_tlx_weighted', 'sus']\nat_end = ['free_text']";
+    studies::make(folder.path(), "trials = 1", 2.0, rest);
+    let mut harness = studies::console(folder.path(), Options::default());
+    until(&mut harness, "any tick", |_| true);
+    let mut all = Vec::new();
+    let look = |harness: &mut Harness<'_, ConsoleApp>, page: &str, all: &mut Vec<String>| {
+        for size in SIZES {
+            for light in [false, true] {
+                harness.state_mut().settings_mut().light = light;
+                // On a small screen these scroll: what is scrolled away lies nowhere.
+                let faults = if ["form", "questionnaire"].contains(&page) && size[1] < 1000.0 {
+                    let (texts, window, field) = seen(harness, size);
+                    faults_of_texts(&texts, window, field, true, false)
+                } else {
+                    faults(harness, size, true)
+                };
+                all.extend(faults.into_iter().map(|fault| format!("{page} {size:?} light {light}: {fault}")));
+            }
+        }
+    };
+    harness.key_press(Key::F8);
+    harness.run_steps(2);
+    look(&mut harness, "list", &mut all);
+    bench::pick(&mut harness, "New study");
+    look(&mut harness, "form", &mut all);
+    bench::pick(&mut harness, "Make the study");
+    look(&mut harness, "new study", &mut all);
+    bench::pick(&mut harness, "Close the study");
+    bench::pick(&mut harness, "Open Touching");
+    bench::pick(&mut harness, "a simulated hand");
+    look(&mut harness, "study", &mut all);
+    bench::pick(&mut harness, "Begin the trial");
+    bench::wait(&mut harness, "a trial", |harness| harness.state().in_trial());
+    until(&mut harness, "idle", |tick| tick.state == LoopState::Idle);
+    look(&mut harness, "trial", &mut all);
+    bench::press(&mut harness, "Engage");
+    bench::wait(&mut harness, "its end", |harness| !harness.state().in_trial());
+    look(&mut harness, "after a trial", &mut all);
+    bench::pick(&mut harness, "Fill in the questionnaire");
+    look(&mut harness, "questionnaire", &mut all);
     assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
 }
 

@@ -2,16 +2,12 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context as _;
 use clap::Args;
-use nima_machine::config::RigConfig;
-use nima_recording::store::utc_now;
-use nima_user_study::Study;
 use serde_json::json;
 
 use crate::{
     command::output,
-    user_study::{scene_of, study_file, under},
+    user_study::{create, study_file},
 };
 
 #[derive(Debug, Args)]
@@ -30,13 +26,7 @@ pub(in crate::command) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Arguments { file, out, json } = arguments;
     let study = study_file(file)?;
-    let scene = scene_of(&study)?;
-    let rig = RigConfig::load(&study.rig)?;
-    for condition in &study.conditions {
-        under(rig.clone(), condition).with_context(|| format!("condition \"{}\"", condition.name))?;
-    }
-    let scene = toml::to_string(&scene).context("the scene cannot be written")?;
-    let made = Study::create(out, &study, &scene, &utc_now())?;
+    let made = create(out, &study)?;
     let plan = made.plan();
     let (participants, rows) = (plan.participants.len(), plan.rows());
     let balanced = participants.is_multiple_of(rows);

@@ -69,8 +69,8 @@ impl ConsoleApp {
     }
 
     /// Whether the operator does something at the machine with the help of the screen: then the past is not shown.
-    fn is_at_work(&self) -> bool {
-        self.wizards.open.is_some() || self.checking.is_open() || self.starting.is_some()
+    pub(super) fn is_at_work(&self) -> bool {
+        self.wizards.open.is_some() || self.checking.is_open() || self.starting.is_some() || self.has_study()
     }
 
     pub(super) fn obey_past_keys(&mut self, ctx: &egui::Context, dt_s: f64) {

@@ -91,7 +91,7 @@ impl ConsoleApp {
 
     /// Opens and closes the start page by its key.
     pub(super) fn obey_start_key(&mut self, ctx: &egui::Context) {
-        let asks = self.wizards.open.is_some() || self.checking.is_open() || self.past.is_some();
+        let asks = self.wizards.open.is_some() || self.checking.is_open() || self.past.is_some() || self.has_study();
         if keys::start_pressed(ctx) && !asks && self.starting.is_none() {
             if self.start.is_open {
                 self.start.is_open = false;
@@ -113,7 +113,11 @@ impl ConsoleApp {
             recent: &self.settings.now.recent,
             is_starting: self.starting.is_some(),
         };
-        if let Some(choice) = self.start.ui(ui, &now)
+        let chosen = self.start.ui(ui, &now);
+        if std::mem::take(&mut self.start.wants_studies) {
+            self.open_studies();
+        }
+        if let Some(choice) = chosen
             && !self.outbox.holds_stop()
         {
             let before = self.running.clone();
@@ -136,7 +140,7 @@ impl ConsoleApp {
     }
 
     /// Ends the loop and begins to start this choice. What cannot be loaded ends nothing.
-    fn begin(&mut self, choice: Choice, before: Option<Choice>, because: Option<String>) {
+    pub(super) fn begin(&mut self, choice: Choice, before: Option<Choice>, because: Option<String>) {
         if self.reopen.is_some() {
             return self.start.tell(Some(text::link::ONE_RIG.to_owned()));
         }
@@ -189,7 +193,9 @@ impl ConsoleApp {
         }
         match (started, before) {
             (Ok(()), _) => {
-                choice.remember(&mut self.settings.now.recent);
+                if !self.has_study() {
+                    choice.remember(&mut self.settings.now.recent);
+                }
                 self.forget_what_was_taken();
                 self.watched = None;
                 self.start.is_open = because.is_some();

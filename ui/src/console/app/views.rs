@@ -7,7 +7,9 @@ use crate::console::roles::{Wishes, role_ui};
 
 impl ConsoleApp {
     pub(super) fn page_layout(&mut self, ui: &mut Ui) {
-        if self.past.is_some() {
+        if self.in_trial() {
+            self.trial_layout(ui);
+        } else if self.past.is_some() {
             self.past_layout(ui);
         } else if self.list.is_open {
             self.list_layout(ui);
@@ -19,6 +21,8 @@ impl ConsoleApp {
             self.wizard_layout(ui);
         } else if self.start.is_open {
             self.start_layout(ui);
+        } else if self.studies.is_shown {
+            self.studies_layout(ui);
         } else {
             self.monitor_layout(ui);
         }

@@ -48,6 +48,8 @@ pub struct TopBarState {
     pub(in crate::console) wants_sessions: bool,
     /// The past is on the screen: nothing but stop acts on the machine.
     pub(in crate::console) past: bool,
+    /// Whose trial of a study runs: then nothing but state, stop and engaging is offered.
+    pub(in crate::console) participant: Option<String>,
 }
 
 /// The bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged. Returns true when the start
@@ -109,6 +111,10 @@ fn identity_ui(
             ui.label(RichText::new(text::top_bar::NIMA_CONSOLE).font(theme::strong(19.0)));
             ui.label(small(text::top_bar::RESEARCH_ONLY));
         });
+        if let Some(participant) = &state.participant {
+            ui.label(RichText::new(participant).font(theme::strong(17.0)));
+            return;
+        }
         ui.horizontal(|ui| {
             switch_ui(ui, &Role::ALL, &mut settings.role, !calibrating);
             let start = Button::new(text::start::OPEN).min_size(vec2(44.0, 30.0));

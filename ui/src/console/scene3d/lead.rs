@@ -40,6 +40,8 @@ pub(super) struct Lead {
     drag: Option<Pos2>,
     /// How low it may be led, m.
     lowest_m: f32,
+    /// It is led all the time and cannot be let go: the hand of a study's participant.
+    pub(super) is_held: bool,
 }
 
 impl Lead {
@@ -68,7 +70,7 @@ impl Lead {
 
     /// The loop has ended the leading already.
     fn forget(&mut self) {
-        *self = Self { side: self.side, ..Self::default() };
+        *self = Self { side: self.side, is_held: self.is_held, ..Self::default() };
     }
 
     /// Begins: every instrument is held where its hand is now, and one of them is led.
@@ -84,6 +86,17 @@ impl Lead {
         }
         if self.at_m[self.side.index()].is_none() {
             self.side = self.side.other();
+        }
+    }
+
+    /// A simulated hand must not move the jaws of a participant: they are open until the participant closes them.
+    fn open_jaws_of_participant(&mut self, live: &Live, outbox: &mut Outbox) {
+        if !self.is_held || live.scene.objects.is_none() {
+            return;
+        }
+        for side in live.sides() {
+            self.open[side.index()] = Some(true);
+            outbox.push(Command::Grip(side, Some(OPEN_RAD)));
         }
     }
 
@@ -122,13 +135,18 @@ impl Lead {
         let text = if self.is_on() { text::field::LEAD_END } else { text::field::LEAD };
         let button =
             Button::selectable(self.is_on(), RichText::new(text).font(theme::strong(14.0))).frame_when_inactive(true);
-        let clicked = ui.add_enabled_ui(runs, |ui| ui.put(rect.intersect(place), button).clicked()).inner;
-        let pressed = !ui.ctx().text_edit_focused() && ui.input(|input| input.key_pressed(Key::M));
-        if runs && (clicked || pressed) {
+        let asked = if self.is_held {
+            !self.is_on() && live.first_tick().is_some()
+        } else {
+            let clicked = ui.add_enabled_ui(runs, |ui| ui.put(rect.intersect(place), button).clicked()).inner;
+            clicked || !ui.ctx().text_edit_focused() && ui.input(|input| input.key_pressed(Key::M))
+        };
+        if runs && asked {
             if self.is_on() {
                 self.let_go(outbox);
             } else {
                 self.take(live, outbox);
+                self.open_jaws_of_participant(live, outbox);
             }
         }
         if self.is_on() {
@@ -180,7 +198,7 @@ impl Lead {
             Key::G if live.scene.objects.is_some() => self.jaws(live, outbox),
             Key::X if is_searched => outbox.push(Command::Task(self.side, Act::Mark)),
             Key::D if is_searched => outbox.push(Command::Task(self.side, Act::End)),
-            Key::N if is_searched || on_wire => outbox.push(Command::Task(self.side, Act::Begin)),
+            Key::N if (is_searched || on_wire) && !self.is_held => outbox.push(Command::Task(self.side, Act::Begin)),
             _ => {}
         }
     }

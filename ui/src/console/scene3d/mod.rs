@@ -55,6 +55,8 @@ pub struct SceneView {
     pub look: Look,
     /// Show the forces as numbers and gauges.
     pub figures: bool,
+    /// Draw the forces as arrows.
+    pub arrows: bool,
     /// Optional objects.
     pub extras: Extras,
     camera: Camera,
@@ -85,6 +87,7 @@ impl Default for SceneView {
             smooth: true,
             look: Look::Free,
             figures: true,
+            arrows: true,
             extras: Extras::default(),
             camera: Camera::default(),
             set_for: None,
@@ -114,6 +117,12 @@ impl SceneView {
     /// The instrument is no longer led from the window.
     pub(super) fn let_go(&mut self, outbox: &mut Outbox) {
         self.lead.let_go(outbox);
+    }
+
+    /// What a participant of a study sees: no arrow, whose force would tell the condition. `leads`: the instrument is led all the time.
+    pub(super) const fn be_of_participant(&mut self, is_of: bool, leads: bool) {
+        self.arrows = !is_of;
+        self.lead.is_held = leads;
     }
 
     /// Whether the instrument is led from the window.
@@ -149,7 +158,8 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
     let ground = ui.painter_at(rect).add(egui::Shape::Noop);
     let camera = view.camera(&live.scene);
     // Not in a surgeon's view: the surgeon leads with the handle.
-    let leading = (view.figures || view.lead.is_on()) && view.lead.ui(ui, rect, &response, live, &camera, outbox);
+    let offered = view.figures || view.lead.is_on() || view.lead.is_held;
+    let leading = offered && view.lead.ui(ui, rect, &response, live, &camera, outbox);
     if view.look == Look::Free {
         turn(ui, live, view, &response, leading);
     }
@@ -157,7 +167,7 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         view.extras.ui(ui, rect);
     }
     let camera = view.camera(&live.scene);
-    let arms: Vec<Arm> = live.sides().filter_map(|side| arm(live, side)).collect();
+    let arms: Vec<Arm> = live.sides().filter_map(|side| arm(live, side, view.arrows)).collect();
     let painter = ui.painter_at(rect);
     let led = view.lead.side();
     let shown = Shown::of(live, led);
@@ -185,7 +195,9 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         axes(&painter, rect, &camera);
     }
     hint(&painter, rect, live, view);
-    training::line_ui(ui, rect, training::told(live, led, reach), readings_width(live), view.figures);
+    // The keys of a trial in a study are told beside it, but for those of the jaws.
+    let told_led = led.filter(|_| !view.lead.is_held || live.scene.objects.is_some());
+    training::line_ui(ui, rect, training::told(live, told_led, reach), readings_width(live), view.figures);
     // No hover texts in a surgeon's view, nor over what is led.
     let pointed_at = response.hover_pos().filter(|_| view.figures && !response.dragged() && !leading);
     if let Some(words) = pointed_at.and_then(|pointer| pick::pick(pointer, rect, &camera, &live.scene, &arms)) {
@@ -207,8 +219,8 @@ fn turn(ui: &Ui, live: &Live, view: &mut SceneView, response: &egui::Response, l
     }
 }
 
-/// The objects of one side from its newest tick; at rest above the field before there is one.
-fn arm(live: &Live, side: Side) -> Option<Arm> {
+/// The objects of one side from its newest tick; at rest above the field before there is one. Its forces only where `arrows` are drawn.
+fn arm(live: &Live, side: Side, arrows: bool) -> Option<Arm> {
     let scene = live.scene.of_side(side)?;
     let finite = |v: Vector3<f64>| v.iter().all(|x| x.is_finite());
     let above_m = scene.targets_m.first().copied().unwrap_or_default() + Vector3::z() * 0.02;
@@ -218,6 +230,7 @@ fn arm(live: &Live, side: Side) -> Option<Arm> {
         measured_n: tick.measured_n.cast(),
         rendered_n: tick.rendered_n.cast(),
     });
+    let pose = if arrows { pose } else { Pose { tip_m: pose.tip_m, ..rest } };
     Some(Arm {
         side,
         trocar_m: scene.trocar_m.cast(),
@@ -414,7 +427,8 @@ fn hint(painter: &Painter, rect: Rect, live: &Live, view: &SceneView) {
         None if view.lead.is_on() => {
             (text::field::lead_hover(live.scene.objects.is_some(), live.is_bimanual()), theme::DARK.text)
         }
-        None if training::needs_another_mode(live) => {
+        // Not in a trial of a study: it would tell the mode.
+        None if view.arrows && training::needs_another_mode(live) => {
             (format!("{}\n{}", text::training::CHOOSE_MATCHED, text::field::VIEW_HOVER), theme::DARK.text)
         }
         None if view.look == Look::Endoscope => (text::field::RESET_VIEW.to_owned(), theme::DARK.text_weak),

@@ -30,6 +30,8 @@ const ROW: f32 = 40.0;
 pub struct StartPage {
     /// Whether the page is shown.
     pub(super) is_open: bool,
+    /// The page of user studies is wanted.
+    pub(super) wants_studies: bool,
     chosen: Choice,
     folder: Option<PathBuf>,
     lists: Lists,
@@ -56,6 +58,7 @@ impl StartPage {
     pub(super) fn new(chosen: Choice) -> Self {
         Self {
             is_open: false,
+            wants_studies: false,
             chosen,
             folder: None,
             lists: Lists::default(),
@@ -78,6 +81,11 @@ impl StartPage {
     /// Shows this below the button.
     pub(super) fn tell(&mut self, told: Option<String>) {
         self.told = told;
+    }
+
+    /// What is shown there.
+    pub(super) fn told(&self) -> Option<&str> {
+        self.told.as_deref()
     }
 
     /// Folder of the user's rigs and scenes.
@@ -155,6 +163,9 @@ impl StartPage {
                 self.make(now);
             }
         });
+        let studies = Button::new(text::studies::OPEN).min_size(vec2(ui.available_width(), 36.0));
+        let studies = ui.add_enabled(!now.is_starting, studies).on_hover_text(text::studies::OPEN_HOVER);
+        self.wants_studies |= studies.clicked();
     }
 
     fn make(&mut self, now: &Now<'_>) {

@@ -79,13 +79,14 @@ pub(in crate::console) const KEYS_HEADING: &str = "Keys";
 pub(in crate::console) const WORDS_HEADING: &str = "Terms";
 
 /// All keys with their functions.
-pub(in crate::console) const KEYS: [(&str, &str); 24] = [
+pub(in crate::console) const KEYS: [(&str, &str); 25] = [
     ("Space, Escape", "Stop, in every view. While you type a name, only Escape."),
     ("F1, F2, F3", "Surgeon, Technician, Demo."),
     ("F4", "This list of keys and terms."),
     ("F5", "The list of the last alarms."),
     ("F6", "Choose a rig and a scene."),
     ("F7", "The list of recorded sessions."),
+    ("F8", "User studies."),
     ("L", "Leave the recorded session: the screen shows the machine again."),
     ("P, Left, Right", "In a recorded session: play or hold it; a second back or on (with Shift 10 ms)."),
     ("A", "Acknowledge the alarms."),

@@ -37,6 +37,7 @@ pub(super) mod safety;
 pub(super) mod sessions;
 pub(super) mod settings;
 pub(super) mod start;
+pub(super) mod studies;
 pub(super) mod timing;
 pub(super) mod tip_force;
 pub(super) mod top_bar;

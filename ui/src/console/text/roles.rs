@@ -8,7 +8,7 @@ pub(in crate::console) const SURGEON_HOVER: &str =
 pub(in crate::console) const TECHNICIAN_HOVER: &str =
     "All panels: feedback, devices, calibration, gates, errors, degrees, timing and trade-off";
 pub(in crate::console) const DEMO_HOVER: &str = "A demonstration that runs and explains itself, on simulated rigs only";
-pub(in crate::console) const SWITCH_DISABLED_HOVER: &str = "Close the wizard first";
+pub(in crate::console) const SWITCH_DISABLED_HOVER: &str = "Close the wizard or the study first";
 pub(in crate::console) const DEMO_START: &str = "What you see";
 pub(in crate::console) const DEMO_START_CAPTION: &str = "A hand moves an instrument from peg to peg and presses it into soft tissue. The ivory arrow is the \
     force measured at the instrument, the blue arrow is the force that the hand feels. The link delays \

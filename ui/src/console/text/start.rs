@@ -2,7 +2,7 @@
 
 pub(in crate::console) const OPEN: &str = "Rig";
 pub(in crate::console) const OPEN_HOVER: &str = "Choose a rig and a scene, make a rig, see what is plugged in. F6";
-pub(in crate::console) const OPEN_DISABLED_HOVER: &str = "Close the calibration wizard first";
+pub(in crate::console) const OPEN_DISABLED_HOVER: &str = "Close the calibration wizard or the study first";
 pub(in crate::console) const RIGS: &str = "1. Choose a rig";
 pub(in crate::console) const RIGS_HOVER: &str = "A rig is the set of devices and the settings of the loop";
 pub(in crate::console) const SCENES: &str = "2. Choose a scene";

@@ -1,0 +1,224 @@
+//! Questionnaires as a participant fills them in. What is missing is told, and nothing can be submitted before it is complete.
+
+use egui::{Button, Label, RichText, ScrollArea, Slider, TextEdit, Ui, vec2};
+use nima_user_study::{
+    Answers, Label as Letter, PAIRS, Questionnaire, REALISM_ITEM, Ratings, SUS_ITEMS, TLX_SCALES, TlxScale,
+};
+
+use crate::console::{
+    alarms::sentence,
+    text, theme,
+    widgets::{next_button, small, weak},
+};
+
+/// Width of a rating's line.
+const SLIDER: f32 = 420.0;
+const STEP: f64 = 5.0;
+
+/// A questionnaire that is being filled in.
+#[derive(Debug)]
+pub(super) struct Sheet {
+    pub(super) participant: String,
+    pub(super) which: Questionnaire,
+    pub(super) after: Option<Letter>,
+    ratings: [Option<u8>; 6],
+    chosen: [Option<TlxScale>; 15],
+    items: [Option<u8>; 10],
+    realism: Option<u8>,
+    text: String,
+}
+
+/// What was chosen.
+pub(super) enum Done {
+    Back,
+    Submit(Answers),
+}
+
+/// All of them; `None` if one is missing.
+fn all<T: Copy + Default, const N: usize>(given: &[Option<T>; N]) -> Option<[T; N]> {
+    given.iter().all(Option::is_some).then(|| given.map(Option::unwrap_or_default))
+}
+
+fn name_of(scale: TlxScale) -> String {
+    let found = TLX_SCALES.iter().find(|(known, ..)| *known == scale);
+    found.map_or_else(String::new, |(_, name, _)| sentence(name))
+}
+
+impl Sheet {
+    pub(super) fn new(participant: &str, which: Questionnaire, after: Option<Letter>) -> Self {
+        Self {
+            participant: participant.to_owned(),
+            which,
+            after,
+            ratings: [None; 6],
+            chosen: [None; 15],
+            items: [None; 10],
+            realism: None,
+            text: String::new(),
+        }
+    }
+
+    /// Whether it is this one.
+    pub(super) fn is(&self, participant: &str, which: Questionnaire, after: Option<Letter>) -> bool {
+        self.participant == participant && self.which == which && self.after == after
+    }
+
+    /// The answers, or what is missing.
+    fn answers(&self) -> Result<Answers, Vec<String>> {
+        let missing = |names: &mut dyn Iterator<Item = String>| names.collect::<Vec<_>>();
+        let unrated = || {
+            missing(
+                &mut TLX_SCALES
+                    .iter()
+                    .zip(self.ratings)
+                    .filter(|(_, r)| r.is_none())
+                    .map(|((_, n, _), _)| (*n).to_owned()),
+            )
+        };
+        match self.which {
+            Questionnaire::NasaTlx => {
+                all(&self.ratings).map(|ratings| Answers::NasaTlx(Ratings::of(ratings))).ok_or_else(unrated)
+            }
+            Questionnaire::NasaTlxWeighted => {
+                let mut wrong = unrated();
+                let pairs = self.chosen.iter().filter(|one| one.is_none()).count();
+                wrong.extend((pairs > 0).then(|| text::studies::missing_pairs(pairs)));
+                let chosen = self.chosen.map(|one| one.unwrap_or(TlxScale::Mental));
+                match all(&self.ratings) {
+                    Some(ratings) if wrong.is_empty() => {
+                        Ok(Answers::NasaTlxWeighted { ratings: Ratings::of(ratings), chosen })
+                    }
+                    _ => Err(wrong),
+                }
+            }
+            Questionnaire::Sus => all(&self.items).map(Answers::Sus).ok_or_else(|| {
+                let open = self.items.iter().zip(1..).filter(|(item, _)| item.is_none());
+                missing(&mut open.map(|(_, number)| text::studies::statement(number)))
+            }),
+            Questionnaire::Realism => {
+                self.realism.map(Answers::Realism).ok_or_else(|| vec![text::studies::statement(1)])
+            }
+            Questionnaire::FreeText => Ok(Answers::FreeText(self.text.trim().to_owned())),
+        }
+    }
+
+    /// Draws the page.
+    pub(super) fn ui(&mut self, ui: &mut Ui) -> Option<Done> {
+        let mut done = None;
+        let title = text::studies::asked(self.which, &self.participant, self.after);
+        ui.label(RichText::new(title).font(theme::strong(19.0)));
+        ui.add_space(6.0);
+        let height = ui.available_height() - 66.0;
+        ScrollArea::vertical().id_salt("questions").auto_shrink(false).max_height(height).show(ui, |ui| {
+            ui.set_max_width(980.0);
+            match self.which {
+                Questionnaire::NasaTlx => self.ratings_ui(ui),
+                Questionnaire::NasaTlxWeighted => {
+                    self.ratings_ui(ui);
+                    self.pairs_ui(ui);
+                }
+                Questionnaire::Sus => self.sus_ui(ui),
+                Questionnaire::Realism => scale_ui(ui, REALISM_ITEM, &mut self.realism, 7),
+                Questionnaire::FreeText => self.text_ui(ui),
+            }
+        });
+        ui.add_space(6.0);
+        ui.horizontal(|ui| {
+            let answers = self.answers();
+            let name = RichText::new(text::studies::SUBMIT).font(theme::strong(17.0));
+            let button = next_button(name, answers.is_ok()).min_size(theme::STOP_SIZE);
+            let clicked = ui.add_enabled(answers.is_ok(), button).clicked();
+            if ui.add(Button::new(text::studies::BACK).min_size(theme::STOP_SIZE)).clicked() {
+                done = Some(Done::Back);
+            }
+            match answers {
+                Ok(answers) if clicked => done = Some(Done::Submit(answers)),
+                Ok(_) => {}
+                Err(what) => {
+                    ui.add(Label::new(weak(text::studies::missing(&what))).wrap());
+                }
+            }
+        });
+        done
+    }
+
+    fn ratings_ui(&mut self, ui: &mut Ui) {
+        ui.label(small(text::studies::RATE));
+        for ((_, name, question), rating) in TLX_SCALES.iter().zip(&mut self.ratings) {
+            ui.add_space(4.0);
+            let label = ui.add(Label::new(RichText::new(sentence(name)).font(theme::strong(15.0))));
+            ui.add(Label::new(*question).wrap());
+            ui.horizontal(|ui| {
+                ui.spacing_mut().slider_width = SLIDER;
+                let mut value = rating.map_or(50.0, f64::from);
+                let slider = Slider::new(&mut value, 0.0..=100.0).step_by(STEP).show_value(false);
+                let response = ui.add(slider).labelled_by(label.id);
+                // A click on the middle changes nothing and is an answer all the same.
+                if response.changed() || response.clicked() || response.drag_started() {
+                    *rating = Some((STEP * (value / STEP).round()) as u8);
+                }
+                let shown = rating.map_or_else(|| text::studies::NOT_ANSWERED.to_owned(), |rating| rating.to_string());
+                ui.label(weak(shown));
+            });
+        }
+    }
+
+    fn pairs_ui(&mut self, ui: &mut Ui) {
+        ui.add_space(10.0);
+        ui.label(RichText::new(text::studies::PAIRS).font(theme::strong(15.0)));
+        ui.columns(2, |columns| {
+            for (at, ((one, other), chosen)) in PAIRS.iter().zip(&mut self.chosen).enumerate() {
+                columns[at / PAIRS.len().div_ceil(2)].horizontal(|ui| {
+                    ui.add_sized(vec2(22.0, 30.0), Label::new(small((at + 1).to_string())));
+                    for scale in [one, other] {
+                        let name = name_of(*scale);
+                        let button = Button::selectable(*chosen == Some(*scale), &name).frame_when_inactive(true);
+                        let response = ui.add(button.min_size(vec2(130.0, 30.0)));
+                        let named = format!("{}: {name}", at + 1);
+                        let on = *chosen == Some(*scale);
+                        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, on, &named));
+                        if response.clicked() {
+                            *chosen = Some(*scale);
+                        }
+                    }
+                });
+            }
+        });
+    }
+
+    fn sus_ui(&mut self, ui: &mut Ui) {
+        ui.label(small(text::studies::SUS_ENDS));
+        for ((statement, item), number) in SUS_ITEMS.iter().zip(&mut self.items).zip(1..) {
+            numbered_ui(ui, &format!("{number}. {statement}"), item, 5, number);
+        }
+    }
+
+    fn text_ui(&mut self, ui: &mut Ui) {
+        let label = ui.label(RichText::new(text::studies::FREE_TEXT).font(theme::strong(15.0)));
+        ui.label(small(text::studies::FREE_TEXT_HINT));
+        let field = TextEdit::multiline(&mut self.text).desired_rows(8).desired_width(f32::INFINITY).char_limit(4000);
+        ui.add(field).labelled_by(label.id);
+    }
+}
+
+/// A question that is answered by a number from 1 on.
+fn scale_ui(ui: &mut Ui, question: &str, answer: &mut Option<u8>, most: u8) {
+    numbered_ui(ui, question, answer, most, 1);
+}
+
+fn numbered_ui(ui: &mut Ui, question: &str, answer: &mut Option<u8>, most: u8, number: usize) {
+    ui.add_space(4.0);
+    ui.add(Label::new(question).wrap());
+    ui.horizontal(|ui| {
+        for value in 1..=most {
+            let on = *answer == Some(value);
+            let button = Button::selectable(on, value.to_string()).frame_when_inactive(true);
+            let response = ui.add(button.min_size(vec2(48.0, 30.0)));
+            let named = format!("{number}: {value}");
+            response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, on, &named));
+            if response.clicked() {
+                *answer = Some(value);
+            }
+        }
+    });
+}

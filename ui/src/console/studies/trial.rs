@@ -1,0 +1,201 @@
+//! A trial in the window: what the loop does is scored, and the participant sees the field, the task, the time and the label. Nothing else is
+//! on the screen but alarms and stop.
+
+use egui::{Align, Button, CentralPanel, Frame, Label, Layout, Margin, Panel, RichText, Ui, vec2};
+use nima_machine::{
+    config::SchedulingClass,
+    messages::{LoopState, Tick},
+    rig::SIDES,
+    runtime::{self, Assembly, Clock},
+};
+use nima_score::TaskFile;
+use nima_session::{outlet::Destination, recorder::Recorder};
+use nima_user_study::{Running, Study};
+use nima_world::{Plan, Watched};
+
+use super::Hand;
+use crate::{
+    console::{
+        app::Started,
+        chain,
+        live::Live,
+        outbox::Outbox,
+        scene3d::{Look, SceneView, scene_ui},
+        text, theme,
+        widgets::weak,
+    },
+    objects::OfSimulation,
+    recording,
+    scoring::Scoring,
+    user_study,
+};
+
+/// Height of the line above the field.
+const HEAD: f32 = 64.0;
+
+/// A trial that has begun.
+#[derive(Debug)]
+pub(in crate::console) struct Trial {
+    pub(in crate::console) participant: String,
+    running: Running,
+    task: TaskFile,
+    hand: Hand,
+    /// Trials of a participant.
+    of: u32,
+    scoring: Option<Scoring>,
+    recorder: Option<Recorder>,
+    over: Option<Over>,
+    /// Number of the newest tick of each side, and how many did not come.
+    newest: [Option<u64>; SIDES],
+    lost: u64,
+    /// The next press on the button gives up.
+    is_asked: bool,
+}
+
+/// How it is over.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Over {
+    /// The task is done, or the time is.
+    Done,
+    /// Why it was broken off.
+    Broken(String),
+}
+
+impl Trial {
+    pub(in crate::console) fn new(participant: &str, running: Running, task: TaskFile, hand: Hand, of: u32) -> Self {
+        Self {
+            participant: participant.to_owned(),
+            running,
+            task,
+            hand,
+            of,
+            scoring: None,
+            recorder: None,
+            over: None,
+            newest: [None; SIDES],
+            lost: 0,
+            is_asked: false,
+        }
+    }
+
+    /// Starts its loop, recorded where the study wants it; in simulated time if there is a `speed`.
+    pub(in crate::console) fn start(&mut self, plan: &Plan, speed: Option<f64>) -> Result<Started, String> {
+        let recorded = self.running.session().map(|file| recording::begin(Destination::file(file), plan, "real"));
+        let (tap, recorder) = recorded.transpose().map_err(|error| chain(&error))?.unzip();
+        self.recorder = recorder;
+        let (assembly, mut watched) = match speed {
+            Some(speed) => {
+                let (assembly, watched) = plan.watched().map_err(|error| chain(&error))?;
+                let scheduling = SchedulingClass::Ordinary;
+                (Assembly { clock: Clock::Simulated { speed }, scheduling, ..assembly }, watched)
+            }
+            None => plan.watched_assembly().map_err(|error| chain(&error))?,
+        };
+        if let Some((recorder, watched)) = self.recorder.as_ref().zip(watched.as_mut().and_then(Watched::another)) {
+            recorder.watch(OfSimulation::source(plan, watched));
+        }
+        self.scoring = Some(Scoring::new(&self.task, watched.as_mut().and_then(Watched::another)));
+        let handle = runtime::start(Assembly { tap, ..assembly }).map_err(|error| chain(&error))?;
+        Ok((handle, watched))
+    }
+
+    /// Takes the next tick of a side.
+    pub(in crate::console) fn tick(&mut self, tick: &Tick) {
+        let Some(scoring) = self.scoring.as_mut().filter(|_| self.over.is_none()) else { return };
+        let before = self.newest[tick.side.index()].replace(tick.index);
+        self.lost += before.map_or(0, |before| tick.index.saturating_sub(before + 1));
+        scoring.tick(tick);
+        self.over = match tick.state {
+            LoopState::Faulted(fault) => Some(Over::Broken(user_study::ended_by(fault))),
+            LoopState::Stopped => Some(Over::Broken(user_study::STOPPED.to_owned())),
+            _ => scoring.is_over().then_some(Over::Done),
+        };
+    }
+
+    /// It is broken off, if it is not over yet.
+    pub(in crate::console) fn break_off(&mut self, why: &str) {
+        self.over.get_or_insert_with(|| Over::Broken(why.to_owned()));
+    }
+
+    /// Whether nothing more happens in it.
+    pub(in crate::console) const fn is_over(&self) -> bool {
+        self.over.is_some()
+    }
+
+    /// The instruments are moved from the screen.
+    pub(in crate::console) fn is_by_mouse(&self) -> bool {
+        self.hand == Hand::Mouse
+    }
+
+    /// Writes down how it ended; gives that in words, and what must be noted besides. The loop must have ended.
+    pub(super) fn close(self, study: &mut Study) -> (String, Vec<String>) {
+        let Self { running, scoring, recorder, over, lost, .. } = self;
+        let trial = running.trial();
+        let mut notes = Vec::new();
+        if let Some(Err(error)) = recorder.map(Recorder::finish) {
+            notes.push(text::studies::record_failed(&chain(&error)));
+        }
+        if lost > 0 {
+            notes.push(text::studies::note_lost(trial, lost));
+        }
+        let why = match over {
+            Some(Over::Done) => None,
+            Some(Over::Broken(why)) => Some(why),
+            None => Some(user_study::CLOSED.to_owned()),
+        };
+        let closed = user_study::close(study, running, why, scoring);
+        let words =
+            closed.map_or_else(|error| error.to_string(), |ran| crate::console::alarms::sentence(&ran.in_words()));
+        (words, notes)
+    }
+
+    /// The participant's screen, below the top bar.
+    pub(in crate::console) fn ui(&mut self, ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Outbox) {
+        view.look = Look::Endoscope;
+        view.figures = false;
+        let frame = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 6));
+        Panel::top("trial").exact_size(HEAD).resizable(false).frame(frame).show(ui, |ui| self.head_ui(ui, live));
+        CentralPanel::no_frame().show(ui, |ui| scene_ui(ui, live, view, outbox));
+    }
+
+    fn head_ui(&mut self, ui: &mut Ui, live: &Live) {
+        ui.horizontal_centered(|ui| {
+            ui.vertical(|ui| {
+                ui.add_space(4.0);
+                ui.label(RichText::new(&self.task.name).font(theme::strong(17.0)));
+                ui.label(weak(text::studies::trial(self.running.trial(), self.of, self.running.label())));
+            });
+            ui.add_space(24.0);
+            let elapsed_s = self.scoring.as_ref().map_or(0.0, Scoring::elapsed_s);
+            let clock = text::studies::time_of(elapsed_s, self.task.time_limit_s);
+            ui.label(RichText::new(clock).font(theme::strong(22.0)));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let words = if self.is_asked { text::studies::GIVE_UP_NOW } else { text::studies::GIVE_UP };
+                let button = Button::selectable(self.is_asked, words).frame_when_inactive(true);
+                let button = ui.add_enabled(self.over.is_none(), button.min_size(vec2(150.0, 36.0)));
+                if button.on_hover_text(text::studies::GIVE_UP_HOVER).clicked() {
+                    if self.is_asked {
+                        self.break_off(user_study::GIVEN_UP);
+                    }
+                    self.is_asked = true;
+                }
+                ui.add_space(12.0);
+                ui.add(Label::new(state_words(live)).wrap());
+            });
+        });
+    }
+}
+
+/// What the participant does now.
+fn state_words(live: &Live) -> &'static str {
+    match live.state() {
+        _ if live.first_tick().is_none() => text::studies::STATE_STARTING,
+        LoopState::Stopped | LoopState::Faulted(_) => text::studies::STATE_STOPPED,
+        LoopState::Idle => text::studies::STATE_IDLE,
+        LoopState::Ready => text::studies::STATE_HOLD,
+        LoopState::Clutched => text::top_bar::CLUTCHED_MEANING,
+        LoopState::Disconnected => text::top_bar::DISCONNECTED_MEANING,
+        LoopState::Engaged if live.scene.is_searched() => text::studies::KEYS_SEARCH,
+        LoopState::Engaged => "",
+    }
+}

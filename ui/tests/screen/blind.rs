@@ -1,0 +1,197 @@
+//! Blindness of user studies over the screen: no text, hover text, title or file tells a condition before the unblinding.
+
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use egui::{Key, Shape, accesskit::Role};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use nima_console::console::Options;
+use nima_machine::messages::LoopState;
+
+use crate::{
+    bench::{Console, TIMEOUT, can_press, shows, texts, until, write_into},
+    studies::{console, make},
+};
+
+/// Words and numbers that stand nowhere else, in as many ways as a screen could write them.
+const SECRET: [&str; 10] =
+    ["zebra", "wildebeest", "anchored", "no_force", "137.5", "0.1375", "138 ms", "0.8125", "0.81", "rendered_n"];
+
+/// A window of which everything is remembered that could be read in it.
+struct Reader {
+    window: Console,
+    seen: BTreeSet<String>,
+}
+
+impl Reader {
+    fn step(&mut self) {
+        self.window.step();
+        for node in self.window.query_all_by(|_| true) {
+            let node = node.accesskit_node();
+            self.seen.extend([node.label(), node.value(), node.description()].into_iter().flatten());
+        }
+        let output = self.window.output();
+        for clipped in &output.shapes {
+            painted(&clipped.shape, &mut self.seen);
+        }
+        for viewport in output.viewport_output.values() {
+            self.seen.extend(viewport.builder.title.clone());
+            self.seen.extend(viewport.commands.iter().map(|command| format!("{command:?}")));
+        }
+    }
+
+    fn until(&mut self, what: &str, wanted: impl Fn(&Console) -> bool) {
+        let began = Instant::now();
+        while !wanted(&self.window) {
+            assert!(began.elapsed() < TIMEOUT, "never: {what}; there is: {:?}", texts(&self.window));
+            std::thread::sleep(Duration::from_millis(10));
+            self.step();
+        }
+    }
+
+    fn pick(&mut self, label: &str) {
+        self.until(label, |window| can_press(window, label));
+        self.window.get_by_role_and_label(Role::Button, label).click_accesskit();
+        self.step();
+        self.step();
+    }
+
+    fn read(&mut self, words: &str) {
+        self.until(words, |window| shows(window, words));
+    }
+
+    fn write_into(&mut self, label: &str, text: &str) {
+        write_into(&mut self.window, label, text);
+        self.step();
+    }
+
+    /// A trial, with a look into every corner that keys and the pointer reach.
+    fn trial(&mut self, button: &str) {
+        self.pick(button);
+        self.until("a trial", |window| window.state().in_trial());
+        self.until("idle", |window| window.state().tick().is_some_and(|tick| tick.state == LoopState::Idle));
+        self.look_around();
+        self.until("Engage", |window| can_press(window, "Engage"));
+        self.window.get_by_role_and_label(Role::Button, "Engage").click_accesskit();
+        self.until("engaged", |window| window.state().tick().is_some_and(|tick| tick.state == LoopState::Engaged));
+        self.look_around();
+        self.until("the end", |window| !window.state().in_trial());
+        self.step();
+    }
+
+    fn look_around(&mut self) {
+        use Key::{A, E, F1, F2, F3, F4, F5, F6, F7, F8, F9, F10, F11, F12, G, K, L, M, N, P, Tab};
+        for key in [F1, F2, F3, F4, F5, F5, F6, F7, F8, F9, F10, F11, F12, A, E, G, K, L, M, N, P, Tab] {
+            self.window.key_press(key);
+            self.step();
+            self.step();
+        }
+        self.point_around();
+    }
+
+    /// Holds the pointer over everything that can be pressed or read.
+    fn point_around(&mut self) {
+        let of = |role: Role| self.window.query_all_by_role(role).map(|node| node.rect().center());
+        let places: Vec<egui::Pos2> = [Role::Button, Role::Label].into_iter().flat_map(of).collect();
+        for place in places {
+            self.window.event(egui::Event::PointerMoved(place));
+            for _ in 0..24 {
+                self.step();
+            }
+        }
+        self.window.event(egui::Event::PointerGone);
+        self.step();
+    }
+}
+
+fn painted(shape: &Shape, seen: &mut BTreeSet<String>) {
+    match shape {
+        Shape::Vec(shapes) => shapes.iter().for_each(|shape| painted(shape, seen)),
+        Shape::Text(text) => drop(seen.insert(text.galley.text().to_owned())),
+        _ => {}
+    }
+}
+
+/// Names and bytes of all files under a folder.
+fn everything(folder: &Path) -> String {
+    let mut all = String::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        all += &path.file_name().unwrap().to_string_lossy();
+        all += &if path.is_dir() {
+            everything(&path)
+        } else {
+            String::from_utf8_lossy(&fs::read(&path).unwrap()).into_owned()
+        };
+    }
+    all
+}
+
+fn secrets_in(text: &str) -> Vec<&'static str> {
+    let text = text.to_lowercase();
+    SECRET.into_iter().filter(|word| text.contains(word)).collect()
+}
+
+#[test]
+fn a_blind_study_tells_its_conditions_on_no_page_and_in_no_file_until_it_is_opened() {
+    let folder = tempfile::tempdir().unwrap();
+    let rest = "[questionnaires]\nafter_condition = ['realism']\nat_end = ['free_text']\n[breaks]\nafter_trials = 2\nleast_s = 0.5\n\
+                [practice]\n[practice.criterion]\ntime_s = 100.0\nconsecutive = 1\nadditional = 0\nmax_trials = 1";
+    let place = make(folder.path(), "trials = 1\nrecord = true\nreference = 'Wildebeest'", 6.0, rest);
+    let mut window = console(folder.path(), Options::default());
+    until(&mut window, "any tick", |_| true);
+    // What ran before has a mode and a gain of its own on the screen.
+    window.key_press(Key::F8);
+    window.run_steps(3);
+    let mut reader = Reader { window, seen: BTreeSet::new() };
+    reader.pick("Open Touching");
+    reader.pick("a simulated hand");
+    reader.trial("Begin the practice trial");
+    reader.pick("the mouse");
+    reader.trial("Begin the trial");
+    reader.pick("Fill in the questionnaire");
+    reader.pick("1: 5");
+    reader.pick("Submit");
+    reader.pick("Begin the break");
+    reader.pick("End the break");
+    reader.trial("Begin the trial");
+    reader.pick("Fill in the questionnaire");
+    reader.pick("1: 4");
+    reader.pick("Submit");
+    reader.pick("Submit");
+    reader.read("Finished");
+    reader.pick("P02");
+    reader.write_into("What happened", "the light flickered");
+    reader.pick("Keep the note");
+    reader.write_into("Reason", "never came");
+    reader.pick("Leave it out");
+    reader.pick("Write the report");
+    reader.read("Written: ");
+    reader.point_around();
+    let seen: Vec<String> = reader.seen.iter().cloned().collect();
+    let files = everything(folder.path());
+    for told in ["Trial 1 of 2, condition ", "Practice trial 1", "Touch", "Loop state: Engaged", "Give up this trial"] {
+        assert!(seen.iter().any(|words| words.contains(told)), "{told} was not even seen: {seen:?}");
+    }
+    let found: Vec<&String> = seen.iter().filter(|words| !secrets_in(words).is_empty()).collect();
+    assert!(found.is_empty(), "on the screen, of {} texts: {found:#?}", seen.len());
+    assert_eq!(secrets_in(&files), [""; 0], "in {} bytes of files", files.len());
+    let names: Vec<String> = fs::read_dir(place.join("sessions"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    assert!(names.len() == 3 && names.iter().all(|name| name.ends_with(".mcap.sealed")), "{names:?}");
+    assert!(!folder.path().join("sessions").exists(), "the console recorded nothing of its own");
+
+    reader.write_into("Your name", "A. Person");
+    reader.write_into("Reason of the unblinding", "end");
+    reader.pick("Unblind the study");
+    reader.read("Unblinded by");
+    let seen = reader.seen.iter().cloned().collect::<String>();
+    assert_eq!(secrets_in(&seen), ["zebra", "wildebeest"], "the control: now they are there");
+    assert!(secrets_in(&everything(&place)).len() > 6, "and in the files");
+}

@@ -1,0 +1,310 @@
+//! User studies in the window: from a ready study to a report by clicks, and blind until the unblinding.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+use eframe::App as _;
+use egui::{Key, accesskit::Role};
+use egui_kittest::kittest::Queryable as _;
+use nima_console::console::{Options, settings::Kept};
+use nima_machine::messages::LoopState;
+use nima_score::{Event, HandSample, Happening, Sample, Scorer, TaskFile};
+use nima_tests::plan;
+use nima_user_study::{Ending, Study, StudyFile};
+use nima_world::scene::Scene;
+
+use crate::bench::{Console, can_press, pick, press, read, shown_at, shows, texts, until, wait, write_into};
+
+pub(crate) const SIZE: [f32; 2] = [1600.0, 1000.0];
+/// How much faster than real time a trial goes.
+const SPEED: f64 = 6.0;
+const AT: &str = "2026-01-01T09:00:00Z";
+const CONDITIONS: &str = "
+[[conditions]]
+name = 'Zebra'
+mode = 'anchored'
+gain = 0.8125
+delay_ms = 137.5
+[[conditions]]
+name = 'Wildebeest'
+no_force = true
+";
+
+/// Makes a study among the user's data in which the right hand touches tissue for so many seconds.
+pub(crate) fn make(data: &Path, head: &str, seconds: f64, rest: &str) -> PathBuf {
+    let text = format!(
+        "name = 'Touching'\nscene = 'peg_transfer'\nprimary = 'mean_force_n_right'\nparticipants = 2\n{head}\n\
+         [task]\nname = 'Touch'\nkind = 'free'\ntime_limit_s = {seconds:?}\n{CONDITIONS}{rest}"
+    );
+    let file = StudyFile::from_toml(&text).unwrap();
+    let scene = Scene { task: file.task.clone(), ..Scene::load("peg_transfer").unwrap() };
+    let place = data.join("studies/touching");
+    Study::create(&place, &file, &toml::to_string(&scene).unwrap(), AT).unwrap();
+    place
+}
+
+/// The console with this folder of the user's data.
+pub(crate) fn console(data: &Path, options: Options) -> Console {
+    let data = data.to_path_buf();
+    shown_at(SPEED, &plan("peg_transfer"), SIZE, move |app| {
+        let mut kept = Kept::open(&data);
+        kept.now.toured = true;
+        app.with_settings(kept).with_options(options)
+    })
+}
+
+/// Opens the study that [`make`] has made.
+pub(crate) fn open(window: &mut Console) {
+    until(window, "any tick", |_| true);
+    window.key_press(Key::F8);
+    window.run_steps(2);
+    pick(window, "Open Touching");
+    read(window, "Next step");
+}
+
+/// Begins the next trial and engages.
+pub(crate) fn begin(window: &mut Console, button: &str) {
+    pick(window, button);
+    wait(window, "a trial", |window| window.state().in_trial());
+    until(window, "idle", |tick| tick.state == LoopState::Idle);
+    press(window, "Engage");
+    until(window, "engaged", |tick| tick.state == LoopState::Engaged);
+}
+
+/// Does the next trial to its end.
+fn trial(window: &mut Console, button: &str) {
+    begin(window, button);
+    wait(window, "the end of the trial", |window| !window.state().in_trial());
+    window.run_steps(2);
+}
+
+fn journal(place: &Path) -> String {
+    fs::read_to_string(place.join("journal.jsonl")).unwrap()
+}
+
+fn rate(window: &mut Console, name: &str, value: f64) {
+    window.get_by_role_and_label(Role::Slider, name).set_value_accesskit(value);
+    window.run_steps(2);
+}
+
+fn set(window: &mut Console, name: &str, value: f64) {
+    window.get_by_role_and_label(Role::SpinButton, name).set_value_accesskit(value);
+    window.run_steps(2);
+}
+
+#[test]
+fn from_a_ready_study_to_the_end_of_its_first_trial_by_clicks() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = console(folder.path(), Options::default());
+    until(&mut window, "any tick", |_| true);
+    press(&mut window, "Rig");
+    pick(&mut window, "User studies");
+    pick(&mut window, "New study");
+    pick(&mut window, "Short, for trying out");
+    set(&mut window, "Participants", 0.0);
+    set(&mut window, "Trials of each condition", 0.0);
+    pick(&mut window, "Make the study");
+    for mistake in ["participants = 0", "trials = 0"] {
+        assert!(shows(&window, mistake), "all are told at once: {:?}", texts(&window));
+    }
+    assert!(!folder.path().join("studies").exists(), "nothing is made of a study with mistakes");
+    set(&mut window, "Participants", 4.0);
+    set(&mut window, "Trials of each condition", 2.0);
+    pick(&mut window, "Make the study");
+    let place = folder.path().join("studies/short-trial-of-a-study");
+    let commitment = Study::read(&place).unwrap().plan().commitment.clone();
+    read(&mut window, &commitment);
+
+    begin(&mut window, "Begin the trial");
+    assert!(shows(&window, "Trial 1 of 4, condition "), "{:?}", texts(&window));
+    until(&mut window, "the participant's hand holds the instrument", |tick| tick.guide_m.is_some());
+    let before_m = window.state().tick().unwrap().guide_m.unwrap();
+    for _ in 0..10 {
+        window.key_press(Key::ArrowRight);
+        window.step();
+    }
+    until(&mut window, "led", |tick| tick.guide_m.is_some_and(|at_m| (at_m - before_m).norm() > 0.005));
+    window.key_press(Key::M);
+    window.run_steps(5);
+    assert!(window.state().tick().unwrap().guide_m.is_some(), "it cannot be let go");
+    wait(&mut window, "the end", |window| !window.state().in_trial());
+    // A task without an end has no time of completion.
+    read(&mut window, "Trial 1: the time is over");
+    let study = Study::read(&place).unwrap();
+    let made = &study.state().progress("P01").unwrap().trials;
+    assert!(made.len() == 1 && !made[0].simulated, "{made:?}");
+    assert!(made[0].measures.as_ref().unwrap()["path_length_m_right"] > 0.004, "{made:?}");
+    assert!(shows(&window, "No trial was completed yet"), "{:?}", texts(&window));
+    pick(&mut window, "Close the study");
+    wait(&mut window, "what ran before", |window| window.state().running().scene == "peg_transfer");
+}
+
+#[test]
+fn twelve_trials_with_one_given_up_one_stopped_and_a_power_cut_lose_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = make(folder.path(), "trials = 6", 2.0, "");
+    let mut window = console(folder.path(), Options::default());
+    open(&mut window);
+    pick(&mut window, "a simulated hand");
+    for number in 1..=12 {
+        read(&mut window, &format!("Trial {number} of 12, condition "));
+        match number {
+            3 => {
+                begin(&mut window, "Begin the trial");
+                press(&mut window, "Give up this trial");
+                press(&mut window, "Give up now?");
+                read(&mut window, "Trial 3: broken off (given up by the operator)");
+            }
+            6 => {
+                begin(&mut window, "Begin the trial");
+                press(&mut window, "Stop");
+                until(&mut window, "stopped", |tick| tick.state == LoopState::Stopped);
+                assert!(shows(&window, "it was stopped") && window.state().in_trial(), "the stop stays on the screen");
+                press(&mut window, "Release stop");
+                read(&mut window, "Trial 6: broken off (stopped by the operator)");
+            }
+            9 => {
+                begin(&mut window, "Begin the trial");
+                drop(window);
+                assert!(journal(&place).lines().last().unwrap().contains("trial_began"));
+                window = console(folder.path(), Options::default());
+                open(&mut window);
+                pick(&mut window, "a simulated hand");
+            }
+            _ => {}
+        }
+        if [3, 6, 9].contains(&number) {
+            read(&mut window, ", attempt 2");
+        }
+        trial(&mut window, "Begin the trial");
+    }
+    read(&mut window, "Finished");
+    let study = Study::read(&place).unwrap();
+    let progress = study.state().progress("P01").unwrap();
+    let attempts: Vec<u32> = progress.trials.iter().map(|made| made.attempt).collect();
+    assert_eq!(attempts, [1, 1, 2, 1, 1, 2, 1, 1, 2, 1, 1, 1]);
+    assert!(progress.trials.iter().all(|made| made.measures.is_some() && made.simulated));
+    assert_eq!(progress.interruptions, 3);
+    assert_eq!(study.trials().rows, 12);
+}
+
+#[test]
+fn questionnaires_break_notes_exclusion_unblinding_and_report_are_done_on_the_screen() {
+    let folder = tempfile::tempdir().unwrap();
+    let rest = "[questionnaires]\nafter_condition = ['nasa_tlx_weighted', 'realism']\nat_end = ['sus', 'free_text']\n\
+                [breaks]\nafter_trials = 1\nleast_s = 1.0";
+    let place = make(folder.path(), "trials = 1", 2.0, rest);
+    let mut window = console(folder.path(), Options::default());
+    open(&mut window);
+    pick(&mut window, "a simulated hand");
+    for number in 1..=2 {
+        trial(&mut window, "Begin the trial");
+        pick(&mut window, "Fill in the questionnaire");
+        for (name, value) in
+            ["Mental", "Physical", "Temporal", "Performance", "Effort"].into_iter().zip([60.0, 30.0, 45.0, 30.0, 15.0])
+        {
+            rate(&mut window, name, value);
+        }
+        assert!(shows(&window, "Missing: frustration, 15 pairs") && !can_press(&window, "Submit"));
+        rate(&mut window, "Frustration", 100.0);
+        let names = ["Mental", "Physical", "Temporal", "Performance", "Effort", "Frustration"];
+        let firsts = (0..6).flat_map(|one| std::iter::repeat_n(names[one], 5 - one));
+        for (pair, first) in (1..).zip(firsts) {
+            assert!(!can_press(&window, "Submit"), "before pair {pair}");
+            pick(&mut window, &format!("{pair}: {first}"));
+        }
+        pick(&mut window, "Submit");
+        read(&mut window, "How real did touching");
+        assert!(!can_press(&window, "Submit"));
+        pick(&mut window, "1: 6");
+        pick(&mut window, "Submit");
+        if number == 1 {
+            pick(&mut window, "Begin the break");
+            assert!(!can_press(&window, "End the break"));
+            let began = Instant::now();
+            pick(&mut window, "End the break");
+            assert!(began.elapsed() > Duration::from_millis(900));
+        }
+    }
+    for (number, answer) in (1..).zip([5, 4, 2, 1, 2, 3, 2, 4, 5, 2]) {
+        assert!(shows(&window, "Missing: statement"), "{number}");
+        pick(&mut window, &format!("{number}: {answer}"));
+    }
+    pick(&mut window, "Submit");
+    write_into(&mut window, "What do you want to tell us?", "it was easy");
+    pick(&mut window, "Submit");
+    read(&mut window, "Finished");
+
+    write_into(&mut window, "What happened", "the light flickered");
+    pick(&mut window, "Keep the note");
+    pick(&mut window, "Trial 2");
+    write_into(&mut window, "Reason", "a telephone rang");
+    pick(&mut window, "Leave it out");
+    read(&mut window, "P01, trial 2: left out");
+    pick(&mut window, "Write the report");
+    read(&mut window, "Written: ");
+    assert!(!can_press(&window, "Unblind the study"), "neither name nor reason");
+    write_into(&mut window, "Your name", "A. Person");
+    write_into(&mut window, "Reason of the unblinding", "end");
+    pick(&mut window, "Unblind the study");
+    read(&mut window, "Unblinded by A. Person at ");
+    assert!(shows(&window, ": Zebra") && shows(&window, ": Wildebeest"));
+
+    let study = Study::read(&place).unwrap();
+    let scores: Vec<(&str, f64)> =
+        study.state().progress("P01").unwrap().answers.iter().flat_map(|(_, answers, _)| answers.scores()).collect();
+    for wanted in [("nasa_tlx_weighted", 42.0), ("realism", 6.0), ("sus", 55.0)] {
+        assert!(scores.contains(&wanted), "{wanted:?} in {scores:?}");
+    }
+    assert_eq!(study.exclusions().len(), 1);
+    let report = fs::read_to_string(place.join("report/report.html")).unwrap();
+    assert!(report.contains("the light flickered") && report.contains("a telephone rang"), "{report}");
+    let journal = journal(&place);
+    assert!(journal.contains("\"unblinded\"") && journal.contains("it was easy"), "{journal}");
+}
+
+#[test]
+fn a_closed_window_ends_its_trial_and_writes_no_figures_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = make(folder.path(), "trials = 1", 20.0, "");
+    let summary = folder.path().join("summary.json");
+    let mut window = console(folder.path(), Options { summary: Some(summary.clone()), ..Options::default() });
+    open(&mut window);
+    begin(&mut window, "Begin the trial");
+    window.state_mut().on_exit(None);
+    assert!(journal(&place).lines().last().unwrap().contains("the console was closed"));
+    assert!(!summary.exists(), "it has the errors of the modes");
+}
+
+/// Completes the next trial of this participant in so many seconds.
+fn complete(study: &mut Study, participant: &str, seconds: u32) {
+    let mut scorer = Scorer::new(&TaskFile::from_toml("name = 'x'\nkind = 'peg_transfer'").unwrap());
+    scorer.happening(&Happening { t_s: 0.0, event: Event::Begun });
+    for tick in 0..=seconds * 10 {
+        let right = HandSample { engaged: true, ..HandSample::default() };
+        scorer.sample(&Sample { t_s: f64::from(tick) * 0.1, hands: [None, Some(right)] });
+    }
+    scorer.happening(&Happening { t_s: f64::from(seconds), event: Event::Ended });
+    let running = study.begin_trial(participant, false, AT).unwrap();
+    study.end_trial(running, Ending::Completed, &scorer.finish(), AT).unwrap();
+}
+
+#[test]
+fn the_learning_of_the_chosen_participant_is_drawn_by_practice_and_trials() {
+    let folder = tempfile::tempdir().unwrap();
+    let practice = "[practice.criterion]\ntime_s = 100.0\nconsecutive = 2\nadditional = 0\nmax_trials = 4";
+    let place = make(folder.path(), "trials = 3", 2.0, practice);
+    let mut study = Study::open(&place, AT).unwrap();
+    for seconds in [60, 50, 45, 40, 38] {
+        complete(&mut study, "P01", seconds);
+    }
+    drop(study);
+    let mut window = console(folder.path(), Options::default());
+    open(&mut window);
+    read(&mut window, "Learning of P01: 2 trials of practice, 3 trials completed");
+    pick(&mut window, "P02");
+    read(&mut window, "No trial was completed yet");
+}

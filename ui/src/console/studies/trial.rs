@@ -10,12 +10,13 @@ use nima_machine::{
 };
 use nima_score::TaskFile;
 use nima_session::{outlet::Destination, recorder::Recorder};
-use nima_user_study::{Running, Study};
+use nima_user_study::{Progress, Running, Study};
 use nima_world::{Plan, Watched};
 
 use super::Hand;
 use crate::{
     console::{
+        alarms,
         app::Started,
         chain,
         live::Live,
@@ -129,7 +130,7 @@ impl Trial {
 
     /// Writes down how it ended; gives that in words, and what must be noted besides. The loop must have ended.
     pub(super) fn close(self, study: &mut Study) -> (String, Vec<String>) {
-        let Self { running, scoring, recorder, over, lost, .. } = self;
+        let Self { participant, running, scoring, recorder, over, lost, .. } = self;
         let trial = running.trial();
         let mut notes = Vec::new();
         if let Some(Err(error)) = recorder.map(Recorder::finish) {
@@ -144,8 +145,8 @@ impl Trial {
             None => Some(user_study::CLOSED.to_owned()),
         };
         let closed = user_study::close(study, running, why, scoring);
-        let words =
-            closed.map_or_else(|error| error.to_string(), |ran| crate::console::alarms::sentence(&ran.in_words()));
+        let shows = study.state().progress(&participant).is_none_or(Progress::shows_result);
+        let words = closed.map_or_else(|error| error.to_string(), |ran| alarms::sentence(&ran.in_words(shows)));
         (words, notes)
     }
 

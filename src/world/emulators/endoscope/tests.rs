@@ -92,10 +92,11 @@ fn a_tip_is_seen_where_the_camera_says_through_either_distortion() {
 
 #[test]
 fn its_picture_arrives_with_the_time_at_which_it_was_made() {
+    let now_us = || SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_micros() as u64;
+    // Its first picture is made before anybody looks.
+    let begin_us = now_us();
     let serving = serve();
     let feed = feed(&serving);
-    let now_us = || SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_micros() as u64;
-    let begin_us = now_us();
     let mut last_us = 0;
     for _ in 0..5 {
         let look = until(&feed, "another picture", |look| {

@@ -209,6 +209,11 @@ fn questionnaires_break_notes_exclusion_unblinding_and_report_are_done_on_the_sc
             rate(&mut window, name, value);
         }
         assert!(shows(&window, "Missing: frustration, 15 pairs") && !can_press(&window, "Submit"));
+        // A tap whose press and release come in one frame, on the middle of the line.
+        window.get_by_role_and_label(Role::Slider, "Frustration").click();
+        window.run_steps(2);
+        assert!(shows(&window, "Missing: 15 pairs"), "{:?}", texts(&window));
+        assert!(texts(&window).iter().any(|words| words == "50"), "{:?}", texts(&window));
         rate(&mut window, "Frustration", 100.0);
         let names = ["Mental", "Physical", "Temporal", "Performance", "Effort", "Frustration"];
         let firsts = (0..6).flat_map(|one| std::iter::repeat_n(names[one], 5 - one));

@@ -1,6 +1,6 @@
 //! Questionnaires as a participant fills them in. What is missing is told, and nothing can be submitted before it is complete.
 
-use egui::{Button, Label, RichText, ScrollArea, Slider, TextEdit, Ui, vec2};
+use egui::{Button, Label, Response, RichText, ScrollArea, Slider, TextEdit, Ui, vec2};
 use nima_user_study::{
     Answers, Label as Letter, PAIRS, Questionnaire, REALISM_ITEM, Ratings, SUS_ITEMS, TLX_SCALES, TlxScale,
 };
@@ -152,9 +152,21 @@ impl Sheet {
                 ui.spacing_mut().slider_width = SLIDER;
                 let mut value = rating.map_or(50.0, f64::from);
                 let slider = Slider::new(&mut value, 0.0..=100.0).step_by(STEP).show_value(false);
-                let response = ui.add(slider).labelled_by(label.id);
-                // A click on the middle changes nothing and is an answer all the same.
-                if response.changed() || response.clicked() || response.drag_started() {
+                // What was not rated yet must not look as if it were rated in the middle.
+                let opacity = if rating.is_some() { 1.0 } else { 0.4 };
+                let slider = slider.trailing_fill(rating.is_some());
+                let response = ui.scope(|ui| {
+                    ui.set_opacity(opacity);
+                    ui.add(slider)
+                });
+                let response = response.inner.labelled_by(label.id);
+                // A press on the middle changes nothing and is an answer all the same.
+                if let Some(tapped) = tapped(&response) {
+                    value = tapped;
+                } else if !(response.changed() || response.drag_started()) {
+                    value = f64::NAN;
+                }
+                if value.is_finite() {
                     *rating = Some((STEP * (value / STEP).round()) as u8);
                 }
                 let shown = rating.map_or_else(|| text::studies::NOT_ANSWERED.to_owned(), |rating| rating.to_string());
@@ -199,6 +211,18 @@ impl Sheet {
         let field = TextEdit::multiline(&mut self.text).desired_rows(8).desired_width(f32::INFINITY).char_limit(4000);
         ui.add(field).labelled_by(label.id);
     }
+}
+
+/// Where a line was tapped so quickly that press and release came in one frame, which a slider does not notice: 0 to 100.
+fn tapped(slider: &Response) -> Option<f64> {
+    let (is_tap, at) = slider.ctx.input(|input| {
+        let pointer = &input.pointer;
+        (pointer.primary_pressed() && pointer.primary_released(), pointer.interact_pos())
+    });
+    let at = at.filter(|_| is_tap && slider.contains_pointer())?;
+    // The middle of the handle stays within the line.
+    let line = slider.rect.x_range().shrink(slider.rect.height() / 2.5);
+    Some(f64::from(100.0 * ((at.x - line.min) / line.span()).clamp(0.0, 1.0)))
 }
 
 /// A question that is answered by a number from 1 on.

@@ -7,6 +7,7 @@
 #[cfg(unix)]
 pub mod emulated;
 pub mod gravity;
+pub mod studies;
 
 use nima_machine::config::RigConfig;
 use nima_world::{Plan, scene::Scene};

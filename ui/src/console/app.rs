@@ -7,6 +7,7 @@ mod listing;
 mod opening;
 mod pace;
 mod reviewing;
+mod seen;
 mod starting;
 mod studying;
 mod views;
@@ -199,51 +200,6 @@ impl ConsoleApp {
             pictured: false,
             calm: false,
         }
-    }
-
-    /// The settings that are saved between sessions, for tests.
-    pub const fn settings_mut(&mut self) -> &mut Settings {
-        &mut self.settings.now
-    }
-
-    /// The present role.
-    pub const fn role(&self) -> Role {
-        self.settings.now.role
-    }
-
-    /// The newest tick that the window has received.
-    pub fn tick(&self) -> Option<&Tick> {
-        self.live.first_tick()
-    }
-
-    /// What the simulation told last of the objects of its scene.
-    pub const fn objects(&self) -> Option<&Objects> {
-        self.live.objects.as_ref()
-    }
-
-    /// The rig that the loop is running on.
-    pub fn rig(&self) -> &RigConfig {
-        &self.live.rig
-    }
-
-    /// State of the trade-off panel.
-    pub fn tradeoff(&self) -> &TradeoffState {
-        &self.panels.tradeoff
-    }
-
-    /// Optional objects in the 3-D view.
-    pub const fn extras(&self) -> Extras {
-        self.panels.scene.extras
-    }
-
-    /// Marks set by the operator, s on the loop's clock.
-    pub fn marks_s(&self) -> impl Iterator<Item = f64> {
-        self.live.marks_s.iter().copied()
-    }
-
-    /// The calibrations in force.
-    pub fn in_force(&self) -> &InForce {
-        &self.in_force
     }
 
     /// Reads everything that the loop has sent.

@@ -1,10 +1,26 @@
 //! Small parts that several panels share.
 
 use egui::{
-    Align, Button, Color32, Layout, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, Ui, Vec2, pos2, vec2,
+    Align, Button, Color32, Layout, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, Ui, Vec2, Vec2b, pos2, vec2,
 };
 
+use egui_plot::Plot;
+
 use super::theme;
+
+/// A plot whose range is given to it: nothing that the pointer does moves it.
+pub fn still(plot: Plot<'_>) -> Plot<'_> {
+    plot.allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .auto_bounds(Vec2b::FALSE)
+        .set_margin_fraction(Vec2::ZERO)
+        .show_crosshair(false)
+        .grid_color(theme::now().line)
+}
 
 /// A card with a heading; `meaning` is its hover text.
 pub fn card<R>(ui: &mut Ui, title: &str, meaning: &str, content: impl FnOnce(&mut Ui) -> R) -> R {

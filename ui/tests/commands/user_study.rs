@@ -7,6 +7,7 @@ use std::{
     time::Duration,
 };
 
+use nima_tests::studies::{BLIND, everything, found_in, study_file};
 use serde_json::Value;
 
 use crate::every_command::{json, nima};
@@ -18,24 +19,9 @@ const SECRET: [&str; 9] =
 /// A study of short trials in which the right hand touches tissue.
 fn file(folder: &Path, head: &str, seconds: f64, conditions: &str) -> String {
     let path = folder.join("file.toml");
-    let text = format!(
-        "name = 'Touching'\nscene = 'peg_transfer'\nprimary = 'mean_force_n_right'\n{head}\n\
-         [task]\nname = 'Touch'\nkind = 'free'\ntime_limit_s = {seconds:?}\n{conditions}"
-    );
-    fs::write(&path, text).unwrap();
+    fs::write(&path, study_file(head, seconds, conditions)).unwrap();
     path.display().to_string()
 }
-
-const BLIND: &str = "
-[[conditions]]
-name = 'Zebra'
-mode = 'anchored'
-gain = 0.8125
-delay_ms = 137.5
-[[conditions]]
-name = 'Wildebeest'
-no_force = true
-";
 
 /// Runs a command that must succeed; gives all that it printed.
 fn told(arguments: &[&str]) -> String {
@@ -53,24 +39,8 @@ fn refused(arguments: &[&str]) -> String {
     text
 }
 
-/// Names and bytes of all files under a folder.
-fn everything(folder: &Path) -> String {
-    let mut all = String::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        all += &path.file_name().unwrap().to_string_lossy();
-        all += &if path.is_dir() {
-            everything(&path)
-        } else {
-            String::from_utf8_lossy(&fs::read(&path).unwrap()).into_owned()
-        };
-    }
-    all
-}
-
 fn secrets_in(text: &str) -> Vec<&'static str> {
-    let text = text.to_lowercase();
-    SECRET.into_iter().filter(|word| text.contains(word)).collect()
+    found_in(text, &SECRET)
 }
 
 #[test]

@@ -3,7 +3,6 @@
 use std::{
     collections::BTreeSet,
     fs,
-    path::Path,
     time::{Duration, Instant},
 };
 
@@ -11,6 +10,7 @@ use egui::{Key, Shape, accesskit::Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nima_console::console::Options;
 use nima_machine::messages::LoopState;
+use nima_tests::studies::{everything, found_in};
 
 use crate::{
     bench::{Console, TIMEOUT, can_press, shows, texts, until, write_into},
@@ -116,24 +116,8 @@ fn painted(shape: &Shape, seen: &mut BTreeSet<String>) {
     }
 }
 
-/// Names and bytes of all files under a folder.
-fn everything(folder: &Path) -> String {
-    let mut all = String::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        all += &path.file_name().unwrap().to_string_lossy();
-        all += &if path.is_dir() {
-            everything(&path)
-        } else {
-            String::from_utf8_lossy(&fs::read(&path).unwrap()).into_owned()
-        };
-    }
-    all
-}
-
 fn secrets_in(text: &str) -> Vec<&'static str> {
-    let text = text.to_lowercase();
-    SECRET.into_iter().filter(|word| text.contains(word)).collect()
+    found_in(text, &SECRET)
 }
 
 #[test]

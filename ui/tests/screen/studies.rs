@@ -12,7 +12,10 @@ use egui_kittest::kittest::Queryable as _;
 use nima_console::console::{Options, settings::Kept};
 use nima_machine::messages::LoopState;
 use nima_score::{Event, HandSample, Happening, Sample, Scorer, TaskFile};
-use nima_tests::plan;
+use nima_tests::{
+    plan,
+    studies::{BLIND, study_file},
+};
 use nima_user_study::{Ending, Study, StudyFile};
 use nima_world::scene::Scene;
 
@@ -22,23 +25,9 @@ pub(crate) const SIZE: [f32; 2] = [1600.0, 1000.0];
 /// How much faster than real time a trial goes.
 const SPEED: f64 = 6.0;
 const AT: &str = "2026-01-01T09:00:00Z";
-const CONDITIONS: &str = "
-[[conditions]]
-name = 'Zebra'
-mode = 'anchored'
-gain = 0.8125
-delay_ms = 137.5
-[[conditions]]
-name = 'Wildebeest'
-no_force = true
-";
-
 /// Makes a study among the user's data in which the right hand touches tissue for so many seconds.
 pub(crate) fn make(data: &Path, head: &str, seconds: f64, rest: &str) -> PathBuf {
-    let text = format!(
-        "name = 'Touching'\nscene = 'peg_transfer'\nprimary = 'mean_force_n_right'\nparticipants = 2\n{head}\n\
-         [task]\nname = 'Touch'\nkind = 'free'\ntime_limit_s = {seconds:?}\n{CONDITIONS}{rest}"
-    );
+    let text = study_file(&format!("participants = 2\n{head}"), seconds, &format!("{BLIND}{rest}"));
     let file = StudyFile::from_toml(&text).unwrap();
     let scene = Scene { task: file.task.clone(), ..Scene::load("peg_transfer").unwrap() };
     let place = data.join("studies/touching");

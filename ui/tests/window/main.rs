@@ -9,3 +9,4 @@ mod playing;
 mod real_window;
 mod server;
 mod sessions;
+mod sight;

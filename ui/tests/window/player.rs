@@ -21,14 +21,11 @@ use nima_world::{scene::Scene, start_watched};
 use crate::{
     console::{Console, read},
     server::Xvfb,
+    sight::{Picture, around, is_green, is_of_ring},
 };
 
 const WINDOW: [f32; 2] = [1600.0, 1000.0];
 const ENGAGE: (i32, i32) = (1380, 36);
-/// Colour of the circle around the tip that is led, and where between it and a double one the width of what is seen lies, points.
-const MARK: [u8; 3] = [0x9c, 0xe8, 0x7a];
-const MARK_PIXELS: usize = 20;
-const DOUBLE: f32 = 27.0;
 /// Colours of alarms (`theme::Palette`), and fewer pixels than the frame of one has.
 const ALARMS: [[u8; 3]; 3] = [[0xff, 0x4d, 0x4d], [0xff, 0xd7, 0x3d], [0x41, 0xd6, 0xe0]];
 const ALARM_PIXELS: usize = 800;
@@ -48,47 +45,6 @@ const LET_GO_M: f32 = 0.015;
 /// Height of the middle of a ring on the board, m, and how far from its peg's middle a ring's own can be seen, m.
 const LIES_M: f32 = 0.00175;
 const AROUND_M: f32 = 0.0135;
-
-/// Part of the screen.
-struct Picture {
-    corner: Pos2,
-    width: usize,
-    rgb: Vec<u8>,
-}
-
-impl Picture {
-    /// Middles of the pixels of such a colour.
-    fn places(&self, is_so: impl Fn([u8; 3]) -> bool) -> Vec<Pos2> {
-        let pixels = self.rgb.chunks_exact(3).enumerate();
-        let wanted = pixels.filter(|(_, pixel)| is_so([pixel[0], pixel[1], pixel[2]]));
-        let place = |i: usize| self.corner + vec2((i % self.width) as f32 + 0.5, (i / self.width) as f32 + 0.5);
-        wanted.map(|(i, _)| place(i)).collect()
-    }
-
-    /// The middle of the circle around the tip, and whether it is double: the jaws hold a ring.
-    fn mark(&self) -> Option<(Pos2, bool)> {
-        let places = self.places(|pixel| pixel == MARK);
-        let around = around(&places).filter(|_| places.len() >= MARK_PIXELS)?;
-        Some((around.center(), around.width() > DOUBLE))
-    }
-}
-
-/// The rectangle around these places; `None` if there are none.
-fn around(places: &[Pos2]) -> Option<Rect> {
-    (!places.is_empty()).then(|| Rect::from_points(places))
-}
-
-/// A ring that no jaws are near, however it is lit.
-fn is_of_ring([r, g, b]: [u8; 3]) -> bool {
-    let [r, g, b] = [r, g, b].map(i32::from);
-    r > g + 25 && g > b + 12
-}
-
-/// The circle, the line and the mark below, where nothing else is green.
-fn is_green([r, g, b]: [u8; 3]) -> bool {
-    let [r, g, b] = [r, g, b].map(i32::from);
-    g > r + 20 && g > b + 25
-}
 
 pub(crate) struct Player<'a> {
     console: Console<'a>,

@@ -3,7 +3,7 @@
 //! The view is a time interval counted back from now (or from the moment of the pause). It is moved by dragging, zoomed
 //! with the wheel and reset by a double click, even while data arrive.
 
-use egui::{Align, Align2, Button, Color32, Layout, Rect, RichText, Sense, Ui, Vec2b, pos2, vec2};
+use egui::{Align, Align2, Button, Color32, Layout, Rect, RichText, Sense, Ui, pos2, vec2};
 use egui_plot::{
     AxisHints, HoverPosition, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotResponse, Text, VLine,
 };
@@ -16,7 +16,7 @@ use crate::console::{
     readings::Twist,
     scene3d::side_name,
     text, theme,
-    widgets::{force_sign, small},
+    widgets::{force_sign, small, still},
 };
 
 const DEFAULT_VIEW_S: (f64, f64) = (-10.0, 0.0);
@@ -244,21 +244,11 @@ fn plot_ui(
         .min_thickness(56.0)
         .label_spacing(12.0..=20.0)
         .formatter(|mark, shown| if near_end(mark.value, shown) { String::new() } else { plain(mark.value) });
-    let plot = Plot::new(("forces", axis))
+    let plot = still(Plot::new(("forces", axis)))
         .height(height)
         .custom_x_axes(if last { vec![seconds] } else { vec![] })
         .custom_y_axes(vec![newtons])
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .allow_double_click_reset(false)
-        .auto_bounds(Vec2b::FALSE)
-        .set_margin_fraction(vec2(0.0, 0.0))
-        .show_crosshair(false)
         .show_background(false)
-        .grid_color(theme::now().line)
         .x_grid_spacer(|grid| marks(&grid, 64.0))
         .y_grid_spacer(|grid| marks(&grid, 18.0))
         .label_formatter(move |hover| {

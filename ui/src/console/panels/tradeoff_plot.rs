@@ -1,6 +1,6 @@
 //! Plot of error over cost, both on logarithmic axes, with the Pareto front as a line.
 
-use egui::{Color32, Ui, Vec2b, vec2};
+use egui::{Color32, Ui};
 use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points,
 };
@@ -9,7 +9,7 @@ use nima_study::tradeoff::{Point, SourceFigures};
 
 use super::tradeoff::words;
 use crate::{
-    console::{text, theme},
+    console::{text, theme, widgets::still},
     words::{mode_name, three_digits},
 };
 
@@ -23,7 +23,7 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
     let shown = shown(points);
     let range = range(points, &shown)?;
     let near = |at: PlotPoint| nearest(points, &shown, &range, at);
-    let plot = Plot::new("trade-off")
+    let plot = still(Plot::new("trade-off"))
         .height(HEIGHT)
         .custom_x_axes(vec![AxisHints::new_x().label(text::tradeoff::TIME_AXIS).formatter(|mark, _| plain(mark.value))])
         .custom_y_axes(vec![
@@ -32,15 +32,6 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
                 .min_thickness(48.0)
                 .formatter(|mark, _| plain(mark.value)),
         ])
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .auto_bounds(Vec2b::FALSE)
-        .set_margin_fraction(vec2(0.0, 0.0))
-        .show_crosshair(false)
-        .grid_color(theme::now().line)
         .x_grid_spacer(|grid| marks(&grid))
         .y_grid_spacer(|grid| marks(&grid))
         .label_formatter(|hover| {

@@ -1,10 +1,13 @@
 //! How a participant learns: the times of the completed trials in order. Marked as practice or not, never by condition.
 
-use egui::{Ui, Vec2b, vec2};
+use egui::Ui;
 use egui_plot::{AxisHints, Line, MarkerShape, Plot, PlotBounds, PlotPoints, Points};
 use nima_user_study::Learning;
 
-use crate::console::{text, theme, widgets::weak};
+use crate::console::{
+    text, theme,
+    widgets::{still, weak},
+};
 
 const HEIGHT: f32 = 190.0;
 
@@ -27,19 +30,10 @@ pub(super) fn curve_ui(ui: &mut Ui, learning: Option<&Learning>) {
         let numbers = 1..=learning.times_s.len() as u32;
         numbers.map(|number| [f64::from(number), curve.time_s(number)]).collect::<Vec<_>>()
     });
-    let plot = Plot::new("learning")
+    let plot = still(Plot::new("learning"))
         .height(HEIGHT)
         .custom_x_axes(vec![AxisHints::new_x().label(text::studies::TRIAL_AXIS)])
-        .custom_y_axes(vec![AxisHints::new_y().label(text::studies::TIME_AXIS).min_thickness(48.0)])
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .auto_bounds(Vec2b::FALSE)
-        .set_margin_fraction(vec2(0.0, 0.0))
-        .show_crosshair(false)
-        .grid_color(theme::now().line);
+        .custom_y_axes(vec![AxisHints::new_y().label(text::studies::TIME_AXIS).min_thickness(48.0)]);
     let response = plot.show(ui, |plot| {
         plot.set_plot_bounds(PlotBounds::from_min_max([0.0, 0.0], [count + 1.0, 1.15 * most_s]));
         if let Some(curve) = curve {

@@ -1,0 +1,56 @@
+//! What the window shows, for who asks it.
+
+use nima_machine::{config::RigConfig, messages::Tick};
+use nima_session::objects::Objects;
+
+use super::ConsoleApp;
+use crate::console::{
+    in_force::InForce, panels::TradeoffState, roles::Role, scene3d::extras::Extras, settings::Settings,
+};
+
+impl ConsoleApp {
+    /// The settings that are saved between sessions, for tests.
+    pub const fn settings_mut(&mut self) -> &mut Settings {
+        &mut self.settings.now
+    }
+
+    /// The present role.
+    pub const fn role(&self) -> Role {
+        self.settings.now.role
+    }
+
+    /// The newest tick that the window has received.
+    pub fn tick(&self) -> Option<&Tick> {
+        self.live.first_tick()
+    }
+
+    /// What the simulation told last of the objects of its scene.
+    pub const fn objects(&self) -> Option<&Objects> {
+        self.live.objects.as_ref()
+    }
+
+    /// The rig that the loop is running on.
+    pub fn rig(&self) -> &RigConfig {
+        &self.live.rig
+    }
+
+    /// State of the trade-off panel.
+    pub fn tradeoff(&self) -> &TradeoffState {
+        &self.panels.tradeoff
+    }
+
+    /// Optional objects in the 3-D view.
+    pub const fn extras(&self) -> Extras {
+        self.panels.scene.extras
+    }
+
+    /// Marks set by the operator, s on the loop's clock.
+    pub fn marks_s(&self) -> impl Iterator<Item = f64> {
+        self.live.marks_s.iter().copied()
+    }
+
+    /// The calibrations in force.
+    pub fn in_force(&self) -> &InForce {
+        &self.in_force
+    }
+}

@@ -22,11 +22,10 @@ use eframe::glow;
 use egui::{Frame, Id, Margin, Panel, Ui, UiBuilder};
 use nima_machine::{
     config::RigConfig,
-    messages::{Command, Tick},
+    messages::Command,
     rig::Side,
     runtime::{self, Assembly, Handle, StartError},
 };
-use nima_session::objects::Objects;
 use nima_world::{Plan, Watched, emulated::Screen, scene::Scene};
 
 use super::{
@@ -41,14 +40,14 @@ use super::{
     live::Live,
     menu,
     outbox::Outbox,
-    panels::{ForcesState, TopBarState, TradeoffState, top_bar_ui},
+    panels::{ForcesState, TopBarState, top_bar_ui},
     past::{Past, list::List},
     pictures::Photographer,
     reader::Reader,
-    roles::{Panels, Role},
-    scene3d::{SceneView, extras::Extras},
+    roles::Panels,
+    scene3d::SceneView,
     sessions::Sessions,
-    settings::{Kept, Settings},
+    settings::Kept,
     start::{Choice, StartPage},
     studies::Studies,
     theme,

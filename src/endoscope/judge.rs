@@ -142,15 +142,16 @@ impl Watch {
         if let Some((_, damage)) = self.damage.as_ref().filter(|(at, _)| comes && since(*at) < DAMAGE_TOLD) {
             return Some(Wrong::Damaged(damage.clone()));
         }
+        // Black pictures are all alike: while they come, the light is the cause and not a camera that hangs.
+        if comes && self.shown.is_some_and(|shown| shown.is_black) {
+            return Some(Wrong::Black);
+        }
         if let Some(stood) = self.changed.map(since).filter(|stood| *stood >= FROZEN) {
             return Some(Wrong::Frozen(stood));
         }
         let (shown, expected_px) = (self.shown?, self.expected_px?);
         if shown.size_px != expected_px {
             return Some(Wrong::Size(shown.size_px, expected_px));
-        }
-        if shown.is_black {
-            return Some(Wrong::Black);
         }
         self.late().filter(|late| *late >= LATE).map(Wrong::Late)
     }
@@ -263,6 +264,18 @@ mod tests {
             bench.frame(100, [64, 48]);
         }
         assert_eq!(bench.watch.wrong(bench.now), None);
+    }
+
+    #[test]
+    fn pictures_that_are_all_black_are_black_and_frozen_only_when_none_comes() {
+        let mut bench = Bench::new();
+        bench.frame(100, [64, 48]);
+        for _ in 0..30 {
+            bench.come(b"dark", Ok(&picture(0, [64, 48])));
+            assert_eq!(bench.watch.wrong(bench.now), Some(Wrong::Black));
+        }
+        let wrong = bench.watch.wrong(bench.now + FROZEN);
+        assert!(matches!(wrong, Some(Wrong::Frozen(_))), "{wrong:?}");
     }
 
     #[test]

@@ -9,7 +9,6 @@ use std::{
 
 use crate::{
     Address, Compressed, Picture, Standing, Trouble,
-    jpeg::decode,
     judge::Watch,
     source::{Source, Wanted},
 };
@@ -201,7 +200,7 @@ impl Shared {
                 Ok(Some(compressed)) => {
                     {
                         let mut state = locked(&self.state);
-                        state.watch.arrived(compressed.arrived, compressed.stamp_s, &compressed.jpeg);
+                        state.watch.arrived(&compressed);
                         (state.trouble, state.opened) = (None, true);
                     }
                     // What was not decoded yet is old now.
@@ -227,7 +226,7 @@ impl Shared {
             if !locked(&self.state).wants(Instant::now()) {
                 continue;
             }
-            let decoded = decode(&compressed.jpeg);
+            let decoded = compressed.decode();
             {
                 let mut state = locked(&self.state);
                 state.decoded = Some(Instant::now());

@@ -59,7 +59,7 @@ fn read(path: &Path) -> Result<Vec<u8>, Trouble> {
 }
 
 fn now(jpeg: Vec<u8>) -> Compressed {
-    Compressed { jpeg, arrived: Instant::now(), stamp_s: None }
+    Compressed::jpeg(jpeg, Instant::now(), None)
 }
 
 /// One picture.
@@ -191,7 +191,7 @@ mod tests {
         let film = folder.path().join("a.mjpeg");
         fs::write(&film, [grey(10), grey(100), grey(200)].concat()).unwrap();
         let mut source = Address::File(film).open().unwrap();
-        let seen: Vec<Vec<u8>> = (0..4).map(|_| next(&mut *source).unwrap().jpeg).collect();
+        let seen: Vec<Vec<u8>> = (0..4).map(|_| next(&mut *source).unwrap().bytes).collect();
         assert_eq!(seen, [grey(10), grey(100), grey(200), grey(10)]);
         assert!(!source.is_still());
 
@@ -199,11 +199,11 @@ mod tests {
             fs::write(folder.path().join(name), grey(value)).unwrap();
         }
         let mut source = Address::File(folder.path().to_owned()).open().unwrap();
-        let seen: Vec<Vec<u8>> = (0..3).map(|_| next(&mut *source).unwrap().jpeg).collect();
+        let seen: Vec<Vec<u8>> = (0..3).map(|_| next(&mut *source).unwrap().bytes).collect();
         assert_eq!(seen, [grey(40), grey(50), grey(40)]);
 
         let mut source = Address::File(folder.path().join("2.jpg")).open().unwrap();
-        assert_eq!(next(&mut *source).unwrap().jpeg, grey(50));
+        assert_eq!(next(&mut *source).unwrap().bytes, grey(50));
         assert!(source.is_still() && source.next().unwrap().is_none());
     }
 

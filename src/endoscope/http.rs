@@ -108,7 +108,7 @@ impl Source for Http {
         loop {
             if let Some(part) = self.parts.pop_front() {
                 self.whole = self.heard;
-                return Ok(Some(Compressed { jpeg: part.body, arrived: self.heard, stamp_s: part.stamp_s }));
+                return Ok(Some(Compressed::jpeg(part.body, self.heard, part.stamp_s)));
             }
             if self.ended {
                 return Err(Trouble::Closed { place: self.place.clone() });

@@ -7,6 +7,7 @@
 pub(super) mod alone;
 mod draw;
 mod serve;
+mod shot;
 #[cfg(test)]
 mod tests;
 
@@ -37,8 +38,10 @@ pub struct Emulated {
     pub port: u16,
     /// Pictures a second.
     pub rate_hz: f64,
-    /// Its lens and its place.
+    /// Its lens and its place; of two lenses the left one.
     pub camera: Camera,
+    /// How far a second lens is to the right of the first, m: their pictures lie side by side. `None` for one lens.
+    pub baseline_m: Option<f64>,
     /// Side of a square of the time code, px; 0 draws none.
     pub square_px: usize,
     /// Quality of the JPEGs, 1 to 100.
@@ -48,7 +51,8 @@ pub struct Emulated {
 impl Emulated {
     /// The usual endoscope of a scene, on this port.
     pub fn of(scene: &Scene, port: u16) -> Self {
-        Self { port, rate_hz: 30.0, camera: camera_of(&usual(scene)), square_px: SQUARE_PX, quality: 80 }
+        let camera = camera_of(&usual(scene));
+        Self { port, rate_hz: 30.0, camera, baseline_m: None, square_px: SQUARE_PX, quality: 80 }
     }
 
     /// With what it sees.
@@ -59,6 +63,8 @@ impl Emulated {
 
 /// Side of a square of the time code, px: a JPEG has half the resolution for colours.
 pub const SQUARE_PX: usize = 16;
+/// Distance of the lenses of the usual endoscope with two of them, m.
+pub const BASELINE_M: f64 = 0.004;
 /// Size of the usual picture, px, and its radial distortion: a barrel, as most endoscopes have.
 const SIZE_PX: [usize; 2] = [1280, 720];
 const K1: f64 = -0.3;

@@ -1,14 +1,13 @@
 //! Serves the pictures: one answer that never ends for everyone who asks.
 
-use std::{
-    collections::VecDeque,
-    io,
-    time::{SystemTime, UNIX_EPOCH},
+use std::{collections::VecDeque, io};
+
+use nima_endoscope::jpeg;
+
+use super::{
+    Body, Emulated,
+    shot::{Shot, Studio},
 };
-
-use nima_endoscope::{jpeg, time_code};
-
-use super::{Body, Emulated, draw::Painter};
 use crate::{
     emulators::{
         EmulatedFault, Emulator, Peer, Turn,
@@ -27,10 +26,7 @@ const PATHS: [&str; 4] = ["/", "/stream", "/stream.mjpg", "/?action=stream"];
 
 pub(super) struct Endoscope {
     emulated: Emulated,
-    scene: Scene,
-    body: Body,
-    /// Made when the first picture is wanted.
-    painter: Option<Painter>,
+    studio: Studio,
     clients: Vec<Client>,
     due_s: f64,
     /// The last picture as it was sent, which a frozen camera sends again.
@@ -48,7 +44,8 @@ struct Client {
 impl Endoscope {
     pub(super) fn new(emulated: Emulated, scene: &Scene, body: Body) -> Self {
         let (clients, late) = (Vec::new(), VecDeque::new());
-        Self { emulated, scene: scene.clone(), body, painter: None, clients, due_s: 0.0, last: None, late }
+        let studio = Studio::new(emulated.clone(), scene, body);
+        Self { emulated, studio, clients, due_s: 0.0, last: None, late }
     }
 
     fn is_watched(&self) -> bool {
@@ -57,28 +54,11 @@ impl Endoscope {
 
     /// One part of the answer with the picture of this time.
     fn part(&mut self, now_s: f64, fault: EmulatedFault) -> Vec<u8> {
-        // Before it is looked: whoever reads this time knows that nothing in the picture is older.
-        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let instruments = (self.body)(now_s);
-        let (camera, scene) = (self.emulated.camera, &self.scene);
-        let painter = self.painter.get_or_insert_with(|| Painter::new(camera, scene));
-        let size_px @ [width, _] = painter.size_px();
-        let rgb = painter.draw(&instruments);
-        let (quality, square_px) = (self.emulated.quality, self.emulated.square_px);
-        if square_px > 0 {
-            time_code::draw(since.as_micros() as u64, square_px, rgb, width);
-        }
-        let (kind, mut picture) = match fault {
-            EmulatedFault::Black => {
-                rgb.fill(0);
-                ("image/jpeg", jpeg::encode(rgb, size_px, quality))
-            }
-            EmulatedFault::WrongSize => {
-                let (half, half_px) = halved(rgb, size_px);
-                ("image/jpeg", jpeg::encode(&half, half_px, quality))
-            }
-            EmulatedFault::OtherFormat => ("image/png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec()),
-            _ => ("image/jpeg", jpeg::encode(rgb, size_px, quality)),
+        let Shot { rgb, size_px, since } = self.studio.take(now_s, fault);
+        let (kind, mut picture) = if fault == EmulatedFault::OtherFormat {
+            ("image/png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec())
+        } else {
+            ("image/jpeg", jpeg::encode(rgb, size_px, self.emulated.quality))
         };
         if fault == EmulatedFault::Torn {
             picture.truncate(picture.len() * 6 / 10);
@@ -97,14 +77,6 @@ impl Endoscope {
             turn.send(client.peer, part);
         }
     }
-}
-
-/// Every second pixel of every second row.
-fn halved(rgb: &[u8], [width, height]: [usize; 2]) -> (Vec<u8>, [usize; 2]) {
-    let half_px = [width / 2, height / 2];
-    let rows = rgb.chunks_exact(3 * width).step_by(2).take(half_px[1]);
-    let half = rows.flat_map(|row| row.chunks_exact(3).step_by(2).take(half_px[0]).flatten().copied()).collect();
-    (half, half_px)
 }
 
 /// Answer to a whole request, and whether pictures follow.

@@ -161,14 +161,37 @@ fn frozen_is_told_in_time_and_a_cut_is_mended_within_a_second() {
 }
 
 #[test]
+fn two_lenses_see_a_tip_where_each_camera_says() {
+    let camera = small(0.3);
+    let baseline_m = Some(BASELINE_M);
+    let emulated = Emulated { camera, baseline_m, square_px: 0, ..Emulated::of(&scene(), 0) };
+    let trocar_m = scene().trocar_m;
+    let tip_m = Vector3::new(0.01, 0.005, 0.01);
+    let body = Box::new(move |_: f64| vec![Instrument { tip_m, trocar_m }]);
+    let mut studio = shot::Studio::new(emulated, &scene(), body);
+    let shot = studio.take(0.0, EmulatedFault::None);
+    assert_eq!(shot.size_px, [1280, 360]);
+    for (number, camera) in [camera, camera.beside(BASELINE_M)].into_iter().enumerate() {
+        let rows = shot.rgb.chunks_exact(3 * 1280).map(|row| &row[3 * 640 * number..][..3 * 640]);
+        let rgba = rows.flat_map(|row| row.chunks_exact(3).flat_map(|rgb| [rgb[0], rgb[1], rgb[2], 255])).collect();
+        let seen_px = mark_px(&Picture { size_px: [640, 360], rgba }).unwrap();
+        assert!((seen_px - camera.project(&tip_m).unwrap()).norm() < 2.0, "{number}: {seen_px}");
+    }
+}
+
+#[test]
 fn a_wrong_page_and_a_wrong_setting_are_told() {
     let serving = serve();
     let address = format!("{}nothing", serving.endpoint).parse().unwrap();
     let feed = Feed::start(address, None, || {}).unwrap();
     until(&feed, "404", |look| matches!(look.standing, Standing::Lost(Trouble::Refused { status: 404, .. })));
-    for (setting, word) in
-        [("k1=9", "-2 to 2"), ("width=9", "64 to 4096"), ("rate_hz=0", "1 to 120"), ("scene=none", "none")]
-    {
+    for (setting, word) in [
+        ("k1=9", "-2 to 2"),
+        ("width=9", "64 to 4096"),
+        ("rate_hz=0", "1 to 120"),
+        ("scene=none", "none"),
+        ("baseline_m=1", "0.0005 to 0.05"),
+    ] {
         let settings = super::super::Settings::new(&[setting.to_owned()]).unwrap();
         let told = alone::endoscope(&settings).err().unwrap().to_string();
         assert!(told.contains(word), "{setting}: {told}");

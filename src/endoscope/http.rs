@@ -63,7 +63,7 @@ impl Http {
         let place = self.place.clone();
         match wrong {
             Wrong::Status(status) => Trouble::Refused { place, status },
-            Wrong::Format(found) => Trouble::OtherFormat { place, found },
+            Wrong::Format(found) => Trouble::OtherFormat { place, found, wanted: "motion JPEG" },
             Wrong::Unreadable(reason) => Trouble::Unreadable { place, reason: reason.to_owned() },
             Wrong::Ended => Trouble::Closed { place },
         }
@@ -90,7 +90,8 @@ impl Http {
     }
 }
 
-fn connect(host: &str, port: u16, place: &str) -> Result<TcpStream, Trouble> {
+/// Connects to the first address of the camera that answers.
+pub(crate) fn connect(host: &str, port: u16, place: &str) -> Result<TcpStream, Trouble> {
     let addresses = (host, port).to_socket_addrs().map_err(|_| Trouble::NoSuchName { place: place.to_owned() })?;
     let mut last = Trouble::NoSuchName { place: place.to_owned() };
     for address in addresses.take(ADDRESSES_MOST) {

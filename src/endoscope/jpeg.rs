@@ -147,13 +147,13 @@ fn damage(error: DecodeErrors) -> Damage {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use nima_testing::fuzz;
 
     use super::*;
 
     /// A picture with edges and slopes.
-    pub(super) fn pattern(size_px: [usize; 2]) -> Vec<u8> {
+    pub(crate) fn pattern(size_px: [usize; 2]) -> Vec<u8> {
         let value = |x: usize, y: usize| {
             if (x / 24 + y / 24).is_multiple_of(2) {
                 [(4 * x % 256) as u8, (3 * y % 256) as u8, 90]

@@ -96,9 +96,8 @@ impl Watch {
     /// A picture came, not decoded yet.
     pub(crate) fn arrived(&mut self, compressed: &Compressed) {
         let at = compressed.arrived;
-        let hash = Some(hash(compressed));
-        if self.hash != hash {
-            (self.hash, self.changed) = (hash, Some(at));
+        if compressed.stands_alone() {
+            self.looks(at, hash(compressed));
         }
         self.arrivals.push_back(at);
         let begin = at.checked_sub(RATE_OVER);
@@ -106,6 +105,13 @@ impl Watch {
             self.arrivals.pop_front();
         }
         self.delay.take(compressed);
+    }
+
+    /// What came at this moment looks so: the same number for the same picture. A stream, whose pictures refer to each other, never sends the same bytes.
+    pub(crate) fn looks(&mut self, at: Instant, hash: u64) {
+        if self.hash != Some(hash) {
+            (self.hash, self.changed) = (Some(hash), Some(at));
+        }
     }
 
     /// The picture that came at this moment was decoded.
@@ -164,7 +170,7 @@ const RUN_OF: usize = 16;
 fn hash(compressed: &Compressed) -> u64 {
     let mut hasher = DefaultHasher::new();
     match compressed.format {
-        Format::Jpeg => compressed.bytes.hash(&mut hasher),
+        Format::Jpeg | Format::H264 { .. } => compressed.bytes.hash(&mut hasher),
         Format::Raw(_) => compressed.bytes.chunks(RUN_BYTES).step_by(RUN_OF).for_each(|run| run.hash(&mut hasher)),
     }
     hasher.finish()

@@ -24,15 +24,19 @@ mod camera;
 pub mod colour;
 mod feed;
 mod files;
+pub mod h264;
 mod http;
 pub mod jpeg;
 mod judge;
 mod plugged;
+#[cfg(feature = "h264")]
+mod rtsp;
 mod source;
 pub mod time_code;
 mod trouble;
 #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
 mod v4l2;
+mod waiting;
 
 pub use address::{Address, AddressError, Capture, Pixels};
 pub use camera::{Camera, Lens};

@@ -32,6 +32,11 @@ pub enum Format {
     Jpeg,
     /// Not compressed.
     Raw(Raw),
+    /// A picture of a stream of H.264 (an access unit, annex B), which refers to those before it.
+    H264 {
+        /// It refers to no other: a decoder can begin with it.
+        is_key: bool,
+    },
 }
 
 impl Compressed {
@@ -40,7 +45,12 @@ impl Compressed {
         Self { format: Format::Jpeg, bytes, arrived, stamp_s, taken: None }
     }
 
-    /// Pixels of it, on the thread that calls.
+    /// It refers to no picture before it.
+    pub const fn stands_alone(&self) -> bool {
+        !matches!(self.format, Format::H264 { .. })
+    }
+
+    /// Pixels of a picture that stands alone, on the thread that calls.
     ///
     /// # Errors
     /// What is wrong with it.
@@ -48,6 +58,7 @@ impl Compressed {
         match self.format {
             Format::Jpeg => jpeg::decode(&self.bytes),
             Format::Raw(raw) => raw.picture(&self.bytes),
+            Format::H264 { .. } => Err(Damage::Undecodable { reason: "it refers to other pictures".to_owned() }),
         }
     }
 }
@@ -74,6 +85,9 @@ impl Address {
     pub fn open(&self) -> Result<Box<dyn Source>, Trouble> {
         match self {
             Self::Http { host, port, path } => Ok(Box::new(http::Http::open(host, *port, path)?)),
+            #[cfg(feature = "h264")]
+            Self::Rtsp { host, port, path } => crate::rtsp::open(host, *port, path),
+            #[cfg(not(feature = "h264"))]
             Self::Rtsp { .. } => Err(Trouble::NotBuilt { what: "RTSP and H.264" }),
             #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
             Self::Camera { path, capture } => crate::v4l2::open(path, *capture),

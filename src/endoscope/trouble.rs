@@ -15,8 +15,8 @@ pub enum Trouble {
     NoSuchName { place: String },
     #[error("{place} answers with the status {status}")]
     Refused { place: String, status: u16 },
-    #[error("{place} sends {found}, not motion JPEG")]
-    OtherFormat { place: String, found: String },
+    #[error("{place} sends {found}, not {wanted}")]
+    OtherFormat { place: String, found: String, wanted: &'static str },
     /// Not HTTP, or beyond a limit.
     #[error("{place} sends what cannot be read: {reason}")]
     Unreadable { place: String, reason: String },
@@ -72,9 +72,12 @@ impl Trouble {
             }
             Self::Refused { status: 404, .. } => "Correct the path in the rig file: the camera has no such page.",
             Self::Refused { .. } => "Correct the address in the rig file, or start the camera again.",
+            Self::OtherFormat { wanted: "H.264", .. } => {
+                "Set the camera to H.264, or correct the path in the rig file."
+            }
             Self::OtherFormat { .. } => "Set the camera to motion JPEG (MJPEG), or correct the path in the rig file.",
             Self::Unreadable { .. } => {
-                "Correct the port in the rig file: another program answers there, or the camera does not keep to HTTP."
+                "Correct the port in the rig file: another program answers there, or the camera does not keep to its protocol."
             }
             Self::Silent { .. } => "Switch the camera on, and check that it sends a picture to a browser.",
             Self::Closed { .. } => "Nothing is to be done: it is opened again at once and then twice a second.",

@@ -1,4 +1,5 @@
-//! An emulated endoscope: renders the simulated scene through a lens that bends the picture, and serves it as motion JPEG over HTTP on loopback.
+//! An emulated endoscope: renders the simulated scene through a lens that bends the picture, and serves it on loopback: as motion JPEG over HTTP
+//! and, in a program with the feature `h264`, as H.264 over RTSP at the same port; and into a named pipe.
 //!
 //! What is seen comes from its [`Body`], a closure of the emulator's time. A code in the upper left corner of the picture tells when it was
 //! rendered. Pictures are made only while somebody watches. Faults that concern the meaning are its own (`freeze`, `black`, `torn`, `late`,
@@ -6,10 +7,14 @@
 
 pub(super) mod alone;
 mod draw;
+mod pipe;
+mod rtsp;
 mod serve;
 mod shot;
 #[cfg(test)]
 mod tests;
+
+use std::path::PathBuf;
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector2, Vector3};
 use nima_core::frames::from_roll_pitch_yaw_deg;
@@ -46,13 +51,15 @@ pub struct Emulated {
     pub square_px: usize,
     /// Quality of the JPEGs, 1 to 100.
     pub quality: u8,
+    /// Where pictures are also written, one after the other: H.264 if it ends so, else JPEGs.
+    pub pipe: Option<PathBuf>,
 }
 
 impl Emulated {
     /// The usual endoscope of a scene, on this port.
     pub fn of(scene: &Scene, port: u16) -> Self {
         let camera = camera_of(&usual(scene));
-        Self { port, rate_hz: 30.0, camera, baseline_m: None, square_px: SQUARE_PX, quality: 80 }
+        Self { port, rate_hz: 30.0, camera, baseline_m: None, square_px: SQUARE_PX, quality: 80, pipe: None }
     }
 
     /// With what it sees.

@@ -14,6 +14,7 @@ pub(super) struct Studio {
     /// One for each lens, made when the first picture is wanted.
     painters: Vec<Painter>,
     rgb: Vec<u8>,
+    size_px: [usize; 2],
 }
 
 /// A picture of three bytes a pixel.
@@ -26,7 +27,16 @@ pub(super) struct Shot<'a> {
 
 impl Studio {
     pub(super) fn new(emulated: Emulated, scene: &Scene, body: Body) -> Self {
-        Self { emulated, scene: scene.clone(), body, painters: Vec::new(), rgb: Vec::new() }
+        Self { emulated, scene: scene.clone(), body, painters: Vec::new(), rgb: Vec::new(), size_px: [0; 2] }
+    }
+
+    /// The last picture again, as a camera that hangs sends it; the picture of this time if there was none.
+    pub(super) fn again(&mut self, now_s: f64) -> Shot<'_> {
+        if self.rgb.is_empty() {
+            return self.take(now_s, EmulatedFault::None);
+        }
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        Shot { rgb: &self.rgb, size_px: self.size_px, since }
     }
 
     /// The picture of this time, black or half as large where that is the fault.
@@ -52,16 +62,13 @@ impl Studio {
         if self.emulated.square_px > 0 {
             time_code::draw(since.as_micros() as u64, self.emulated.square_px, &mut self.rgb, size_px[0]);
         }
+        self.size_px = size_px;
         match fault {
             EmulatedFault::Black => self.rgb.fill(0),
-            EmulatedFault::WrongSize => {
-                let (half, size_px) = halved(&self.rgb, size_px);
-                self.rgb = half;
-                return Shot { rgb: &self.rgb, size_px, since };
-            }
+            EmulatedFault::WrongSize => (self.rgb, self.size_px) = halved(&self.rgb, size_px),
             _ => {}
         }
-        Shot { rgb: &self.rgb, size_px, since }
+        Shot { rgb: &self.rgb, size_px: self.size_px, since }
     }
 }
 

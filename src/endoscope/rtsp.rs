@@ -57,8 +57,8 @@ pub(crate) fn open(host: &str, port: u16, path: &str) -> Result<Box<dyn Source>,
     guarded(&format!("{host}:{port}"), || begin(host, port, path))
 }
 
-/// The client panics over some answers (its parser of descriptions, when their lines come in another order): what was asked for ends, and not the
-/// thread.
+/// The client panics over some damaged answers (its parser of descriptions, above all, and where the rest takes for granted what that lets
+/// through): what was asked for ends, and not the thread.
 fn guarded<T>(place: &str, work: impl FnOnce() -> Result<T, Trouble>) -> Result<T, Trouble> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
         let reason = "an answer that cannot be taken apart".to_owned();

@@ -138,7 +138,13 @@ fn each_cause_is_told_with_its_cure() {
 }
 
 #[test]
-fn a_description_over_which_the_client_panics_is_told() {
+fn a_client_that_panics_ends_what_was_asked_for_and_not_the_thread() {
+    let told = guarded::<()>("cam:554", || panic!("as the client does")).unwrap_err();
+    assert_eq!(told.to_string(), "cam:554 sends what cannot be read: an answer that cannot be taken apart");
+}
+
+#[test]
+fn a_description_whose_lines_are_out_of_order_is_told() {
     let [described, set_up, plays] = answers("H264");
     let text = String::from_utf8(described).unwrap().replace("m=audio 0 RTP/AVP 0\r\n", "t=0 0\r\n");
     let trouble = open("127.0.0.1", camera(vec![text.into_bytes(), set_up, plays]), "/s").err();
@@ -193,8 +199,13 @@ fn damaged_answers_never_panic() {
 #[test]
 #[ignore = "as long as ./dev fuzz asks for"]
 fn fuzz_damaged_conversations() {
+    // They wait for each other most of the time.
     let rounds = fuzz::rounds(|seed| {
-        mutate(seed, 1000);
+        thread::scope(|scope| {
+            for lane in 0..10 {
+                scope.spawn(move || mutate(10 * seed + lane, 1000));
+            }
+        });
     });
-    println!("{rounds} x 1000 conversations");
+    println!("{rounds} x 10000 conversations");
 }

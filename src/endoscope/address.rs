@@ -17,8 +17,56 @@ pub enum Address {
         /// What is asked for, beginning with a slash.
         path: String,
     },
+    /// H.264 over RTSP: host, port, path with its query.
+    Rtsp {
+        /// Name or number.
+        host: String,
+        /// TCP port.
+        port: u16,
+        /// What is asked for, beginning with a slash.
+        path: String,
+    },
+    /// A camera or capture card of this computer.
+    Camera {
+        /// Its device file.
+        path: PathBuf,
+        /// How it is to be set.
+        capture: Capture,
+    },
     /// A `.mjpeg`, a folder of JPEGs, or one JPEG.
     File(PathBuf),
+}
+
+/// How a camera of this computer is to be set; what is left out stays as the camera has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Capture {
+    /// Width and height, px.
+    pub size_px: Option<[usize; 2]>,
+    /// Pictures a second.
+    pub rate_hz: Option<u32>,
+    /// Format; the best one that it has, if left out.
+    pub pixels: Option<Pixels>,
+}
+
+/// A format in which a camera of this computer can give its pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "their names say it")]
+pub enum Pixels {
+    Mjpeg,
+    Yuyv,
+    Nv12,
+}
+
+impl Pixels {
+    const ALL: [Self; 3] = [Self::Mjpeg, Self::Yuyv, Self::Nv12];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Mjpeg => "mjpeg",
+            Self::Yuyv => "yuyv",
+            Self::Nv12 => "nv12",
+        }
+    }
 }
 
 /// An address that cannot be used.
@@ -39,21 +87,57 @@ impl FromStr for Address {
         let shown = || text.chars().take(80).filter(|c| !c.is_control()).collect();
         let wrong = |why| Err(AddressError { address: shown(), why });
         if text.is_empty() {
-            return wrong("give http://HOST:PORT/PATH, or the path of a file or folder");
+            return wrong("give http://HOST:PORT/PATH, rtsp://HOST/PATH, /dev/video0, or the path of a file or folder");
         }
         if text.len() > LENGTH_MOST || text.chars().any(char::is_control) {
             return wrong("it is too long, or has characters that no address has");
         }
+        if let Some(rest) = text.strip_prefix("v4l2:") {
+            return camera(rest.strip_prefix("//").unwrap_or(rest)).or_else(wrong);
+        }
+        if text.starts_with("/dev/") {
+            return camera(text).or_else(wrong);
+        }
         let Some((scheme, rest)) = text.split_once("://") else { return Ok(Self::File(text.into())) };
         match scheme.to_ascii_lowercase().as_str() {
-            "http" => http(rest).or_else(wrong),
+            "http" => place(rest, 80).map(|(host, port, path)| Self::Http { host, port, path }).or_else(wrong),
+            "rtsp" => place(rest, 554).map(|(host, port, path)| Self::Rtsp { host, port, path }).or_else(wrong),
             "file" => Ok(Self::File(rest.into())),
-            _ => wrong("only http:// and files are supported"),
+            _ => wrong("only http://, rtsp://, cameras (/dev/video0) and files are supported"),
         }
     }
 }
 
-fn http(rest: &str) -> Result<Address, &'static str> {
+/// A device file, with settings behind a question mark.
+fn camera(text: &str) -> Result<Address, &'static str> {
+    let (path, settings) = text.split_once('?').unwrap_or((text, ""));
+    if !path.starts_with("/dev/") {
+        return Err("give the camera as /dev/video0 or v4l2:/dev/video0?size=1280x720&rate=30");
+    }
+    let mut capture = Capture::default();
+    for setting in settings.split('&').filter(|setting| !setting.is_empty()) {
+        match setting.split_once('=') {
+            Some(("size", size)) => {
+                let sides = size.split_once('x').and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
+                let sides = sides.filter(|sides: &[usize; 2]| sides.iter().all(|side| (16..=4096).contains(side)));
+                capture.size_px = Some(sides.ok_or("size is WIDTHxHEIGHT, 16 to 4096 pixels each")?);
+            }
+            Some(("rate", rate)) => {
+                let rate = rate.parse().ok().filter(|rate| (1..=240).contains(rate));
+                capture.rate_hz = Some(rate.ok_or("rate is 1 to 240 pictures a second")?);
+            }
+            Some(("format", name)) => {
+                let pixels = Pixels::ALL.into_iter().find(|pixels| pixels.name() == name);
+                capture.pixels = Some(pixels.ok_or("format is mjpeg, yuyv or nv12")?);
+            }
+            _ => return Err("a camera has the settings size, rate and format"),
+        }
+    }
+    Ok(Address::Camera { path: path.into(), capture })
+}
+
+/// Host, port and path.
+fn place(rest: &str, usual_port: u16) -> Result<(String, u16, String), &'static str> {
     let (authority, path) = rest.find(['/', '?']).map_or((rest, "/"), |at| rest.split_at(at));
     if authority.contains('@') {
         return Err("a user or password is not supported");
@@ -63,23 +147,44 @@ fn http(rest: &str) -> Result<Address, &'static str> {
         Some((host, port)) => (host, port.strip_prefix(':')),
         None => authority.split_once(':').map_or((authority, None), |(host, port)| (host, Some(port))),
     };
-    let port = port.map_or(Ok(80), |port| port.parse().map_err(|_| bad_port))?;
+    let port = port.map_or(Ok(usual_port), |port| port.parse().map_err(|_| bad_port))?;
     if port == 0 {
         return Err(bad_port);
     }
     let sound = |text: &str| text.chars().all(|c| c.is_ascii_graphic());
     if host.is_empty() || !sound(host) || !sound(path) {
-        return Err("give http://HOST:PORT/PATH, without blanks");
+        return Err("give HOST:PORT/PATH, without blanks");
     }
     let path = if path.starts_with('/') { path.to_owned() } else { format!("/{path}") };
-    Ok(Address::Http { host: host.to_owned(), port, path })
+    Ok((host.to_owned(), port, path))
 }
 
 impl fmt::Display for Address {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let at = |f: &mut fmt::Formatter<'_>, scheme: &str, host: &str, port: u16, path: &str| {
+            let (open, close) = if host.contains(':') { ("[", "]") } else { ("", "") };
+            write!(f, "{scheme}://{open}{host}{close}:{port}{path}")
+        };
         match self {
-            Self::Http { host, port, path } if host.contains(':') => write!(f, "http://[{host}]:{port}{path}"),
-            Self::Http { host, port, path } => write!(f, "http://{host}:{port}{path}"),
+            Self::Http { host, port, path } => at(f, "http", host, *port, path),
+            Self::Rtsp { host, port, path } => at(f, "rtsp", host, *port, path),
+            Self::Camera { path, capture: Capture { size_px, rate_hz, pixels } } => {
+                write!(f, "v4l2:{}", path.display())?;
+                let mut sign = '?';
+                let mut setting = |f: &mut fmt::Formatter<'_>, name: &str, value: &dyn fmt::Display| {
+                    write!(f, "{}{name}={value}", std::mem::replace(&mut sign, '&'))
+                };
+                if let Some([width, height]) = size_px {
+                    setting(f, "size", &format_args!("{width}x{height}"))?;
+                }
+                if let Some(rate_hz) = rate_hz {
+                    setting(f, "rate", rate_hz)?;
+                }
+                if let Some(pixels) = pixels {
+                    setting(f, "format", &pixels.name())?;
+                }
+                Ok(())
+            }
             Self::File(path) => write!(f, "{}", path.display()),
         }
     }
@@ -94,7 +199,7 @@ mod tests {
     fn http_of(text: &str) -> (String, u16, String) {
         match text.parse().unwrap() {
             Address::Http { host, port, path } => (host, port, path),
-            Address::File(path) => panic!("{}", path.display()),
+            other => panic!("{other}"),
         }
     }
 
@@ -113,7 +218,14 @@ mod tests {
     fn what_cannot_be_used_is_told_in_one_line() {
         for (text, word) in [
             ("", "give http"),
-            ("rtsp://cam/stream", "only http"),
+            ("rtmp://cam/stream", "only http"),
+            ("rtsp://", "HOST"),
+            ("v4l2:video0", "/dev/video0"),
+            ("/dev/video0?size=1280", "WIDTHxHEIGHT"),
+            ("/dev/video0?size=0x720", "16 to 4096"),
+            ("/dev/video0?rate=fast", "1 to 240"),
+            ("/dev/video0?format=rgb", "mjpeg, yuyv or nv12"),
+            ("/dev/video0?brightness=3", "size, rate and format"),
             ("https://cam/", "only http"),
             ("http://user:secret@cam/", "password"),
             ("http://cam:0/", "1 to 65535"),
@@ -127,10 +239,27 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_camera_of_this_computer_is_named_by_its_device_with_settings() {
+        let read = |text: &str| match text.parse().unwrap() {
+            Address::Camera { path, capture } => (path, capture),
+            other => panic!("{other}"),
+        };
+        assert_eq!(read("/dev/video0"), ("/dev/video0".into(), Capture::default()));
+        let (path, capture) = read("v4l2:/dev/v4l/by-id/usb-x?size=1280x720&rate=30&format=nv12");
+        assert_eq!(path, PathBuf::from("/dev/v4l/by-id/usb-x"));
+        assert_eq!((capture.size_px, capture.rate_hz), (Some([1280, 720]), Some(30)));
+        assert_eq!(capture.pixels, Some(Pixels::Nv12));
+        let rtsp: Address = "rtsp://cam/stream".parse().unwrap();
+        assert_eq!(rtsp.to_string(), "rtsp://cam:554/stream");
+    }
+
     proptest! {
         #[test]
-        fn any_text_is_an_address_or_an_error_and_an_address_reads_as_itself(text in "(http://)?.{0,40}") {
-            if let Ok(address) = text.parse::<Address>() && matches!(address, Address::Http { .. }) {
+        fn any_text_is_an_address_or_an_error_and_an_address_reads_as_itself(
+            text in "(http://|rtsp://|v4l2:/dev/|/dev/v(.size=[0-9x]{1,9}&rate=[0-9]{1,3}.format=nv12)?)?.{0,40}",
+        ) {
+            if let Ok(address) = text.parse::<Address>() && !matches!(address, Address::File(_)) {
                 prop_assert_eq!(address.to_string().parse::<Address>(), Ok(address));
             }
         }

@@ -85,6 +85,13 @@ impl Camera {
         Some([self.world_from_camera.translation.vector, self.world_from_camera.rotation * direction])
     }
 
+    /// The camera of a second lens, so far to the right of this one (m) and otherwise alike.
+    #[must_use]
+    pub fn beside(mut self, right_m: f64) -> Self {
+        self.world_from_camera.translation.vector += self.right() * right_m;
+        self
+    }
+
     /// The direction to the right of the picture in the workspace, unit length.
     pub fn right(&self) -> Vector3<f64> {
         self.world_from_camera.rotation * Vector3::x()

@@ -8,10 +8,10 @@ use std::{
 };
 
 use crate::{
-    Address, Compressed, Picture, Standing, Trouble,
-    jpeg::decode,
+    Address, Compressed, Format, Picture, Standing, Trouble, h264,
     judge::Watch,
     source::{Source, Wanted},
+    waiting::Waiting,
 };
 
 /// Time from a failure to the next attempt. With the time to reach the camera it stays below a second.
@@ -49,8 +49,8 @@ pub struct Look<T> {
 struct Shared {
     wanted: Wanted,
     state: Mutex<State>,
-    /// The newest picture that is not decoded: a queue of one.
-    waiting: Mutex<Option<Compressed>>,
+    /// What is not decoded yet.
+    waiting: Mutex<Waiting>,
     came: Condvar,
 }
 
@@ -195,17 +195,17 @@ impl Shared {
             state.watch.opened(source.is_still());
             state.is_still = source.is_still();
         }
+        *locked(&self.waiting) = Waiting::default();
         while !self.wanted.has_ended() {
             match source.next() {
                 Ok(None) => {}
                 Ok(Some(compressed)) => {
                     {
                         let mut state = locked(&self.state);
-                        state.watch.arrived(compressed.arrived, compressed.stamp_s, &compressed.jpeg);
+                        state.watch.arrived(&compressed);
                         (state.trouble, state.opened) = (None, true);
                     }
-                    // What was not decoded yet is old now.
-                    *locked(&self.waiting) = Some(compressed);
+                    locked(&self.waiting).push(compressed);
                     self.came.notify_one();
                 }
                 Err(trouble) => return Some(trouble),
@@ -223,11 +223,22 @@ impl Shared {
 
     /// Decodes the newest picture again and again.
     fn decode(&self, wake: &dyn Fn()) {
-        while let Some(compressed) = self.next() {
-            if !locked(&self.state).wants(Instant::now()) {
-                continue;
-            }
-            let decoded = decode(&compressed.jpeg);
+        let mut decoder = h264::Decoder::default();
+        while let Some((compressed, is_newest)) = self.next() {
+            let wanted = is_newest && locked(&self.state).wants(Instant::now());
+            let decoded = match compressed.format {
+                Format::H264 { is_key } => match decoder.take(&compressed.bytes, is_key, wanted) {
+                    Ok(None) => continue,
+                    Ok(Some(taken)) => {
+                        locked(&self.state).watch.looks(compressed.arrived, taken.hash);
+                        let Some(picture) = taken.picture else { continue };
+                        Ok(picture)
+                    }
+                    Err(damage) => Err(damage),
+                },
+                _ if wanted => compressed.decode(),
+                _ => continue,
+            };
             {
                 let mut state = locked(&self.state);
                 state.decoded = Some(Instant::now());
@@ -243,15 +254,15 @@ impl Shared {
         }
     }
 
-    /// Waits for a picture; `None` if nobody wants one any more.
-    fn next(&self) -> Option<Compressed> {
+    /// Waits for a picture, and tells whether it is the newest; `None` if nobody wants one any more.
+    fn next(&self) -> Option<(Compressed, bool)> {
         let mut waiting = locked(&self.waiting);
         loop {
             if self.wanted.has_ended() {
                 return None;
             }
-            if let Some(compressed) = waiting.take() {
-                return Some(compressed);
+            if let Some(compressed) = waiting.pop() {
+                return Some((compressed, waiting.is_empty()));
             }
             // A word that was missed costs a nap, not the picture.
             waiting = self.came.wait_timeout(waiting, NAP).unwrap_or_else(PoisonError::into_inner).0;

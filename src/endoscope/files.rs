@@ -1,4 +1,5 @@
-//! Pictures from files: one JPEG, a folder of them, or one after the other in a `.mjpeg`; the latter two over and over, at the rate of a camera.
+//! Pictures from files: one JPEG, a folder of them, or one after the other in a `.mjpeg` or `.h264`; the latter over and over, at the rate of a
+//! camera.
 
 use std::{
     fs::{self, File},
@@ -8,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::{Compressed, Source, Trouble, jpeg::Splitter};
+use crate::{Compressed, Format, Source, Trouble, h264, jpeg::Splitter};
 
 /// Time from one picture to the next.
 const PERIOD: Duration = Duration::from_nanos(33_333_333);
@@ -26,6 +27,12 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, Trouble> {
     }
     if is_jpeg(path) {
         return Ok(Box::new(Still { path: path.to_owned(), given: false }));
+    }
+    if is_stream(path) {
+        if !h264::IS_BUILT {
+            return Err(Trouble::NotBuilt { what: "RTSP and H.264" });
+        }
+        return Ok(Box::new(Paced::of(Stream::open(path)?)));
     }
     Ok(Box::new(Paced::of(Film::open(path)?)))
 }
@@ -47,6 +54,10 @@ fn is_jpeg(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("jpg") || ending.eq_ignore_ascii_case("jpeg"))
 }
 
+fn is_stream(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("h264") || ending.eq_ignore_ascii_case("264"))
+}
+
 fn read(path: &Path) -> Result<Vec<u8>, Trouble> {
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(|error| trouble(path, &error))?;
@@ -59,7 +70,7 @@ fn read(path: &Path) -> Result<Vec<u8>, Trouble> {
 }
 
 fn now(jpeg: Vec<u8>) -> Compressed {
-    Compressed { jpeg, arrived: Instant::now(), stamp_s: None }
+    Compressed::jpeg(jpeg, Instant::now(), None)
 }
 
 /// One picture.
@@ -86,6 +97,11 @@ impl Source for Still {
 /// Pictures one after the other, as fast as they are asked for.
 trait Series: Send {
     fn next(&mut self) -> Result<Vec<u8>, Trouble>;
+
+    /// What its pictures are.
+    fn format(&self, _: &[u8]) -> Format {
+        Format::Jpeg
+    }
 }
 
 /// Gives a series at the rate of a camera.
@@ -102,12 +118,13 @@ impl<S: Series> Paced<S> {
 
 impl<S: Series> Source for Paced<S> {
     fn next(&mut self) -> Result<Option<Compressed>, Trouble> {
-        let jpeg = self.series.next()?;
+        let bytes = self.series.next()?;
         let now_is = Instant::now();
         thread::sleep(self.due.saturating_duration_since(now_is));
         // What was missed is not caught up.
         self.due = self.due.max(now_is) + PERIOD;
-        Ok(Some(now(jpeg)))
+        let format = self.series.format(&bytes);
+        Ok(Some(Compressed { format, ..now(bytes) }))
     }
 }
 
@@ -168,6 +185,51 @@ impl Series for Film {
     }
 }
 
+/// A stream of H.264 in a file, as `ffmpeg -f h264` writes it.
+struct Stream {
+    path: PathBuf,
+    file: File,
+    splitter: h264::Splitter,
+    buffer: Vec<u8>,
+    found: bool,
+}
+
+impl Stream {
+    fn open(path: &Path) -> Result<Self, Trouble> {
+        let file = File::open(path).map_err(|error| trouble(path, &error))?;
+        let (splitter, buffer) = (h264::Splitter::default(), vec![0; READ_BYTES]);
+        Ok(Self { path: path.to_owned(), file, splitter, buffer, found: false })
+    }
+}
+
+impl Series for Stream {
+    fn next(&mut self) -> Result<Vec<u8>, Trouble> {
+        loop {
+            if let Some(unit) = self.splitter.next() {
+                self.found = true;
+                return Ok(unit);
+            }
+            let count = self.file.read(&mut self.buffer).map_err(|error| trouble(&self.path, &error))?;
+            self.splitter.take(&self.buffer[..count]);
+            if count == 0 {
+                let last = self.splitter.rest();
+                if last.is_none() && !self.found {
+                    let reason = "there is no picture of H.264 in it".to_owned();
+                    return Err(Trouble::File { path: self.path.display().to_string(), reason });
+                }
+                *self = Self::open(&self.path)?;
+                if let Some(last) = last {
+                    return Ok(last);
+                }
+            }
+        }
+    }
+
+    fn format(&self, unit: &[u8]) -> Format {
+        Format::H264 { is_key: h264::is_key(unit) }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -191,7 +253,7 @@ mod tests {
         let film = folder.path().join("a.mjpeg");
         fs::write(&film, [grey(10), grey(100), grey(200)].concat()).unwrap();
         let mut source = Address::File(film).open().unwrap();
-        let seen: Vec<Vec<u8>> = (0..4).map(|_| next(&mut *source).unwrap().jpeg).collect();
+        let seen: Vec<Vec<u8>> = (0..4).map(|_| next(&mut *source).unwrap().bytes).collect();
         assert_eq!(seen, [grey(10), grey(100), grey(200), grey(10)]);
         assert!(!source.is_still());
 
@@ -199,11 +261,11 @@ mod tests {
             fs::write(folder.path().join(name), grey(value)).unwrap();
         }
         let mut source = Address::File(folder.path().to_owned()).open().unwrap();
-        let seen: Vec<Vec<u8>> = (0..3).map(|_| next(&mut *source).unwrap().jpeg).collect();
+        let seen: Vec<Vec<u8>> = (0..3).map(|_| next(&mut *source).unwrap().bytes).collect();
         assert_eq!(seen, [grey(40), grey(50), grey(40)]);
 
         let mut source = Address::File(folder.path().join("2.jpg")).open().unwrap();
-        assert_eq!(next(&mut *source).unwrap().jpeg, grey(50));
+        assert_eq!(next(&mut *source).unwrap().bytes, grey(50));
         assert!(source.is_still() && source.next().unwrap().is_none());
     }
 
@@ -222,5 +284,9 @@ mod tests {
         let text = folder.path().join("text");
         fs::write(&text, "no picture").unwrap();
         assert!(told(text).contains("no whole JPEG"));
+        let stream = folder.path().join("text.h264");
+        fs::write(&stream, "no picture").unwrap();
+        let expected = if h264::IS_BUILT { "no picture of H.264" } else { "built without RTSP and H.264" };
+        assert!(told(stream).contains(expected));
     }
 }

@@ -63,7 +63,7 @@ impl Http {
         let place = self.place.clone();
         match wrong {
             Wrong::Status(status) => Trouble::Refused { place, status },
-            Wrong::Format(found) => Trouble::OtherFormat { place, found },
+            Wrong::Format(found) => Trouble::OtherFormat { place, found, wanted: "motion JPEG" },
             Wrong::Unreadable(reason) => Trouble::Unreadable { place, reason: reason.to_owned() },
             Wrong::Ended => Trouble::Closed { place },
         }
@@ -90,7 +90,8 @@ impl Http {
     }
 }
 
-fn connect(host: &str, port: u16, place: &str) -> Result<TcpStream, Trouble> {
+/// Connects to the first address of the camera that answers.
+pub(crate) fn connect(host: &str, port: u16, place: &str) -> Result<TcpStream, Trouble> {
     let addresses = (host, port).to_socket_addrs().map_err(|_| Trouble::NoSuchName { place: place.to_owned() })?;
     let mut last = Trouble::NoSuchName { place: place.to_owned() };
     for address in addresses.take(ADDRESSES_MOST) {
@@ -108,7 +109,7 @@ impl Source for Http {
         loop {
             if let Some(part) = self.parts.pop_front() {
                 self.whole = self.heard;
-                return Ok(Some(Compressed { jpeg: part.body, arrived: self.heard, stamp_s: part.stamp_s }));
+                return Ok(Some(Compressed::jpeg(part.body, self.heard, part.stamp_s)));
             }
             if self.ended {
                 return Err(Trouble::Closed { place: self.place.clone() });

@@ -6,7 +6,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::{Damage, Picture};
+use crate::{Compressed, Damage, Format, Picture};
 
 /// A picture that does not change for this long is frozen.
 pub const FROZEN: Duration = Duration::from_millis(200);
@@ -94,19 +94,24 @@ impl Watch {
     }
 
     /// A picture came, not decoded yet.
-    pub(crate) fn arrived(&mut self, at: Instant, stamp_s: Option<f64>, jpeg: &[u8]) {
-        let mut hasher = DefaultHasher::new();
-        jpeg.hash(&mut hasher);
-        let hash = Some(hasher.finish());
-        if self.hash != hash {
-            (self.hash, self.changed) = (hash, Some(at));
+    pub(crate) fn arrived(&mut self, compressed: &Compressed) {
+        let at = compressed.arrived;
+        if compressed.stands_alone() {
+            self.looks(at, hash(compressed));
         }
         self.arrivals.push_back(at);
         let begin = at.checked_sub(RATE_OVER);
         while self.arrivals.len() > ARRIVALS_MOST || self.arrivals.front().is_some_and(|first| Some(*first) < begin) {
             self.arrivals.pop_front();
         }
-        self.delay.take(at, stamp_s);
+        self.delay.take(compressed);
+    }
+
+    /// What came at this moment looks so: the same number for the same picture. A stream, whose pictures refer to each other, never sends the same bytes.
+    pub(crate) fn looks(&mut self, at: Instant, hash: u64) {
+        if self.hash != Some(hash) {
+            (self.hash, self.changed) = (Some(hash), Some(at));
+        }
     }
 
     /// The picture that came at this moment was decoded.
@@ -157,6 +162,20 @@ impl Watch {
     }
 }
 
+/// Of pixels that are not compressed one of so many runs is looked at: the noise of a sensor is everywhere.
+const RUN_BYTES: usize = 256;
+const RUN_OF: usize = 16;
+
+/// The same for the same picture.
+fn hash(compressed: &Compressed) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    match compressed.format {
+        Format::Jpeg | Format::H264 { .. } => compressed.bytes.hash(&mut hasher),
+        Format::Raw(_) => compressed.bytes.chunks(RUN_BYTES).step_by(RUN_OF).for_each(|run| run.hash(&mut hasher)),
+    }
+    hasher.finish()
+}
+
 /// How late pictures are, from the camera's own stamps: the least difference of both clocks is that of a picture that was not held up.
 #[derive(Debug, Default)]
 struct Delay {
@@ -167,8 +186,14 @@ struct Delay {
 }
 
 impl Delay {
-    fn take(&mut self, at: Instant, stamp_s: Option<f64>) {
-        let Some(stamp_s) = stamp_s else {
+    fn take(&mut self, compressed: &Compressed) {
+        let at = compressed.arrived;
+        // On one clock nothing has to be guessed.
+        if let Some(taken) = compressed.taken {
+            self.late_s = Some(at.saturating_duration_since(taken).as_secs_f64());
+            return;
+        }
+        let Some(stamp_s) = compressed.stamp_s else {
             self.late_s = None;
             return;
         };
@@ -217,7 +242,7 @@ mod tests {
 
         fn come(&mut self, jpeg: &[u8], decoded: Result<&Picture, &Damage>) {
             self.now += PERIOD;
-            self.watch.arrived(self.now, None, jpeg);
+            self.watch.arrived(&Compressed::jpeg(jpeg.to_vec(), self.now, None));
             self.watch.decoded(self.now, decoded);
         }
     }
@@ -284,7 +309,8 @@ mod tests {
         let mut come = |late_ms: u64, stamp_s: f64| {
             bench.now += PERIOD;
             bench.count = bench.count.wrapping_add(1);
-            bench.watch.arrived(bench.now + Duration::from_millis(late_ms), Some(stamp_s), &[bench.count]);
+            let arrived = bench.now + Duration::from_millis(late_ms);
+            bench.watch.arrived(&Compressed::jpeg(vec![bench.count], arrived, Some(stamp_s)));
             bench.watch.decoded(bench.now, Ok(&picture(100, [64, 48])));
             bench.watch.wrong(bench.now + Duration::from_millis(late_ms))
         };
@@ -297,11 +323,36 @@ mod tests {
     }
 
     #[test]
+    fn on_one_clock_a_picture_is_late_from_the_first_one_on() {
+        let mut watch = Watch::new(None);
+        watch.opened(false);
+        let now = Instant::now();
+        let mut compressed = Compressed::jpeg(b"one".to_vec(), now + Duration::from_millis(250), None);
+        compressed.taken = Some(now);
+        watch.arrived(&compressed);
+        watch.decoded(compressed.arrived, Ok(&picture(100, [8, 8])));
+        assert_eq!(watch.wrong(compressed.arrived), Some(Wrong::Late(Duration::from_millis(250))));
+    }
+
+    #[test]
+    fn pictures_that_are_not_compressed_differ_by_the_noise_of_their_sensor() {
+        let (size_px, layout) = ([64, 64], crate::Layout::Yuyv);
+        let raw = crate::Raw { layout, colours: crate::Colours::usual(size_px), size_px, stride: 128 };
+        let mut compressed = Compressed::jpeg(vec![90; raw.bytes()], Instant::now(), None);
+        compressed.format = Format::Raw(raw);
+        let before = hash(&compressed);
+        assert_eq!(hash(&compressed.clone()), before);
+        let mut random = fastrand::Rng::with_seed(3);
+        compressed.bytes.iter_mut().for_each(|byte| *byte += random.u8(..2));
+        assert_ne!(hash(&compressed), before);
+    }
+
+    #[test]
     fn a_still_picture_is_not_frozen() {
         let mut watch = Watch::new(None);
         watch.opened(true);
         let now = Instant::now();
-        watch.arrived(now, None, b"one");
+        watch.arrived(&Compressed::jpeg(b"one".to_vec(), now, None));
         watch.decoded(now, Ok(&picture(100, [8, 8])));
         assert_eq!(watch.wrong(now + Duration::from_mins(1)), None);
     }

@@ -1,6 +1,6 @@
 //! The endoscope's picture, from an address to pixels.
 //!
-//! A [`Feed`] takes an [`Address`] (motion JPEG over HTTP, a file, a folder), opens it on threads of its own, opens it again when it is lost,
+//! A [`Feed`] takes an [`Address`] (motion JPEG over HTTP, a camera of this computer, a file, a folder), opens it on threads of its own, opens it again when it is lost,
 //! and has the newest picture ready, with its age, its rate and what is wrong with it ([`Standing`]). Nobody waits for anybody: a picture that
 //! nobody took is replaced by the next one. [`Camera`] is where the endoscope looks and how its lens bends the picture; [`time_code`] and
 //! [`jpeg::encode`] are for emulators and tests. Bad input (a picture or an answer that is cut off, too large, of another format) is a
@@ -21,19 +21,29 @@
 
 mod address;
 mod camera;
+pub mod colour;
 mod feed;
 mod files;
+pub mod h264;
 mod http;
 pub mod jpeg;
 mod judge;
+mod plugged;
+#[cfg(feature = "h264")]
+mod rtsp;
 mod source;
 pub mod time_code;
 mod trouble;
+#[cfg(all(target_os = "linux", target_pointer_width = "64"))]
+mod v4l2;
+mod waiting;
 
-pub use address::{Address, AddressError};
+pub use address::{Address, AddressError, Capture, Pixels};
 pub use camera::{Camera, Lens};
+pub use colour::{Colours, Layout, Raw};
 pub use feed::{Feed, Look};
 pub use jpeg::{Damage, Picture};
 pub use judge::{FROZEN, LATE, Standing, Wrong};
-pub use source::{Compressed, Source};
+pub use plugged::{PluggedCamera, plugged_cameras};
+pub use source::{Compressed, Format, Source};
 pub use trouble::Trouble;

@@ -8,17 +8,59 @@ use std::{
     time::Instant,
 };
 
-use crate::{Address, Trouble, files, http};
+use crate::{Address, Damage, Picture, Raw, Trouble, files, http, jpeg};
 
 /// One picture as it came, not decoded.
 #[derive(Clone, Debug)]
 pub struct Compressed {
-    /// A whole JPEG, if the camera sent one.
-    pub jpeg: Vec<u8>,
+    /// What it is.
+    pub format: Format,
+    /// As the camera sent it.
+    pub bytes: Vec<u8>,
     /// When its last byte was here.
     pub arrived: Instant,
     /// The camera's own stamp, s since some moment of its own; `None` where it sends none.
     pub stamp_s: Option<f64>,
+    /// When it was taken, where the camera's clock is this computer's.
+    pub taken: Option<Instant>,
+}
+
+/// What the bytes of a picture are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// A whole JPEG, if the camera sent one.
+    Jpeg,
+    /// Not compressed.
+    Raw(Raw),
+    /// A picture of a stream of H.264 (an access unit, annex B), which refers to those before it.
+    H264 {
+        /// It refers to no other: a decoder can begin with it.
+        is_key: bool,
+    },
+}
+
+impl Compressed {
+    /// A JPEG that came at this moment, with the stamp of its camera.
+    pub(crate) const fn jpeg(bytes: Vec<u8>, arrived: Instant, stamp_s: Option<f64>) -> Self {
+        Self { format: Format::Jpeg, bytes, arrived, stamp_s, taken: None }
+    }
+
+    /// It refers to no picture before it.
+    pub const fn stands_alone(&self) -> bool {
+        !matches!(self.format, Format::H264 { .. })
+    }
+
+    /// Pixels of a picture that stands alone, on the thread that calls.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn decode(&self) -> Result<Picture, Damage> {
+        match self.format {
+            Format::Jpeg => jpeg::decode(&self.bytes),
+            Format::Raw(raw) => raw.picture(&self.bytes),
+            Format::H264 { .. } => Err(Damage::Undecodable { reason: "it refers to other pictures".to_owned() }),
+        }
+    }
 }
 
 /// Gives pictures one after the other. It lives on one thread, which it may hold up until it is told to stop.
@@ -43,6 +85,14 @@ impl Address {
     pub fn open(&self) -> Result<Box<dyn Source>, Trouble> {
         match self {
             Self::Http { host, port, path } => Ok(Box::new(http::Http::open(host, *port, path)?)),
+            #[cfg(feature = "h264")]
+            Self::Rtsp { host, port, path } => crate::rtsp::open(host, *port, path),
+            #[cfg(not(feature = "h264"))]
+            Self::Rtsp { .. } => Err(Trouble::NotBuilt { what: "RTSP and H.264" }),
+            #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
+            Self::Camera { path, capture } => crate::v4l2::open(path, *capture),
+            #[cfg(not(all(target_os = "linux", target_pointer_width = "64")))]
+            Self::Camera { .. } => Err(Trouble::NotBuilt { what: "cameras of this computer (64-bit Linux only)" }),
             Self::File(path) => files::open(path),
         }
     }

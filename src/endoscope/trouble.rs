@@ -15,8 +15,8 @@ pub enum Trouble {
     NoSuchName { place: String },
     #[error("{place} answers with the status {status}")]
     Refused { place: String, status: u16 },
-    #[error("{place} sends {found}, not motion JPEG")]
-    OtherFormat { place: String, found: String },
+    #[error("{place} sends {found}, not {wanted}")]
+    OtherFormat { place: String, found: String, wanted: &'static str },
     /// Not HTTP, or beyond a limit.
     #[error("{place} sends what cannot be read: {reason}")]
     Unreadable { place: String, reason: String },
@@ -25,6 +25,31 @@ pub enum Trouble {
     /// The other end has closed the connection.
     #[error("{place} has closed the connection")]
     Closed { place: String },
+    #[error("{path} is not there")]
+    NoCamera { path: String },
+    #[error("{path} is in use by another program")]
+    Busy { path: String },
+    #[error("this user may not use {path}")]
+    NoPermission { path: String },
+    #[error("{path} is no camera")]
+    NotCamera { path: String },
+    #[error("{path} gives no {wanted}, but {offered}")]
+    NoSuchFormat { path: String, wanted: String, offered: String },
+    #[error("{path} has no pictures of {}x{}, but {offered}", .wanted[0], .wanted[1])]
+    NoSuchSize { path: String, wanted: [u32; 2], offered: String },
+    /// The USB has not room enough for the stream.
+    #[error("{path} finds no room on its USB line")]
+    NoBandwidth { path: String },
+    #[error("{path} was unplugged")]
+    Unplugged { path: String },
+    #[error("{path} is open but gives no picture")]
+    NoPictures { path: String },
+    /// What the driver of a camera says.
+    #[error("{path}: {reason}")]
+    Camera { path: String, reason: String },
+    /// This program was built without what it takes.
+    #[error("this program was built without {what}")]
+    NotBuilt { what: &'static str },
     #[error("{path}: {reason}")]
     File { path: String, reason: String },
     #[error("{place}: {reason}")]
@@ -47,12 +72,38 @@ impl Trouble {
             }
             Self::Refused { status: 404, .. } => "Correct the path in the rig file: the camera has no such page.",
             Self::Refused { .. } => "Correct the address in the rig file, or start the camera again.",
+            Self::OtherFormat { wanted: "H.264", .. } => {
+                "Set the camera to H.264, or correct the path in the rig file."
+            }
             Self::OtherFormat { .. } => "Set the camera to motion JPEG (MJPEG), or correct the path in the rig file.",
             Self::Unreadable { .. } => {
-                "Correct the port in the rig file: another program answers there, or the camera does not keep to HTTP."
+                "Correct the port in the rig file: another program answers there, or the camera does not keep to its protocol."
             }
             Self::Silent { .. } => "Switch the camera on, and check that it sends a picture to a browser.",
             Self::Closed { .. } => "Nothing is to be done: it is opened again at once and then twice a second.",
+            Self::NoCamera { .. } => {
+                "Plug the camera in, or correct its path in the rig file: `nima devices` lists cameras."
+            }
+            Self::Busy { .. } => "Close the other program that shows this camera.",
+            Self::NoPermission { .. } => {
+                "Add this user to the group video (`sudo usermod -aG video $USER`), then log out and in."
+            }
+            Self::NotCamera { .. } => "Name a device that takes pictures: `nima devices` lists cameras.",
+            Self::NoSuchFormat { .. } => {
+                "Leave `format` out of the address; a camera without motion JPEG, NV12 and YUYV cannot be used."
+            }
+            Self::NoSuchSize { .. } => "Give a size that the camera has, in the address in the rig file.",
+            Self::NoBandwidth { .. } => {
+                "Plug it into a port of its own, without a hub, or give a smaller size or rate in the address."
+            }
+            Self::Unplugged { .. } => "Plug the camera in again: it is opened again by itself.",
+            Self::NoPictures { .. } => {
+                "Check that a signal arrives at the capture card, and the cable of the camera; then plug it in again."
+            }
+            Self::Camera { .. } => "Plug the camera in again; look into `dmesg` for what its driver says.",
+            Self::NotBuilt { .. } => {
+                "Build it with `cargo build --release --locked -p nima-console --features h264`, or let the camera send motion JPEG."
+            }
             Self::File { .. } => "Put the file there, or correct its path in the rig file.",
             Self::Other { .. } => "Check the camera and its address in the rig file.",
         }

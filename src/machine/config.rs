@@ -21,7 +21,7 @@ use nima_recording::store::ReadyRecord;
 use serde::{Deserialize, Serialize};
 
 pub use anonymous::ANONYMOUS;
-pub use endoscope::{Endoscope, EndoscopeCamera};
+pub use endoscope::{Endoscope, EndoscopeCamera, StereoView};
 pub(crate) use files::parse_with;
 pub use files::{ConfigError, Ranges, parse, text};
 pub use identification::Identification;

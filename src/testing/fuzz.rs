@@ -3,17 +3,21 @@
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// Calls `round` with one seed after the other until `NIMA_FUZZ_SECONDS` are over, and at least once. The first seed is
-/// `NIMA_FUZZ_SEED`, so that a failure can be repeated, or taken from the clock.
-pub fn rounds(round: impl Fn(u64)) {
+/// `NIMA_FUZZ_SEED`, so that a failure can be repeated, or taken from the clock. Gives the number of rounds.
+pub fn rounds(round: impl Fn(u64)) -> u64 {
     let told = |name| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
     let length = Duration::from_secs(told("NIMA_FUZZ_SECONDS").unwrap_or(0));
     let clock = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     let begin = Instant::now();
-    for seed in told("NIMA_FUZZ_SEED").unwrap_or(clock).. {
+    let first = told("NIMA_FUZZ_SEED").unwrap_or(clock);
+    let mut count = 0;
+    loop {
+        let seed = first.wrapping_add(count);
         println!("NIMA_FUZZ_SEED={seed}");
         round(seed);
+        count += 1;
         if begin.elapsed() >= length {
-            return;
+            return count;
         }
     }
 }

@@ -6,10 +6,11 @@ use serde::{Deserialize, Serialize};
 use super::{ConfigError, Ranges};
 
 /// Where the picture comes from, and where the endoscope looks.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Endoscope {
-    /// Motion JPEG over HTTP (`http://HOST:PORT/PATH`), or the path of a `.mjpeg`, a folder of JPEGs or a JPEG.
+    /// Motion JPEG over HTTP (`http://HOST:PORT/PATH`), H.264 over RTSP (`rtsp://HOST/PATH`), a camera of this computer (`/dev/video0`), or the
+    /// path of a `.mjpeg`, a folder of JPEGs or a JPEG.
     pub url: String,
     /// How far the picture is turned clockwise for the screen, degrees: 0, 90, 180 or 270.
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -17,9 +18,25 @@ pub struct Endoscope {
     /// Left and right are exchanged on the screen, before it is turned.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub mirror: bool,
-    /// The camera; without it no forces are drawn into the picture.
+    /// The picture has two halves side by side, of a left and a right lens: what is shown of it at first. Without it, it is of one lens.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub view: Option<StereoView>,
+    /// How far the right lens is to the right of the left one, m; without it no forces are drawn into the right half.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub baseline_m: Option<f64>,
+    /// The camera, of two lenses the left one; without it no forces are drawn into the picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub camera: Option<EndoscopeCamera>,
+}
+
+/// What is shown of a picture with two halves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[expect(missing_docs, reason = "their names say it")]
+pub enum StereoView {
+    Left,
+    Right,
+    Both,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
@@ -59,6 +76,17 @@ impl Endoscope {
         let turn = self.rotation_deg;
         let turns = matches!(turn, 0 | 90 | 180 | 270);
         ranges.check("endoscope.rotation_deg", f64::from(turn), turns, "0, 90, 180 or 270")?;
+        if let Some(baseline_m) = self.baseline_m {
+            let place = "endoscope.baseline_m";
+            ranges.check(place, baseline_m, (0.000_5..=0.05).contains(&baseline_m), "0.0005 to 0.05 m")?;
+            let halves = if self.view.is_some() { 2.0 } else { 1.0 };
+            ranges.check(
+                "endoscope.view (halves, beside baseline_m)",
+                halves,
+                halves > 1.0,
+                "2: view = \"left\", \"right\" or \"both\"",
+            )?;
+        }
         let Some(camera) = &self.camera else { return Ok(()) };
         let [width, height] = camera.size_px.map(|side| side as f64);
         let sides = |side: f64| (16.0..=4096.0).contains(&side);
@@ -78,7 +106,7 @@ impl Endoscope {
 mod tests {
     use crate::config::RigConfig;
 
-    const WHOLE: &str = "\n[endoscope]\nurl = \"http://127.0.0.1:47150/\"\nrotation_deg = 90\nmirror = true\n\n[endoscope.camera]\n\
+    const WHOLE: &str = "\n[endoscope]\nurl = \"http://127.0.0.1:47150/\"\nrotation_deg = 90\nmirror = true\nview = \"both\"\nbaseline_m = 0.004\n\n[endoscope.camera]\n\
         size_px = [1280, 720]\nfocal_px = 726.6\nk1 = -0.3\nposition_m = [0.0, -0.1, 0.09]\nworld_from_camera_deg = [-131.0, 0.0, 0.0]\n";
 
     fn rig(more: &str) -> Result<RigConfig, String> {
@@ -92,6 +120,7 @@ mod tests {
         let rig = rig(WHOLE).unwrap();
         let endoscope = rig.endoscope.as_ref().unwrap();
         assert!(endoscope.mirror && endoscope.rotation_deg == 90 && endoscope.camera.is_some());
+        assert_eq!((endoscope.view, endoscope.baseline_m), (Some(super::StereoView::Both), Some(0.004)));
         let again = RigConfig::parse("rig.toml".as_ref(), &toml::to_string(&rig).unwrap()).unwrap();
         assert_eq!(again, rig);
         assert_eq!(rig.anonymous().endoscope, None, "its address tells where it is");
@@ -106,6 +135,9 @@ mod tests {
             ("726.6", "nan", "focal_px"),
             ("-0.3", "7.0", "k1 is 7"),
             ("mirror", "mirrors", "mirrors"),
+            ("\"both\"", "\"middle\"", "middle"),
+            ("0.004", "4.0", "baseline_m is 4"),
+            ("view = \"both\"\n", "", "endoscope.view"),
         ] {
             let told = rig(&WHOLE.replace(from, to)).unwrap_err();
             assert!(told.contains(word) && !told.contains('\n'), "{to}: {told}");

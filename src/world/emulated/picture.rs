@@ -8,7 +8,7 @@ use nima_machine::{
 
 use super::{EmulatedDevice, EmulatedRig, EmulatedRigError, SideWorld, places};
 use crate::{
-    emulators::endoscope::{Emulated, Instrument, camera_of},
+    emulators::endoscope::{BASELINE_M, Emulated, Instrument, camera_of},
     scene::Scene,
 };
 
@@ -34,6 +34,7 @@ impl EmulatedRig {
         if let Some(camera) = &endoscope.camera {
             emulated.camera = camera_of(camera);
         }
+        emulated.baseline_m = endoscope.view.map(|_| endoscope.baseline_m.unwrap_or(BASELINE_M));
         let body = move |_: f64| {
             let seen = worlds
                 .iter()

@@ -37,7 +37,22 @@ pub(super) struct Arguments {
 #[derive(Serialize)]
 struct Report {
     plugged: Plugged,
+    cameras: Vec<Camera>,
     devices: Vec<Diagnosis>,
+}
+
+/// For the endoscope's picture.
+#[derive(Serialize)]
+struct Camera {
+    path: std::path::PathBuf,
+    name: String,
+}
+
+fn cameras() -> Vec<Camera> {
+    nima_endoscope::plugged_cameras()
+        .into_iter()
+        .map(|camera| Camera { path: camera.path, name: camera.name })
+        .collect()
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -58,7 +73,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         probes.extend(rig_probes(devices));
         emulated = devices.emulated.then_some(name);
     }
-    let report = Report { plugged: Plugged::list(), devices: diagnose(probes, TIMEOUT) };
+    let report = Report { plugged: Plugged::list(), cameras: cameras(), devices: diagnose(probes, TIMEOUT) };
     if arguments.json {
         output::json(&report)?;
         return end(&report);
@@ -99,9 +114,12 @@ fn table(text: &mut String, rows: &[[String; 3]]) {
 }
 
 fn in_words(report: &Report) -> String {
-    let Report { plugged, devices } = report;
+    let Report { plugged, cameras, devices } = report;
     let mut text = String::from("Plugged in\n");
-    let rows = plugged.lines();
+    let mut rows = plugged.lines();
+    rows.extend(
+        cameras.iter().map(|camera| [camera.path.display().to_string(), "camera".to_owned(), camera.name.clone()]),
+    );
     if rows.is_empty() {
         text.push_str("  no device that this program can use\n");
     }

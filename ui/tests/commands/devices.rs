@@ -28,6 +28,7 @@ fn a_port_that_is_not_there_and_a_port_where_nobody_listens_are_told_with_their_
     assert_eq!(device["name"], "serial=/dev/no-such-port@460800");
     assert_eq!((&device["state"], &device["trouble"]), (&"trouble".into(), &"absent".into()));
     assert!(device["cure"].is_string() && device["took_s"].is_f64() && json["plugged"]["serial"].is_array(), "{json}");
+    assert!(json["cameras"].is_array(), "{json}");
 }
 
 #[test]

@@ -3,7 +3,10 @@
 use egui::{Key, Shape};
 use egui_kittest::kittest::Queryable as _;
 use nima_console::console::desk::{Layout, Panel};
-use nima_machine::{config::Endoscope, messages::LoopState};
+use nima_machine::{
+    config::{Endoscope, StereoView},
+    messages::LoopState,
+};
 use nima_tests::plan;
 use nima_world::{
     Plan,
@@ -18,18 +21,23 @@ use crate::bench::{Console, TIMEOUT, comes, press, shown, until};
 
 /// Small pictures, so that a busy machine keeps up.
 fn camera() -> (Serving, Endoscope) {
+    lenses(None)
+}
+
+/// The same with a second lens so far to the right of the first one, m.
+fn lenses(baseline_m: Option<f64>) -> (Serving, Endoscope) {
     let scene = Scene::load("bimanual").unwrap();
     let mut camera = usual(&scene);
     camera.focal_px *= 0.5;
     camera.size_px = [640, 360];
-    let emulated = Emulated { camera: camera_of(&camera), ..Emulated::of(&scene, 0) };
+    let emulated = Emulated { camera: camera_of(&camera), baseline_m, ..Emulated::of(&scene, 0) };
     let mut x_m = 0.0;
     let body = move |_: f64| {
         x_m = (x_m + 0.0005) % 0.03;
         vec![Instrument { tip_m: [x_m, 0.0, 0.01].into(), trocar_m: scene.trocar_m }]
     };
     let serving = emulated.with(&Scene::load("bimanual").unwrap(), Box::new(body)).serve().unwrap();
-    let endoscope = Endoscope { url: serving.endpoint.clone(), rotation_deg: 0, mirror: false, camera: Some(camera) };
+    let endoscope = Endoscope { url: serving.endpoint.clone(), camera: Some(camera), ..Endoscope::default() };
     (serving, endoscope)
 }
 
@@ -62,8 +70,11 @@ fn is_painted(harness: &Console, words: &str) -> bool {
     harness.output().shapes.iter().any(|clipped| is_in(&clipped.shape, words))
 }
 
+fn is_picture(shape: &Shape) -> bool {
+    matches!(shape, Shape::Mesh(mesh) if matches!(mesh.texture_id, egui::TextureId::Managed(id) if id > 0) && mesh.vertices.len() == 4)
+}
+
 fn has_picture(harness: &Console) -> bool {
-    let is_picture = |shape: &Shape| matches!(shape, Shape::Mesh(mesh) if matches!(mesh.texture_id, egui::TextureId::Managed(id) if id > 0) && mesh.vertices.len() == 4);
     harness.output().shapes.iter().any(|clipped| is_picture(&clipped.shape))
 }
 
@@ -105,16 +116,65 @@ fn a_key_hides_the_forces() {
 }
 
 #[test]
+fn a_key_chooses_the_half_of_two_lenses_and_the_forces_go_with_it() {
+    let (_serving, endoscope) = lenses(Some(0.004));
+    let view = Some(StereoView::Left);
+    let mut harness = surgeon(Endoscope { view, baseline_m: Some(0.004), ..endoscope }, [1280.0, 720.0]);
+    told(&mut harness, "Endoscope's picture: live");
+    for (words, shares) in [
+        ("Left half", vec![[0.0, 0.5]]),
+        ("Right half", vec![[0.5, 1.0]]),
+        ("Both halves", vec![[0.0, 0.5], [0.5, 1.0]]),
+        ("Left half", vec![[0.0, 0.5]]),
+    ] {
+        let is_so = comes(&mut harness, TIMEOUT, |harness| {
+            is_painted(harness, words) && halves(harness) == shares && has_forces(harness, shares.len() > 1)
+        });
+        assert!(is_so, "{words}: {:?}", halves(&harness));
+        harness.key_press(Key::V);
+        harness.step();
+    }
+}
+
+/// Forces are drawn, in both halves of the view if they should be.
+fn has_forces(harness: &Console, both: bool) -> bool {
+    let mut places = Vec::new();
+    for clipped in &harness.output().shapes {
+        if let Shape::Text(text) = &clipped.shape
+            && text.galley.text().contains("ceiling 4 N")
+        {
+            places.push(text.pos.x);
+        }
+    }
+    let is_left = |x: &f32| *x < 640.0;
+    if both { places.iter().any(is_left) && !places.iter().all(is_left) } else { !places.is_empty() }
+}
+
+/// From where to where the picture is shown, in shares of its width.
+fn halves(harness: &Console) -> Vec<[f32; 2]> {
+    let shares = |shape: &Shape| match shape {
+        Shape::Mesh(mesh) if is_picture(shape) => Some([mesh.vertices[0].uv.x, mesh.vertices[3].uv.x]),
+        _ => None,
+    };
+    harness.output().shapes.iter().filter_map(|clipped| shares(&clipped.shape)).collect()
+}
+
+#[test]
 fn a_camera_that_is_not_there_is_told_with_a_cure_there_and_among_the_devices() {
-    let endoscope = |url: &str| Endoscope { url: url.to_owned(), rotation_deg: 0, mirror: false, camera: None };
+    let endoscope = |url: &str| Endoscope { url: url.to_owned(), ..Endoscope::default() };
     let mut harness = surgeon(endoscope("http://127.0.0.1:1/"), [1280.0, 720.0]);
     told(&mut harness, "Picture is lost: nobody listens at 127.0.0.1:1");
     assert!(is_painted(&harness, "Correct the port in the rig file"));
     harness.state_mut().settings_mut().layout = Layout { front: vec![Panel::Devices], ..Layout::default() };
     press(&mut harness, "Technician");
     assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "nobody listens at 127.0.0.1:1")));
-    let mut harness = surgeon(endoscope("rtsp://127.0.0.1/"), [1280.0, 720.0]);
-    told(&mut harness, "only http:// and files are supported");
+    for (url, words) in [
+        ("rtmp://127.0.0.1/", "cameras (/dev/video0) and files are supported"),
+        ("rtsp://127.0.0.1/", "Picture is lost: this program was built without RTSP and H.264"),
+        ("/dev/video987654", "Picture is lost: /dev/video987654 is not there"),
+    ] {
+        told(&mut surgeon(endoscope(url), [1280.0, 720.0]), words);
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! `nima emulate endoscope`: a picture of a scene whose hands do their task in the air.
 //!
-//! Settings: `port`, `scene` (a name or a file), `rate_hz`, `k1` (radial distortion), `width` and `height` (px), `quality` (of the JPEGs).
+//! Settings: `port`, `scene` (a name or a file), `rate_hz`, `k1` (radial distortion), `width` and `height` (px), `quality` (of the JPEGs),
+//! `baseline_m` (of a second lens), `pipe` (a file or named pipe that also gets the pictures: H.264 if it ends in `.h264`, else JPEGs).
 
 use std::io::{Error, ErrorKind, Result};
 
@@ -44,7 +45,15 @@ pub(in crate::emulators) fn endoscope(settings: &Settings) -> Result<Box<dyn Emu
     if !(1..=100).contains(&quality) {
         return Err(unusable("quality", quality, "give 1 to 100"));
     }
-    let emulated = Emulated { rate_hz, camera: camera_of(&camera), quality, ..usual };
+    let baseline_m = settings.get("baseline_m")?;
+    if let Some(baseline_m) = baseline_m.filter(|baseline_m| !(0.000_5..=0.05).contains(baseline_m)) {
+        return Err(unusable("baseline_m", baseline_m, "give 0.0005 to 0.05"));
+    }
+    let pipe = settings.get::<std::path::PathBuf>("pipe")?;
+    if let Some(path) = &pipe {
+        super::pipe::check(path, rate_hz)?;
+    }
+    let emulated = Emulated { rate_hz, camera: camera_of(&camera), baseline_m, quality, pipe, ..usual };
     Ok(emulated.with(&scene, in_the_air(&scene)))
 }
 

@@ -54,12 +54,8 @@ impl Painter {
         Self { camera, surface_m: ground.surface_m, picture: pixels.clone(), ground: pixels }
     }
 
-    pub(super) const fn size_px(&self) -> [usize; 2] {
-        self.camera.lens.size_px
-    }
-
     /// The picture with these instruments.
-    pub(super) fn draw(&mut self, instruments: &[Instrument]) -> &mut [u8] {
+    pub(super) fn draw(&mut self, instruments: &[Instrument]) -> &[u8] {
         self.picture.copy_from_slice(&self.ground);
         for instrument in instruments {
             self.shadow(instrument);
@@ -68,7 +64,7 @@ impl Painter {
             self.shaft(instrument);
             self.mark(instrument);
         }
-        &mut self.picture
+        &self.picture
     }
 
     /// Darkens the tissue under a tip: the closer, the darker.

@@ -1,4 +1,5 @@
-//! An emulated endoscope: renders the simulated scene through a lens that bends the picture, and serves it as motion JPEG over HTTP on loopback.
+//! An emulated endoscope: renders the simulated scene through a lens that bends the picture, and serves it on loopback: as motion JPEG over HTTP
+//! and, in a program with the feature `h264`, as H.264 over RTSP at the same port; and into a named pipe.
 //!
 //! What is seen comes from its [`Body`], a closure of the emulator's time. A code in the upper left corner of the picture tells when it was
 //! rendered. Pictures are made only while somebody watches. Faults that concern the meaning are its own (`freeze`, `black`, `torn`, `late`,
@@ -6,9 +7,14 @@
 
 pub(super) mod alone;
 mod draw;
+mod pipe;
+mod rtsp;
 mod serve;
+mod shot;
 #[cfg(test)]
 mod tests;
+
+use std::path::PathBuf;
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector2, Vector3};
 use nima_core::frames::from_roll_pitch_yaw_deg;
@@ -37,18 +43,23 @@ pub struct Emulated {
     pub port: u16,
     /// Pictures a second.
     pub rate_hz: f64,
-    /// Its lens and its place.
+    /// Its lens and its place; of two lenses the left one.
     pub camera: Camera,
+    /// How far a second lens is to the right of the first, m: their pictures lie side by side. `None` for one lens.
+    pub baseline_m: Option<f64>,
     /// Side of a square of the time code, px; 0 draws none.
     pub square_px: usize,
     /// Quality of the JPEGs, 1 to 100.
     pub quality: u8,
+    /// Where pictures are also written, one after the other: H.264 if it ends so, else JPEGs.
+    pub pipe: Option<PathBuf>,
 }
 
 impl Emulated {
     /// The usual endoscope of a scene, on this port.
     pub fn of(scene: &Scene, port: u16) -> Self {
-        Self { port, rate_hz: 30.0, camera: camera_of(&usual(scene)), square_px: SQUARE_PX, quality: 80 }
+        let camera = camera_of(&usual(scene));
+        Self { port, rate_hz: 30.0, camera, baseline_m: None, square_px: SQUARE_PX, quality: 80, pipe: None }
     }
 
     /// With what it sees.
@@ -59,6 +70,8 @@ impl Emulated {
 
 /// Side of a square of the time code, px: a JPEG has half the resolution for colours.
 pub const SQUARE_PX: usize = 16;
+/// Distance of the lenses of the usual endoscope with two of them, m.
+pub const BASELINE_M: f64 = 0.004;
 /// Size of the usual picture, px, and its radial distortion: a barrel, as most endoscopes have.
 const SIZE_PX: [usize; 2] = [1280, 720];
 const K1: f64 = -0.3;

@@ -1,14 +1,18 @@
-//! Serves the pictures: one answer that never ends for everyone who asks.
+//! Serves the pictures: one answer that never ends for everyone who asks, as parts over HTTP or as packets over RTSP.
 
-use std::{
-    collections::VecDeque,
-    io,
-    time::{SystemTime, UNIX_EPOCH},
+use std::{collections::VecDeque, io};
+
+use nima_endoscope::{
+    h264::{self, Encoder},
+    jpeg,
 };
 
-use nima_endoscope::{jpeg, time_code};
-
-use super::{Body, Emulated, draw::Painter};
+use super::{
+    Body, Emulated,
+    pipe::Pipe,
+    rtsp::{self, Reply},
+    shot::{Shot, Studio},
+};
 use crate::{
     emulators::{
         EmulatedFault, Emulator, Peer, Turn,
@@ -27,84 +31,133 @@ const PATHS: [&str; 4] = ["/", "/stream", "/stream.mjpg", "/?action=stream"];
 
 pub(super) struct Endoscope {
     emulated: Emulated,
-    scene: Scene,
-    body: Body,
-    /// Made when the first picture is wanted.
-    painter: Option<Painter>,
+    studio: Studio,
+    /// For all who watch over RTSP; made when the first one does.
+    encoder: Option<Encoder>,
+    /// The next picture is one with which a player can begin.
+    wants_key: bool,
+    pipe: Option<Pipe>,
     clients: Vec<Client>,
     due_s: f64,
-    /// The last picture as it was sent, which a frozen camera sends again.
-    last: Option<Vec<u8>>,
     /// When each late picture leaves, s.
-    late: VecDeque<(f64, Vec<u8>)>,
+    late: VecDeque<(f64, Sent)>,
 }
 
 struct Client {
     peer: Peer,
     request: Vec<u8>,
-    watches: bool,
+    watches: Watches,
+}
+
+enum Watches {
+    /// It has not asked yet.
+    Nothing,
+    Parts,
+    Packets(rtsp::Session),
+}
+
+/// A picture on its way, as those who watch want it.
+#[derive(Default)]
+struct Sent {
+    part: Vec<u8>,
+    unit: Vec<u8>,
+    since: std::time::Duration,
+}
+
+impl Client {
+    fn wants_unit(&self) -> bool {
+        matches!(&self.watches, Watches::Packets(session) if session.plays)
+    }
 }
 
 impl Endoscope {
     pub(super) fn new(emulated: Emulated, scene: &Scene, body: Body) -> Self {
+        let studio = Studio::new(emulated.clone(), scene, body);
         let (clients, late) = (Vec::new(), VecDeque::new());
-        Self { emulated, scene: scene.clone(), body, painter: None, clients, due_s: 0.0, last: None, late }
+        Self { emulated, studio, encoder: None, wants_key: true, pipe: None, clients, due_s: 0.0, late }
     }
 
     fn is_watched(&self) -> bool {
-        self.clients.iter().any(|client| client.watches)
+        let watches = |client: &Client| client.wants_unit() || matches!(client.watches, Watches::Parts);
+        self.pipe.is_some() || self.clients.iter().any(watches)
     }
 
-    /// One part of the answer with the picture of this time.
-    fn part(&mut self, now_s: f64, fault: EmulatedFault) -> Vec<u8> {
-        // Before it is looked: whoever reads this time knows that nothing in the picture is older.
-        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let instruments = (self.body)(now_s);
-        let (camera, scene) = (self.emulated.camera, &self.scene);
-        let painter = self.painter.get_or_insert_with(|| Painter::new(camera, scene));
-        let size_px @ [width, _] = painter.size_px();
-        let rgb = painter.draw(&instruments);
-        let (quality, square_px) = (self.emulated.quality, self.emulated.square_px);
-        if square_px > 0 {
-            time_code::draw(since.as_micros() as u64, square_px, rgb, width);
+    /// The picture of this time.
+    fn take(&mut self, now_s: f64, fault: EmulatedFault) -> Sent {
+        let is_frozen = fault == EmulatedFault::Freeze;
+        let shot = if is_frozen { self.studio.again(now_s) } else { self.studio.take(now_s, fault) };
+        if let Some(pipe) = &self.pipe {
+            pipe.send(&shot, fault);
         }
-        let (kind, mut picture) = match fault {
-            EmulatedFault::Black => {
-                rgb.fill(0);
-                ("image/jpeg", jpeg::encode(rgb, size_px, quality))
-            }
-            EmulatedFault::WrongSize => {
-                let (half, half_px) = halved(rgb, size_px);
-                ("image/jpeg", jpeg::encode(&half, half_px, quality))
-            }
-            EmulatedFault::OtherFormat => ("image/png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec()),
-            _ => ("image/jpeg", jpeg::encode(rgb, size_px, quality)),
-        };
-        if fault == EmulatedFault::Torn {
-            picture.truncate(picture.len() * 6 / 10);
+        let mut sent = Sent { since: shot.since, ..Sent::default() };
+        if self.clients.iter().any(|client| matches!(client.watches, Watches::Parts)) {
+            sent.part = part(&shot, self.emulated.quality, fault);
         }
-        let head = format!(
-            "\r\n--{BOUNDARY}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nX-Timestamp: {}.{:06}\r\n\r\n",
-            picture.len(),
-            since.as_secs(),
-            since.subsec_micros()
-        );
-        [head.as_bytes(), &picture].concat()
+        // An encoder never makes the same bytes of the same picture: a stream that hangs has no more pictures.
+        if !is_frozen && self.clients.iter().any(Client::wants_unit) {
+            let encoder = match self.encoder.take() {
+                Some(encoder) => Ok(encoder),
+                None => Encoder::new(self.emulated.rate_hz),
+            };
+            let unit = encoder.and_then(|mut encoder| {
+                let unit = encoder.encode(shot.rgb, shot.size_px, self.wants_key);
+                self.encoder = Some(encoder);
+                unit
+            });
+            // A picture that the library does not take is not sent: the client tells that nothing comes.
+            sent.unit = unit.unwrap_or_default();
+            self.wants_key = false;
+            if fault == EmulatedFault::Torn {
+                sent.unit.truncate(sent.unit.len() * 6 / 10);
+            }
+        }
+        sent
     }
 
-    fn send(&self, part: &[u8], turn: &mut Turn<'_>) {
-        for client in self.clients.iter().filter(|client| client.watches) {
-            turn.send(client.peer, part);
+    fn send(&mut self, sent: &Sent, turn: &mut Turn<'_>) {
+        for client in &mut self.clients {
+            match &mut client.watches {
+                Watches::Parts => turn.send(client.peer, &sent.part),
+                Watches::Packets(session) if session.plays => {
+                    turn.send(client.peer, &session.packets(&sent.unit, sent.since));
+                }
+                Watches::Nothing | Watches::Packets(_) => {}
+            }
+        }
+    }
+
+    /// An answer to what a player asks.
+    fn replied(&mut self, from: Peer, replies: &[Reply], turn: &mut Turn<'_>) {
+        for reply in replies {
+            turn.send(from, reply.text.as_bytes());
+            if reply.begins {
+                self.wants_key = true;
+                self.due_s = turn.now_s;
+            }
+            if reply.ends {
+                self.lose(from);
+            }
         }
     }
 }
 
-/// Every second pixel of every second row.
-fn halved(rgb: &[u8], [width, height]: [usize; 2]) -> (Vec<u8>, [usize; 2]) {
-    let half_px = [width / 2, height / 2];
-    let rows = rgb.chunks_exact(3 * width).step_by(2).take(half_px[1]);
-    let half = rows.flat_map(|row| row.chunks_exact(3).step_by(2).take(half_px[0]).flatten().copied()).collect();
-    (half, half_px)
+/// One part of the answer over HTTP.
+fn part(shot: &Shot<'_>, quality: u8, fault: EmulatedFault) -> Vec<u8> {
+    let (kind, mut picture) = if fault == EmulatedFault::OtherFormat {
+        ("image/png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec())
+    } else {
+        ("image/jpeg", jpeg::encode(shot.rgb, shot.size_px, quality))
+    };
+    if fault == EmulatedFault::Torn {
+        picture.truncate(picture.len() * 6 / 10);
+    }
+    let head = format!(
+        "\r\n--{BOUNDARY}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nX-Timestamp: {}.{:06}\r\n\r\n",
+        picture.len(),
+        shot.since.as_secs(),
+        shot.since.subsec_micros()
+    );
+    [head.as_bytes(), &picture].concat()
 }
 
 /// Answer to a whole request, and whether pictures follow.
@@ -128,6 +181,15 @@ fn answer(request: &[u8]) -> (String, bool) {
     }
 }
 
+/// What the camera says it sends over RTSP; nothing in a program that was built without it.
+fn announces(fault: EmulatedFault) -> String {
+    match fault {
+        _ if !h264::IS_BUILT => String::new(),
+        EmulatedFault::OtherFormat => rtsp::announcement("H265"),
+        _ => rtsp::announcement("H264"),
+    }
+}
+
 impl Emulator for Endoscope {
     fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
         Ok(vec![tcp(self.emulated.port)])
@@ -137,20 +199,37 @@ impl Emulator for Endoscope {
         format!("http://{}/", places[0])
     }
 
+    fn begin(&mut self) {
+        let Some(path) = self.emulated.pipe.clone() else { return };
+        // Whether it can be written was tried when it was asked for.
+        self.pipe = Pipe::start(path, self.emulated.rate_hz, self.emulated.quality).ok();
+    }
+
     fn meet(&mut self, peer: Peer, _: &mut Turn<'_>) {
-        self.clients.push(Client { peer, request: Vec::new(), watches: false });
+        self.clients.push(Client { peer, request: Vec::new(), watches: Watches::Nothing });
     }
 
     fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
-        let Some(client) = self.clients.iter_mut().find(|client| client.peer == from && !client.watches) else {
+        let Some(client) = self.clients.iter_mut().find(|client| client.peer == from) else { return };
+        if let Watches::Packets(session) = &mut client.watches {
+            let replies = session.hear(bytes, &announces(turn.fault));
+            self.replied(from, &replies, turn);
             return;
-        };
+        }
+        if matches!(client.watches, Watches::Parts) {
+            return;
+        }
         client.request.extend_from_slice(bytes);
         let is_whole = client.request.windows(4).any(|four| four == b"\r\n\r\n");
-        if is_whole || client.request.len() > REQUEST_MOST {
+        if is_whole && rtsp::is_rtsp(&client.request) {
+            let mut session = rtsp::Session::default();
+            let replies = session.hear(&std::mem::take(&mut client.request), &announces(turn.fault));
+            client.watches = Watches::Packets(session);
+            self.replied(from, &replies, turn);
+        } else if is_whole || client.request.len() > REQUEST_MOST {
             let (answer, watches) = answer(&client.request);
             client.request.clear();
-            client.watches = watches;
+            client.watches = if watches { Watches::Parts } else { Watches::Nothing };
             turn.send(from, answer.as_bytes());
             // The first picture comes at once.
             self.due_s = turn.now_s;
@@ -161,8 +240,13 @@ impl Emulator for Endoscope {
         if turn.fault != EmulatedFault::Late {
             self.late.clear();
         }
-        while let Some((_, part)) = self.late.pop_front_if(|(leaves_s, _)| *leaves_s <= turn.now_s) {
-            self.send(&part, turn);
+        while let Some((_, sent)) = self.late.pop_front_if(|(leaves_s, _)| *leaves_s <= turn.now_s) {
+            self.send(&sent, turn);
+        }
+        // What a player is told at the beginning holds to the end: a camera that changes it hangs up.
+        if turn.fault == EmulatedFault::OtherFormat && self.clients.iter().any(Client::wants_unit) {
+            turn.hang_up();
+            self.lose(Peer::Everyone);
         }
         if !self.is_watched() || turn.now_s < self.due_s {
             return;
@@ -170,14 +254,12 @@ impl Emulator for Endoscope {
         // What was missed is not caught up.
         let period_s = self.emulated.rate_hz.recip();
         self.due_s = (self.due_s + period_s).max(turn.now_s);
-        let frozen = self.last.take().filter(|_| turn.fault == EmulatedFault::Freeze);
-        let part = frozen.unwrap_or_else(|| self.part(turn.now_s, turn.fault));
+        let sent = self.take(turn.now_s, turn.fault);
         if turn.fault == EmulatedFault::Late {
-            self.late.push_back((turn.now_s + LATE_S, part.clone()));
+            self.late.push_back((turn.now_s + LATE_S, sent));
         } else {
-            self.send(&part, turn);
+            self.send(&sent, turn);
         }
-        self.last = Some(part);
     }
 
     fn due_s(&self) -> Option<f64> {

@@ -14,6 +14,11 @@ use super::{
 };
 use crate::emulators::{EmulatedFault, Serving};
 
+#[cfg(feature = "h264")]
+mod rtsp;
+
+type Feeding = Look<Arc<Picture>>;
+
 fn scene() -> Scene {
     Scene::load("bimanual").unwrap()
 }
@@ -28,7 +33,12 @@ fn small(k1: f64) -> Camera {
 }
 
 fn serve() -> Serving {
-    let emulated = Emulated { camera: small(K1), square_px: SQUARE_PX, ..Emulated::of(&scene(), 0) };
+    serve_with(None)
+}
+
+/// Also writes into a file.
+fn serve_with(pipe: Option<std::path::PathBuf>) -> Serving {
+    let emulated = Emulated { camera: small(K1), square_px: SQUARE_PX, pipe, ..Emulated::of(&scene(), 0) };
     emulated.with(&scene(), in_the_air(&scene())).serve().unwrap()
 }
 
@@ -36,7 +46,7 @@ fn feed(serving: &Serving) -> Feed {
     Feed::start(serving.endpoint.parse().unwrap(), Some([640, 360]), || {}).unwrap()
 }
 
-fn until(feed: &Feed, what: &str, wanted: impl Fn(&Look<Arc<Picture>>) -> bool) -> Look<Arc<Picture>> {
+fn until(feed: &Feed, what: &str, wanted: impl Fn(&Feeding) -> bool) -> Feeding {
     let begin = Instant::now();
     loop {
         let look = feed.look(Instant::now());
@@ -161,14 +171,67 @@ fn frozen_is_told_in_time_and_a_cut_is_mended_within_a_second() {
 }
 
 #[test]
+fn two_lenses_see_a_tip_where_each_camera_says() {
+    let camera = small(0.3);
+    let baseline_m = Some(BASELINE_M);
+    let emulated = Emulated { camera, baseline_m, square_px: 0, ..Emulated::of(&scene(), 0) };
+    let trocar_m = scene().trocar_m;
+    let tip_m = Vector3::new(0.01, 0.005, 0.01);
+    let body = Box::new(move |_: f64| vec![Instrument { tip_m, trocar_m }]);
+    let mut studio = shot::Studio::new(emulated, &scene(), body);
+    let shot = studio.take(0.0, EmulatedFault::None);
+    assert_eq!(shot.size_px, [1280, 360]);
+    for (number, camera) in [camera, camera.beside(BASELINE_M)].into_iter().enumerate() {
+        let rows = shot.rgb.chunks_exact(3 * 1280).map(|row| &row[3 * 640 * number..][..3 * 640]);
+        let rgba = rows.flat_map(|row| row.chunks_exact(3).flat_map(|rgb| [rgb[0], rgb[1], rgb[2], 255])).collect();
+        let seen_px = mark_px(&Picture { size_px: [640, 360], rgba }).unwrap();
+        assert!((seen_px - camera.project(&tip_m).unwrap()).norm() < 2.0, "{number}: {seen_px}");
+    }
+}
+
+#[test]
+fn pictures_are_written_for_who_reads_raw_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("stream.mjpeg");
+    let _serving = serve_with(Some(path.clone()));
+    let is_there = |path: &std::path::Path| std::fs::metadata(path).map_or(0, |about| about.len()) > 100_000;
+    let begin = Instant::now();
+    while !is_there(&path) {
+        assert!(begin.elapsed() < Duration::from_secs(30));
+        thread::sleep(Duration::from_millis(10));
+    }
+    let feed = Feed::start(path.to_str().unwrap().parse().unwrap(), None, || {}).unwrap();
+    until(&feed, "a time code", |look| look.picture.as_ref().is_some_and(|(_, picture)| time_us(picture).is_some()));
+}
+
+#[cfg(not(feature = "h264"))]
+#[test]
+fn without_its_feature_rtsp_and_a_raw_stream_are_refused_in_words() {
+    let serving = serve();
+    let mut stream = std::net::TcpStream::connect(&serving.endpoint[7..serving.endpoint.len() - 1]).unwrap();
+    let request = "DESCRIBE rtsp://127.0.0.1/stream RTSP/1.0\r\nCSeq: 1\r\n\r\n";
+    std::io::Write::write_all(&mut stream, request.as_bytes()).unwrap();
+    let mut answer = [0; 24];
+    std::io::Read::read_exact(&mut stream, &mut answer).unwrap();
+    assert!(answer.starts_with(b"RTSP/1.0 501 Not"), "{}", String::from_utf8_lossy(&answer));
+    let settings = super::super::Settings::new(&["pipe=/tmp/a.h264".to_owned()]).unwrap();
+    let told = alone::endoscope(&settings).err().unwrap().to_string();
+    assert!(told.contains("--features h264"), "{told}");
+}
+
+#[test]
 fn a_wrong_page_and_a_wrong_setting_are_told() {
     let serving = serve();
     let address = format!("{}nothing", serving.endpoint).parse().unwrap();
     let feed = Feed::start(address, None, || {}).unwrap();
     until(&feed, "404", |look| matches!(look.standing, Standing::Lost(Trouble::Refused { status: 404, .. })));
-    for (setting, word) in
-        [("k1=9", "-2 to 2"), ("width=9", "64 to 4096"), ("rate_hz=0", "1 to 120"), ("scene=none", "none")]
-    {
+    for (setting, word) in [
+        ("k1=9", "-2 to 2"),
+        ("width=9", "64 to 4096"),
+        ("rate_hz=0", "1 to 120"),
+        ("scene=none", "none"),
+        ("baseline_m=1", "0.0005 to 0.05"),
+    ] {
         let settings = super::super::Settings::new(&[setting.to_owned()]).unwrap();
         let told = alone::endoscope(&settings).err().unwrap().to_string();
         assert!(told.contains(word), "{setting}: {told}");

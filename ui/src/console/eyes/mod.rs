@@ -1,6 +1,7 @@
 //! The endoscope's picture in the surgeon's view: taken from a feed with threads of its own, uploaded once, and told in words when it is not what
 //! happens now. Nothing of it touches the loop.
 
+mod halves;
 mod overlay;
 mod place;
 mod poses;
@@ -16,10 +17,15 @@ use egui::{
     Align2, Color32, ColorImage, Context, Key, Mesh, Painter, Rect, Sense, TextureHandle, TextureOptions, Ui, vec2,
 };
 use nima_endoscope::{Address, Camera, FROZEN, Feed, Look, Picture, Standing, Wrong};
-use nima_machine::{config::Endoscope, messages::Tick};
+use nima_machine::{
+    config::{Endoscope, StereoView},
+    messages::Tick,
+};
 use nima_world::emulators::endoscope::camera_of;
 
-use self::{place::Place, poses::Poses};
+#[cfg(test)]
+use self::place::Place;
+use self::{halves::Half, poses::Poses};
 use super::{live::Live, text, theme};
 
 /// The figures stand still for so long, so that they can be read.
@@ -56,6 +62,8 @@ pub struct Eyes {
     shown: Option<(Instant, String)>,
     rate_hz: f64,
     hides_forces: bool,
+    /// Of a picture of two lenses, what is shown.
+    view: Option<StereoView>,
     poses: Poses,
 }
 
@@ -72,8 +80,9 @@ impl Eyes {
             return;
         }
         *self = Self { wanted: wanted.cloned(), hides_forces: self.hides_forces, ..Self::default() };
-        let Some(Endoscope { url, camera, .. }) = wanted else { return };
+        let Some(endoscope @ Endoscope { url, camera, view, .. }) = wanted else { return };
         self.camera = camera.as_ref().map(camera_of);
+        self.view = *view;
         let address = match url.parse::<Address>() {
             Ok(address) => address,
             Err(error) => {
@@ -82,7 +91,7 @@ impl Eyes {
             }
         };
         let ctx = ctx.clone();
-        let size_px = self.camera.map(|camera| camera.lens.size_px);
+        let size_px = self.camera.map(|camera| halves::whole_px(&camera, endoscope));
         match Feed::start(address, size_px, move || ctx.request_repaint()) {
             Ok(feed) => self.feed = Some(feed),
             Err(error) => self.refused = Some(text::eyes::refused(&error.to_string())),
@@ -131,8 +140,11 @@ impl Eyes {
         let now = Instant::now();
         let look = self.feed.as_ref().map(|feed| feed.look(now));
         self.rate_hz = look.as_ref().map_or(0.0, |look| look.rate_hz);
-        if !ui.ctx().text_edit_focused() && ui.input(|input| input.modifiers.is_none() && input.key_pressed(Key::O)) {
-            self.hides_forces ^= true;
+        let pressed = |key| ui.input(|input| input.modifiers.is_none() && input.key_pressed(key));
+        let free = !ui.ctx().text_edit_focused();
+        self.hides_forces ^= free && pressed(Key::O);
+        if free && pressed(Key::V) {
+            self.view = self.view.map(halves::next);
         }
         let (view, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
         let standing = look.as_ref().map_or(Standing::Opening, |look| look.standing.clone());
@@ -143,13 +155,18 @@ impl Eyes {
         painter.rect_filled(view, 0.0, Color32::BLACK);
         let is_good = self.refused.is_none() && matches!(standing, Standing::Live | Standing::Still);
         let shows_past = matches!(standing, Standing::Lost(_) | Standing::Wrong(Wrong::Frozen(_)));
-        let place = look.as_ref().and_then(|look| self.picture_ui(ui.ctx(), &painter, view, look, shows_past));
+        let halves = look
+            .as_ref()
+            .and_then(|look| self.picture_ui(ui.ctx(), &painter, view, look, shows_past))
+            .unwrap_or_default();
         let fits = is_good || matches!(standing, Standing::Wrong(Wrong::Late(_) | Wrong::Damaged(_)));
         let mut tips = Vec::new();
-        if let (Some(place), Some(camera), true) = (&place, &self.camera, fits) {
+        for Half { place, camera, within } in halves.iter().filter(|_| fits) {
+            let Some(camera) = camera else { continue };
             let age = look.as_ref().and_then(|look| look.age).unwrap_or_default();
-            let seen = overlay::Seen { painter: &painter, place, camera, ceiling_n: live.gate_settings().ceiling_n };
-            tips = seen.draw(live.sides().filter_map(|side| self.poses.at(side, now, age)), self.hides_forces);
+            let painter = &painter.with_clip_rect(*within);
+            let seen = overlay::Seen { painter, place, camera, ceiling_n: live.gate_settings().ceiling_n };
+            tips.extend(seen.draw(live.sides().filter_map(|side| self.poses.at(side, now, age)), self.hides_forces));
         }
         if !is_good {
             let colour = if standing == Standing::Opening && self.refused.is_none() {
@@ -157,7 +174,7 @@ impl Eyes {
             } else {
                 theme::DARK.alarm_high
             };
-            let over = place.as_ref().map_or(view, |place| place.rect);
+            let over = halves.iter().map(|half| half.place.rect).reduce(Rect::union).unwrap_or(view);
             if shows_past {
                 painter.rect_stroke(over, 0.0, egui::Stroke::new(3.0, colour), egui::StrokeKind::Inside);
             }
@@ -167,7 +184,7 @@ impl Eyes {
         ui.ctx().request_repaint_after(until_told(look.as_ref(), is_good));
     }
 
-    /// Uploads a new picture and draws it as large as it can be; gives its place.
+    /// Uploads a new picture and draws it as large as it can be; gives what is shown of it.
     fn picture_ui(
         &mut self,
         ctx: &Context,
@@ -175,7 +192,7 @@ impl Eyes {
         view: Rect,
         look: &Newest,
         shows_past: bool,
-    ) -> Option<Place> {
+    ) -> Option<Vec<Half>> {
         let (number, picture) = look.picture.as_ref()?;
         if self.number != *number {
             let image = ColorImage::from_rgba_premultiplied(picture.size_px, &picture.rgba);
@@ -187,16 +204,18 @@ impl Eyes {
             }
             self.number = *number;
         }
-        let place = Place::new(view, picture.size_px, self.wanted.as_ref()?);
-        let mut mesh = Mesh::with_texture(self.textures[self.front].as_ref()?.id());
-        for (corner, at) in place.corners() {
-            let colour = if shows_past { PAST } else { Color32::WHITE };
-            mesh.vertices.push(egui::epaint::Vertex { pos: at, uv: corner, color: colour });
+        let halves = halves::halves(view, picture.size_px, self.wanted.as_ref()?, self.view, self.camera.as_ref());
+        for half in &halves {
+            let mut mesh = Mesh::with_texture(self.textures[self.front].as_ref()?.id());
+            for (corner, at) in half.place.corners() {
+                let colour = if shows_past { PAST } else { Color32::WHITE };
+                mesh.vertices.push(egui::epaint::Vertex { pos: at, uv: corner, color: colour });
+            }
+            mesh.add_triangle(0, 1, 2);
+            mesh.add_triangle(2, 1, 3);
+            painter.add(mesh);
         }
-        mesh.add_triangle(0, 1, 2);
-        mesh.add_triangle(2, 1, 3);
-        painter.add(mesh);
-        Some(place)
+        Some(halves)
     }
 
     /// Age, rate, and what the forces are, in a corner.
@@ -226,7 +245,9 @@ impl Eyes {
             (_, false) => text::eyes::FORCES_DRAWN,
         };
         let figures = self.shown.as_ref().map(|(_, figures)| figures.as_str()).unwrap_or_default();
-        let lines = [(figures, 15.0, theme::DARK.text), (forces, 13.0, theme::DARK.text_weak)];
+        let half = self.wanted.as_ref().map_or("", |endoscope| halves::told(self.view, endoscope));
+        let weak = theme::DARK.text_weak;
+        let lines = [(figures, 15.0, theme::DARK.text), (forces, 13.0, weak), (half, 13.0, weak)];
         let inner = view.shrink(MARGIN);
         let corners = [
             (inner.left_bottom(), Align2::LEFT_BOTTOM),

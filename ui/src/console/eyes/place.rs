@@ -8,6 +8,8 @@ use nima_machine::config::Endoscope;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Place {
     pub(super) rect: Rect,
+    /// From where to where it lies in the width of the whole picture.
+    share: [f32; 2],
     size_px: [usize; 2],
     rotation_deg: u16,
     mirror: bool,
@@ -19,21 +21,29 @@ impl Place {
         let [width, height] = size_px.map(|side| side.max(1) as f32);
         let size = if matches!(rotation_deg, 90 | 270) { vec2(height, width) } else { vec2(width, height) };
         let scale = (view.width() / size.x).min(view.height() / size.y).max(0.0);
-        Self { rect: Rect::from_center_size(view.center(), size * scale), size_px, rotation_deg, mirror }
+        let rect = Rect::from_center_size(view.center(), size * scale);
+        Self { rect, share: [0.0, 1.0], size_px, rotation_deg, mirror }
+    }
+
+    /// The same place for a part of a picture.
+    pub(super) const fn of_share(self, share: [f32; 2]) -> Self {
+        Self { share, ..self }
     }
 
     /// Where a pixel of the picture is.
     pub(super) fn at(&self, place_px: &Vector2<f64>) -> Pos2 {
         let [width, height] = self.size_px.map(|side| side as f64);
-        self.of_share(pos2((place_px.x / width) as f32, (place_px.y / height) as f32))
+        self.turned(pos2((place_px.x / width) as f32, (place_px.y / height) as f32))
     }
 
-    /// The corners of the picture, as shares of its sides, and where they are.
+    /// The corners of what is shown, as shares of the whole picture's sides, and where they are.
     pub(super) fn corners(&self) -> [(Pos2, Pos2); 4] {
-        [pos2(0.0, 0.0), pos2(1.0, 0.0), pos2(0.0, 1.0), pos2(1.0, 1.0)].map(|corner| (corner, self.of_share(corner)))
+        let [from, to] = self.share;
+        let corners = [pos2(0.0, 0.0), pos2(1.0, 0.0), pos2(0.0, 1.0), pos2(1.0, 1.0)];
+        corners.map(|corner| (pos2(from + (to - from) * corner.x, corner.y), self.turned(corner)))
     }
 
-    fn of_share(&self, share: Pos2) -> Pos2 {
+    fn turned(&self, share: Pos2) -> Pos2 {
         let x = if self.mirror { 1.0 - share.x } else { share.x };
         let turned: Vec2 = match self.rotation_deg {
             90 => vec2(1.0 - share.y, x),
@@ -50,7 +60,7 @@ mod tests {
     use super::*;
 
     fn place(rotation_deg: u16, mirror: bool) -> Place {
-        let endoscope = Endoscope { url: String::new(), rotation_deg, mirror, camera: None };
+        let endoscope = Endoscope { rotation_deg, mirror, ..Endoscope::default() };
         Place::new(Rect::from_min_size(pos2(100.0, 50.0), vec2(1000.0, 400.0)), [1280, 720], &endoscope)
     }
 

@@ -14,6 +14,11 @@ pub(in crate::console) const SIZE_CURE: &str =
     "Set the camera to the size that the rig file has. Until then no forces are drawn.";
 pub(in crate::console) const FORCES_DRAWN: &str = "Forces are drawn at the tips; O hides them";
 pub(in crate::console) const FORCES_HIDDEN: &str = "O draws the forces at the tips";
+pub(in crate::console) const LEFT_HALF: &str = "Left half; V shows the right one";
+pub(in crate::console) const RIGHT_HALF: &str = "Right half; V shows both";
+pub(in crate::console) const RIGHT_WITHOUT_FORCES: &str =
+    "Right half without forces: the rig file has no endoscope.baseline_m; V shows both";
+pub(in crate::console) const BOTH_HALVES: &str = "Both halves; V shows the left one";
 pub(in crate::console) const NO_CAMERA: &str = "No forces are drawn: the rig file has no [endoscope.camera]";
 
 /// No new picture for so long.

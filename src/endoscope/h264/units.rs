@@ -1,0 +1,148 @@
+//! NAL units and access units of a stream.
+
+/// Longest picture.
+const UNIT_MOST: usize = 8 << 20;
+
+/// A picture that needs no other.
+const KEY: u8 = 5;
+
+/// What a NAL unit is: 1 to 5 are parts of a picture, 7 and 8 parameters.
+pub fn kind(nal: &[u8]) -> u8 {
+    nal.first().map_or(0, |head| head & 0x1f)
+}
+
+/// The NAL units of a picture, without their start codes.
+pub fn nal_units(unit: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let mut rest = start(unit, 0).map_or(&[][..], |at| &unit[at + 3..]);
+    std::iter::from_fn(move || {
+        if rest.is_empty() {
+            return None;
+        }
+        let next = start(rest, 0);
+        let nal = &rest[..next.unwrap_or(rest.len())];
+        rest = next.map_or(&[][..], |at| &rest[at + 3..]);
+        // Zeros before a start code belong to it; a NAL unit ends with none.
+        let end = nal.iter().rposition(|byte| *byte != 0).map_or(0, |at| at + 1);
+        Some(&nal[..end])
+    })
+    .filter(|nal| !nal.is_empty())
+}
+
+/// A decoder can begin with this picture.
+pub(crate) fn is_key(unit: &[u8]) -> bool {
+    nal_units(unit).any(|nal| kind(nal) == KEY)
+}
+
+/// Where the next start code is, from this byte on.
+fn start(bytes: &[u8], from: usize) -> Option<usize> {
+    bytes.get(from..)?.windows(3).position(|three| three == [0, 0, 1]).map(|at| from + at)
+}
+
+/// Takes bytes as they are read and gives whole pictures.
+#[derive(Debug, Default)]
+pub(crate) struct Splitter {
+    held: Vec<u8>,
+    /// So far it was searched.
+    searched: usize,
+    has_picture: bool,
+}
+
+impl Splitter {
+    /// Bytes that were read.
+    pub(crate) fn take(&mut self, bytes: &[u8]) {
+        self.held.extend_from_slice(bytes);
+    }
+
+    /// The next whole picture: it is whole when the next one begins.
+    pub(crate) fn next(&mut self) -> Option<Vec<u8>> {
+        loop {
+            if self.held.len() > UNIT_MOST && self.searched > UNIT_MOST {
+                *self = Self::default();
+            }
+            let Some(at) = start(&self.held, self.searched) else {
+                // Its first bytes may be here.
+                self.searched = self.searched.max(self.held.len().saturating_sub(2));
+                return None;
+            };
+            // The head, and the first byte behind it.
+            let Some([head, first]) = self.held.get(at + 3..at + 5) else {
+                self.searched = at;
+                return None;
+            };
+            let kind = head & 0x1f;
+            let is_part = (1..=5).contains(&kind);
+            // Parameters, or the first slice of a picture (whose first macroblock is number 0, coded as one bit).
+            let begins = (6..=9).contains(&kind) || is_part && first & 0x80 != 0;
+            if self.has_picture && begins {
+                let cut = if at > 0 && self.held[at - 1] == 0 { at - 1 } else { at };
+                let rest = self.held.split_off(cut);
+                self.searched = 0;
+                self.has_picture = false;
+                return Some(std::mem::replace(&mut self.held, rest));
+            }
+            self.has_picture |= is_part;
+            self.searched = at + 3;
+        }
+    }
+
+    /// What is left at the end of a stream: its last picture.
+    pub(crate) fn rest(&mut self) -> Option<Vec<u8>> {
+        let last = std::mem::take(self);
+        last.has_picture.then_some(last.held)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Parameters and slices of some pictures, of two slices each.
+    fn stream(pictures: usize) -> Vec<Vec<u8>> {
+        let picture = |number: usize| {
+            let mut unit = Vec::new();
+            if number.is_multiple_of(3) {
+                unit.extend_from_slice(&[0, 0, 0, 1, 0x67, 0x42, 7, 0, 0, 0, 1, 0x68, 0xce]);
+            }
+            let head = if number.is_multiple_of(3) { 0x65 } else { 0x41 };
+            unit.extend_from_slice(&[0, 0, 0, 1, head, 0x88, number as u8 + 1, 9]);
+            unit.extend_from_slice(&[0, 0, 1, head, 0x42, number as u8 + 1, 0, 0, 3, 1]);
+            unit
+        };
+        (0..pictures).map(picture).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn all_pictures_are_found_however_the_stream_is_read(pictures in 1_usize..8, chunk in 1_usize..40) {
+            let stream = stream(pictures);
+            let (mut splitter, mut found) = (Splitter::default(), Vec::new());
+            for chunk in stream.concat().chunks(chunk) {
+                splitter.take(chunk);
+                found.extend(std::iter::from_fn(|| splitter.next()));
+            }
+            found.extend(splitter.rest());
+            prop_assert_eq!(found, stream);
+        }
+
+        #[test]
+        fn any_bytes_are_borne(bytes in prop::collection::vec(0_u8..4, 0..300), chunk in 1_usize..50) {
+            let mut splitter = Splitter::default();
+            for chunk in bytes.chunks(chunk) {
+                splitter.take(chunk);
+                while splitter.next().is_some() {}
+            }
+            prop_assert!(nal_units(&bytes).all(|nal| !nal.is_empty()));
+        }
+    }
+
+    #[test]
+    fn nal_units_are_told_apart() {
+        let stream = stream(2);
+        let kinds = |unit: &[u8]| nal_units(unit).map(kind).collect::<Vec<_>>();
+        assert_eq!((kinds(&stream[0]), kinds(&stream[1])), (vec![7, 8, 5, 5], vec![1, 1]));
+        assert!(is_key(&stream[0]) && !is_key(&stream[1]) && !is_key(b"no stream"));
+        assert_eq!(nal_units(&stream[0]).next(), Some(&[0x67, 0x42, 7][..]));
+    }
+}

@@ -1,0 +1,185 @@
+//! H.264 (or motion JPEG) over RTSP, as network cameras send it: one connection, which also carries the pictures. The client is `retina`, which
+//! stands on tokio: its runtime is of this thread alone.
+
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    pin::Pin,
+    time::{Duration, Instant},
+};
+
+use futures_util::StreamExt as _;
+use retina::{
+    client::{
+        Demuxed, InitialTimestampPolicy, PlayOptions, Session, SessionOptions, SetupOptions, TcpTransportOptions,
+        TeardownPolicy, Transport,
+    },
+    codec::{CodecItem, FrameFormat, VideoFrame},
+    rtcp::ReceivedCompoundPacket,
+};
+use tokio::{runtime::Runtime, time::timeout};
+use url::Url;
+
+use crate::{Address, Compressed, Format, Source, Trouble, http};
+
+/// Time in which the camera must have answered everything and have begun.
+const OPENING: Duration = Duration::from_secs(3);
+/// Nothing for this long: the connection is given up and made again.
+const SILENT: Duration = Duration::from_secs(2);
+const PATIENCE: Duration = Duration::from_millis(100);
+/// From 1900, from which senders count, to 1970, s.
+const SINCE_1900_S: f64 = 2_208_988_800.0;
+
+/// A camera that plays.
+struct Rtsp {
+    place: String,
+    runtime: Runtime,
+    /// Ended within the runtime.
+    session: Option<Pin<Box<Demuxed>>>,
+    is_jpeg: bool,
+    heard: Instant,
+    /// Of the first report of the sender: its own time, s since 1970, and the stamp that belongs to it, s.
+    reported_s: Option<[f64; 2]>,
+}
+
+enum Failure {
+    Client(retina::Error),
+    Format(String),
+}
+
+impl From<retina::Error> for Failure {
+    fn from(error: retina::Error) -> Self {
+        Self::Client(error)
+    }
+}
+
+/// Opens a camera, and lets it play.
+pub(crate) fn open(host: &str, port: u16, path: &str) -> Result<Box<dyn Source>, Trouble> {
+    guarded(&format!("{host}:{port}"), || begin(host, port, path))
+}
+
+/// The client panics over some damaged answers (its parser of descriptions, above all, and where the rest takes for granted what that lets
+/// through): what was asked for ends, and not the thread.
+fn guarded<T>(place: &str, work: impl FnOnce() -> Result<T, Trouble>) -> Result<T, Trouble> {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
+        let reason = "an answer that cannot be taken apart".to_owned();
+        Err(Trouble::Unreadable { place: place.to_owned(), reason })
+    })
+}
+
+fn begin(host: &str, port: u16, path: &str) -> Result<Box<dyn Source>, Trouble> {
+    let place = format!("{host}:{port}");
+    let other = |reason: String| Trouble::Other { place: place.clone(), reason };
+    let address = Address::Rtsp { host: host.to_owned(), port, path: path.to_owned() };
+    let url = Url::parse(&address.to_string()).map_err(|error| other(error.to_string()))?;
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(|error| other(error.to_string()))?;
+    match runtime.block_on(async { timeout(OPENING, play(url)).await }) {
+        Err(_) => Err(Trouble::Silent { place }),
+        Ok(Ok((session, is_jpeg))) => {
+            let (session, heard) = (Some(Box::pin(session)), Instant::now());
+            Ok(Box::new(Rtsp { place, runtime, session, is_jpeg, heard, reported_s: None }))
+        }
+        Ok(Err(Failure::Format(found))) => Err(Trouble::OtherFormat { place, found, wanted: "H.264" }),
+        Ok(Err(Failure::Client(error))) => Err(told(&place, &error, Some((host, port)))),
+    }
+}
+
+async fn play(url: Url) -> Result<(Demuxed, bool), Failure> {
+    let options = SessionOptions::default().user_agent("nima".to_owned()).teardown(TeardownPolicy::Never);
+    let mut session = Session::describe(url, options).await?;
+    let pictures = || session.streams().iter().enumerate().filter(|(_, stream)| stream.media() == "video");
+    let known = pictures().find(|(_, stream)| matches!(stream.encoding_name(), "h264" | "jpeg"));
+    let Some((number, is_jpeg)) = known.map(|(number, stream)| (number, stream.encoding_name() == "jpeg")) else {
+        let found: Vec<&str> = pictures().map(|(_, stream)| stream.encoding_name()).take(3).collect();
+        let found = if found.is_empty() { "no picture".to_owned() } else { found.join(", ") };
+        return Err(Failure::Format(found.chars().filter(char::is_ascii_graphic).take(60).collect()));
+    };
+    let transport = Transport::Tcp(TcpTransportOptions::default());
+    let options = SetupOptions::default().transport(transport).frame_format(FrameFormat::SIMPLE);
+    session.setup(number, options).await?;
+    let options = PlayOptions::default().initial_timestamp(InitialTimestampPolicy::Permissive);
+    Ok((session.play(options).await?.demuxed()?, is_jpeg))
+}
+
+/// The trouble behind an error of the client, which tells it in words only.
+fn told(place: &str, error: &retina::Error, reach: Option<(&str, u16)>) -> Trouble {
+    let (place, text) = (place.to_owned(), error.to_string());
+    if let Some(status) = error.status_code().filter(|status| *status != 200) {
+        return Trouble::Refused { place, status };
+    }
+    let begins = |words: &str| text.starts_with(words);
+    if begins("Unable to connect") {
+        // Why, is asked once more: its error does not say so.
+        let why = reach.and_then(|(host, port)| http::connect(host, port, &place).err());
+        return why.unwrap_or(Trouble::Closed { place });
+    }
+    if begins("Error reading") || begins("Error writing") || begins("Timeout") {
+        return Trouble::Closed { place };
+    }
+    let first = text.lines().next().unwrap_or_default();
+    Trouble::Unreadable { place, reason: first.chars().filter(|c| !c.is_control()).take(120).collect() }
+}
+
+impl Rtsp {
+    fn picture(&mut self, frame: VideoFrame) -> Compressed {
+        let stamp = frame.timestamp();
+        let own_s = stamp.timestamp() as f64 / f64::from(stamp.clock_rate().get());
+        let format = if self.is_jpeg { Format::Jpeg } else { Format::H264 { is_key: frame.is_random_access_point() } };
+        let arrived = frame.end_ctx().received();
+        let stamp_s = self.reported_s.map_or(own_s, |[time_s, of_s]| time_s + own_s - of_s);
+        Compressed { format, bytes: frame.into_data(), arrived, stamp_s: Some(stamp_s), taken: None }
+    }
+
+    /// The first report of a connection: later ones might step.
+    fn report(&mut self, packet: &ReceivedCompoundPacket) {
+        let Some(stamp) = packet.rtp_timestamp().filter(|_| self.reported_s.is_none()) else { return };
+        let mut reports = packet.pkts().filter_map(|packet| packet.as_sender_report().ok().flatten());
+        let Some(report) = reports.next() else { return };
+        let time_s = report.ntp_timestamp().0 as f64 / 2.0_f64.powi(32) - SINCE_1900_S;
+        self.reported_s = Some([time_s, stamp.timestamp() as f64 / f64::from(stamp.clock_rate().get())]);
+    }
+}
+
+impl Source for Rtsp {
+    fn next(&mut self) -> Result<Option<Compressed>, Trouble> {
+        let place = self.place.clone();
+        guarded(&place, || self.wait())
+    }
+}
+
+impl Rtsp {
+    /// The next picture, as far as it comes in time.
+    fn wait(&mut self) -> Result<Option<Compressed>, Trouble> {
+        let begin = Instant::now();
+        while begin.elapsed() < PATIENCE {
+            let closed = || Trouble::Closed { place: self.place.clone() };
+            let Some(session) = &mut self.session else { return Err(closed()) };
+            let left = PATIENCE.saturating_sub(begin.elapsed());
+            match self.runtime.block_on(async { timeout(left, session.next()).await }) {
+                Err(_) if self.heard.elapsed() > SILENT => {
+                    return Err(Trouble::Silent { place: self.place.clone() });
+                }
+                Err(_) => return Ok(None),
+                Ok(None) => return Err(closed()),
+                Ok(Some(Err(error))) => return Err(told(&self.place, &error, None)),
+                Ok(Some(Ok(CodecItem::VideoFrame(frame)))) => {
+                    self.heard = Instant::now();
+                    return Ok(Some(self.picture(frame)));
+                }
+                Ok(Some(Ok(CodecItem::Rtcp(packet)))) => self.report(&packet),
+                Ok(Some(Ok(_))) => {}
+            }
+        }
+        Ok(None)
+    }
+}
+
+impl Drop for Rtsp {
+    fn drop(&mut self) {
+        let _within = self.runtime.enter();
+        self.session = None;
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,123 @@
+//! The system calls: one thin implementation, and the trait behind which a test puts a table of its own.
+#![expect(unsafe_code, reason = "ioctl, mmap, poll and a clock have no safe interface in std")]
+
+use std::{
+    ffi::c_void,
+    fs::{File, OpenOptions},
+    io::{Error, ErrorKind, Result},
+    os::{fd::AsRawFd as _, unix::fs::OpenOptionsExt as _},
+    path::Path,
+    ptr::NonNull,
+    time::Duration,
+};
+
+use super::layout::Request;
+
+/// What a camera is asked through.
+pub(super) trait Kernel: Send {
+    /// One request with its structure, which is as long as the request says.
+    fn ioctl(&mut self, request: Request, structure: &mut [u8]) -> Result<()>;
+    /// Makes the next buffer visible, which the driver has at this offset.
+    fn map(&mut self, offset: u32, length: usize) -> Result<()>;
+    /// The first bytes of a buffer that the driver has given back.
+    fn copy(&self, buffer: usize, length: usize) -> Vec<u8>;
+    /// Waits until something can be asked for, so long at most.
+    fn wait(&mut self, longest: Duration) -> Result<()>;
+    /// The monotonic clock, by which the driver stamps.
+    fn now(&self) -> Duration;
+}
+
+/// An open device.
+pub(super) struct Device {
+    file: File,
+    buffers: Vec<Buffer>,
+}
+
+/// Memory that is shared with the driver.
+struct Buffer {
+    begin: NonNull<c_void>,
+    length: usize,
+}
+
+// SAFETY: the mapping belongs to the process, not to the thread that made it, and only its owner reaches it.
+unsafe impl Send for Buffer {}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        // SAFETY: the range is that of one successful mmap, and nothing refers to it: `copy` gives copies only.
+        unsafe { libc::munmap(self.begin.as_ptr(), self.length) };
+    }
+}
+
+impl Device {
+    pub(super) fn open(path: &Path) -> Result<Self> {
+        let file = OpenOptions::new().read(true).write(true).custom_flags(libc::O_NONBLOCK).open(path)?;
+        Ok(Self { file, buffers: Vec::new() })
+    }
+}
+
+impl Kernel for Device {
+    fn ioctl(&mut self, request: Request, structure: &mut [u8]) -> Result<()> {
+        if structure.len() != request.length {
+            return Err(Error::from(ErrorKind::InvalidInput));
+        }
+        loop {
+            // SAFETY: the kernel reads and writes as many bytes as the request's code says, and the structure has just that length; it has no pointers.
+            let answer = unsafe {
+                libc::ioctl(self.file.as_raw_fd(), libc::Ioctl::from(request.code()), structure.as_mut_ptr())
+            };
+            if answer >= 0 {
+                return Ok(());
+            }
+            let error = Error::last_os_error();
+            if error.kind() != ErrorKind::Interrupted {
+                return Err(error);
+            }
+        }
+    }
+
+    fn map(&mut self, offset: u32, length: usize) -> Result<()> {
+        // SAFETY: a new mapping at a place of the kernel's choice; what is wrong with offset or length is its error.
+        let begin = unsafe {
+            libc::mmap(
+                std::ptr::null_mut(),
+                length,
+                libc::PROT_READ | libc::PROT_WRITE,
+                libc::MAP_SHARED,
+                self.file.as_raw_fd(),
+                libc::off_t::from(offset),
+            )
+        };
+        if begin == libc::MAP_FAILED {
+            return Err(Error::last_os_error());
+        }
+        let begin = NonNull::new(begin).ok_or(ErrorKind::InvalidData)?;
+        self.buffers.push(Buffer { begin, length });
+        Ok(())
+    }
+
+    fn copy(&self, buffer: usize, length: usize) -> Vec<u8> {
+        let Some(Buffer { begin, length: most }) = self.buffers.get(buffer) else { return Vec::new() };
+        let length = length.min(*most);
+        let mut bytes = vec![0; length];
+        // SAFETY: both ranges are `length` bytes at least and do not overlap. While the buffer is ours the driver does not write to it; if it
+        // did, bytes of two pictures would be mixed, and no reference to them exists.
+        unsafe { std::ptr::copy_nonoverlapping(begin.as_ptr().cast::<u8>(), bytes.as_mut_ptr(), length) };
+        bytes
+    }
+
+    fn wait(&mut self, longest: Duration) -> Result<()> {
+        let mut watched = libc::pollfd { fd: self.file.as_raw_fd(), events: libc::POLLIN, revents: 0 };
+        // SAFETY: one descriptor, which is open, in one structure.
+        let answer = unsafe { libc::poll(&raw mut watched, 1, longest.as_millis() as i32) };
+        let error = Error::last_os_error();
+        if answer < 0 && error.kind() != ErrorKind::Interrupted { Err(error) } else { Ok(()) }
+    }
+
+    fn now(&self) -> Duration {
+        let mut now = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+        // SAFETY: the clock exists on every system of this kind, and the structure is ours.
+        unsafe { libc::clock_gettime(libc::CLOCK_MONOTONIC, &raw mut now) };
+        Duration::new(now.tv_sec as u64, now.tv_nsec as u32)
+    }
+}

@@ -1,0 +1,87 @@
+//! What came and is not decoded yet: of pictures that stand alone the newest, of a stream all since one that does.
+
+use std::collections::VecDeque;
+
+use crate::{Compressed, Format};
+
+/// Most pictures of a stream that wait, two seconds of it: a decoder that is farther behind begins again.
+const MOST: usize = 60;
+
+#[derive(Debug)]
+pub(crate) struct Waiting {
+    queue: VecDeque<Compressed>,
+    /// Until a picture comes that refers to no other.
+    skips: bool,
+}
+
+impl Default for Waiting {
+    fn default() -> Self {
+        Self { queue: VecDeque::new(), skips: true }
+    }
+}
+
+impl Waiting {
+    pub(crate) fn push(&mut self, compressed: Compressed) {
+        match compressed.format {
+            Format::Jpeg | Format::Raw(_) | Format::H264 { is_key: true } => {
+                // Nothing before it is needed, and it is newer.
+                self.queue.clear();
+                self.skips = false;
+            }
+            Format::H264 { is_key: false } if self.skips => return,
+            Format::H264 { is_key: false } => {}
+        }
+        if self.queue.len() >= MOST {
+            self.queue.clear();
+            self.skips = true;
+            return;
+        }
+        self.queue.push_back(compressed);
+    }
+
+    pub(crate) fn pop(&mut self) -> Option<Compressed> {
+        self.queue.pop_front()
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.queue.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use super::*;
+
+    fn of(format: Format, number: u8) -> Compressed {
+        Compressed { format, ..Compressed::jpeg(vec![number], Instant::now(), None) }
+    }
+
+    fn left(waiting: &mut Waiting) -> Vec<u8> {
+        std::iter::from_fn(|| waiting.pop()).map(|compressed| compressed.bytes[0]).collect()
+    }
+
+    #[test]
+    fn of_pictures_that_stand_alone_the_newest_is_kept_and_of_a_stream_all_since_a_key() {
+        let mut waiting = Waiting::default();
+        (0..3).for_each(|number| waiting.push(of(Format::Jpeg, number)));
+        assert_eq!(left(&mut waiting), [2]);
+        let mut waiting = Waiting::default();
+        for (number, is_key) in [(0, false), (1, true), (2, false), (3, true), (4, false), (5, false)] {
+            waiting.push(of(Format::H264 { is_key }, number));
+        }
+        assert_eq!(left(&mut waiting), [3, 4, 5]);
+    }
+
+    #[test]
+    fn a_decoder_that_is_far_behind_begins_again_with_a_key() {
+        let mut waiting = Waiting::default();
+        (0..=60).for_each(|number| waiting.push(of(Format::H264 { is_key: number == 0 }, number)));
+        assert!(waiting.is_empty());
+        waiting.push(of(Format::H264 { is_key: false }, 61));
+        assert!(waiting.is_empty(), "it refers to what was dropped");
+        waiting.push(of(Format::H264 { is_key: true }, 62));
+        assert_eq!(left(&mut waiting), [62]);
+    }
+}

@@ -1,0 +1,104 @@
+//! Pictures into a file or a named pipe, one after the other, for whoever reads raw streams: JPEGs, or H.264 where the path ends so. A reader that
+//! is slow gets fewer pictures, and one that comes later begins with the next.
+
+use std::{
+    fs::OpenOptions,
+    io::{self, Write as _},
+    path::PathBuf,
+    sync::mpsc::{Receiver, SyncSender, sync_channel},
+    thread::{self, Builder},
+    time::Duration,
+};
+
+use nima_endoscope::{h264::Encoder, jpeg};
+
+use super::shot::Shot;
+use crate::emulators::EmulatedFault;
+
+/// Time from a failure to the next attempt.
+const RETRY: Duration = Duration::from_millis(200);
+
+/// A picture on its way.
+struct Job {
+    rgb: Vec<u8>,
+    size_px: [usize; 2],
+    fault: EmulatedFault,
+}
+
+pub(super) struct Pipe(SyncSender<Job>);
+
+/// How a stream is coded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Coding {
+    Jpeg(u8),
+    H264(f64),
+}
+
+impl Coding {
+    /// By the path's ending.
+    fn of(path: &std::path::Path, rate_hz: f64, quality: u8) -> Self {
+        let is_h264 = |ending: &std::ffi::OsStr| ["h264", "264"].iter().any(|known| ending.eq_ignore_ascii_case(known));
+        if path.extension().is_some_and(is_h264) { Self::H264(rate_hz) } else { Self::Jpeg(quality) }
+    }
+}
+
+/// Whether pictures can be coded for this path.
+///
+/// # Errors
+/// In a program that was built without what it takes.
+pub(super) fn check(path: &std::path::Path, rate_hz: f64) -> io::Result<()> {
+    match Coding::of(path, rate_hz, 1) {
+        Coding::Jpeg(_) => Ok(()),
+        Coding::H264(rate_hz) => Encoder::new(rate_hz).map(drop),
+    }
+}
+
+impl Pipe {
+    /// Writes on a thread of its own: opening a named pipe waits for its reader.
+    pub(super) fn start(path: PathBuf, rate_hz: f64, quality: u8) -> io::Result<Self> {
+        check(&path, rate_hz)?;
+        let coding = Coding::of(&path, rate_hz, quality);
+        let (sender, jobs) = sync_channel(1);
+        Builder::new().name("pipe".to_owned()).spawn(move || {
+            // Ends with the emulator, which holds the other end of `jobs`.
+            while let Ok(Some(())) = write(&path, coding, &jobs) {
+                thread::sleep(RETRY);
+            }
+        })?;
+        Ok(Self(sender))
+    }
+
+    /// A picture, if the last one has left.
+    pub(super) fn send(&self, shot: &Shot<'_>, fault: EmulatedFault) {
+        self.0.try_send(Job { rgb: shot.rgb.to_vec(), size_px: shot.size_px, fault }).ok();
+    }
+}
+
+/// Writes until the reader has gone (then it is tried again), or the emulator (then nothing).
+fn write(path: &std::path::Path, coding: Coding, jobs: &Receiver<Job>) -> io::Result<Option<()>> {
+    let Ok(mut file) = OpenOptions::new().write(true).create(true).truncate(true).open(path) else {
+        // A folder that is not there yet; what waits is old then.
+        return Ok(jobs.recv().ok().map(drop));
+    };
+    let mut encoder = None;
+    while let Ok(Job { rgb, size_px, fault }) = jobs.recv() {
+        let mut bytes = match coding {
+            _ if fault == EmulatedFault::OtherFormat => b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec(),
+            Coding::Jpeg(quality) => jpeg::encode(&rgb, size_px, quality),
+            Coding::H264(rate_hz) => {
+                let encoder = match &mut encoder {
+                    Some(encoder) => encoder,
+                    none => none.insert(Encoder::new(rate_hz)?),
+                };
+                encoder.encode(&rgb, size_px, false)?
+            }
+        };
+        if fault == EmulatedFault::Torn {
+            bytes.truncate(bytes.len() * 6 / 10);
+        }
+        if file.write_all(&bytes).is_err() {
+            return Ok(Some(()));
+        }
+    }
+    Ok(None)
+}

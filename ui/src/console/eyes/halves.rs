@@ -1,0 +1,129 @@
+//! Pictures of two lenses side by side: which half is shown, where, and what its lens is.
+
+use egui::{Rect, pos2};
+use nima_endoscope::Camera;
+use nima_machine::config::{Endoscope, StereoView};
+
+use super::place::Place;
+use crate::console::text;
+
+/// What one lens sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Half {
+    pub(super) place: Place,
+    /// Its camera, if it is known.
+    pub(super) camera: Option<Camera>,
+    /// What is drawn for this half stays in it.
+    pub(super) within: Rect,
+}
+
+/// The view after this one.
+pub(super) const fn next(view: StereoView) -> StereoView {
+    match view {
+        StereoView::Left => StereoView::Right,
+        StereoView::Right => StereoView::Both,
+        StereoView::Both => StereoView::Left,
+    }
+}
+
+/// Size of the whole picture of which a camera sees a part, px.
+pub(super) fn whole_px(camera: &Camera, endoscope: &Endoscope) -> [usize; 2] {
+    let [width, height] = camera.lens.size_px;
+    if endoscope.view.is_some() { [2 * width, height] } else { [width, height] }
+}
+
+/// What is shown of a picture, and where; `view` is `None` for a picture of one lens.
+pub(super) fn halves(
+    area: Rect,
+    size_px: [usize; 2],
+    endoscope: &Endoscope,
+    view: Option<StereoView>,
+    camera: Option<&Camera>,
+) -> Vec<Half> {
+    let Some(view) = view else {
+        return vec![Half { place: Place::new(area, size_px, endoscope), camera: camera.copied(), within: area }];
+    };
+    let half_px = [size_px[0] / 2, size_px[1]];
+    let middle = area.center().x;
+    let [left, right] = [
+        Rect::from_min_max(area.min, pos2(middle, area.bottom())),
+        Rect::from_min_max(pos2(middle, area.top()), area.max),
+    ];
+    let of_right = || camera.zip(endoscope.baseline_m).map(|(camera, baseline_m)| camera.beside(baseline_m));
+    let of_left = |within| {
+        let place = Place::new(within, half_px, endoscope).of_share([0.0, 0.5]);
+        Half { place, camera: camera.copied(), within }
+    };
+    let of_right = |within| {
+        let place = Place::new(within, half_px, endoscope).of_share([0.5, 1.0]);
+        Half { place, camera: of_right(), within }
+    };
+    match view {
+        StereoView::Left => vec![of_left(area)],
+        StereoView::Right => vec![of_right(area)],
+        StereoView::Both => vec![of_left(left), of_right(right)],
+    }
+}
+
+/// Which half is shown, and what the key does; nothing for a picture of one lens.
+pub(super) fn told(view: Option<StereoView>, endoscope: &Endoscope) -> &'static str {
+    match view {
+        None => "",
+        Some(StereoView::Right) if endoscope.camera.is_some() && endoscope.baseline_m.is_none() => {
+            text::eyes::RIGHT_WITHOUT_FORCES
+        }
+        Some(StereoView::Left) => text::eyes::LEFT_HALF,
+        Some(StereoView::Right) => text::eyes::RIGHT_HALF,
+        Some(StereoView::Both) => text::eyes::BOTH_HALVES,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Pos2, vec2};
+    use nalgebra::{Vector2, Vector3};
+    use nima_world::{
+        emulators::endoscope::{camera_of, usual},
+        scene::Scene,
+    };
+
+    use super::*;
+
+    #[test]
+    fn each_half_is_a_picture_of_its_own_with_the_camera_of_its_lens() {
+        let settings = usual(&Scene::load("bimanual").unwrap());
+        let camera = camera_of(&settings);
+        let mut endoscope = Endoscope { camera: Some(settings), view: Some(StereoView::Both), ..Endoscope::default() };
+        endoscope.baseline_m = Some(0.004);
+        assert_eq!(whole_px(&camera, &endoscope), [2560, 720]);
+        let area = Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 360.0));
+        let [left, right] = halves(area, [2560, 720], &endoscope, Some(StereoView::Both), Some(&camera))[..] else {
+            panic!("two halves")
+        };
+        assert_eq!(left.place.rect, Rect::from_min_size(Pos2::ZERO, vec2(640.0, 360.0)));
+        assert_eq!(right.place.rect, Rect::from_min_size(pos2(640.0, 0.0), vec2(640.0, 360.0)));
+        let shares = |half: &Half| half.place.corners().map(|(share, _)| share.x);
+        assert_eq!((shares(&left), shares(&right)), ([0.0, 0.5, 0.0, 0.5], [0.5, 1.0, 0.5, 1.0]));
+        assert_eq!(right.place.at(&Vector2::new(0.0, 0.0)), right.place.rect.min);
+        // What is near is seen farther to the left by the right lens.
+        let point_m = Vector3::new(0.01, 0.0, 0.01);
+        let [seen_left, seen_right] = [left, right].map(|half| half.camera.unwrap().project(&point_m).unwrap());
+        assert!(seen_left.x - seen_right.x > 10.0 && (seen_left.y - seen_right.y).abs() < 5.0);
+        endoscope.baseline_m = None;
+        let alone = halves(area, [2560, 720], &endoscope, Some(StereoView::Right), Some(&camera));
+        assert!(alone.len() == 1 && alone[0].camera.is_none());
+        assert_eq!(told(Some(StereoView::Right), &endoscope), text::eyes::RIGHT_WITHOUT_FORCES);
+        let mono = halves(area, [1280, 720], &endoscope, None, Some(&camera));
+        assert!(mono.len() == 1 && mono[0].camera == Some(camera));
+    }
+
+    #[test]
+    fn the_key_goes_round() {
+        let mut view = StereoView::Left;
+        let round = [(); 3].map(|()| {
+            view = next(view);
+            view
+        });
+        assert_eq!(round, [StereoView::Right, StereoView::Both, StereoView::Left]);
+    }
+}

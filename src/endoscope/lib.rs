@@ -2,8 +2,8 @@
 //!
 //! A [`Feed`] takes an [`Address`] (motion JPEG over HTTP, a file, a folder), opens it on threads of its own, opens it again when it is lost,
 //! and has the newest picture ready, with its age, its rate and what is wrong with it ([`Standing`]). Nobody waits for anybody: a picture that
-//! nobody took is replaced by the next one. [`Camera`] is where the endoscope looks and how its lens bends the picture; [`time_code`] and
-//! [`jpeg::encode`] are for emulators and tests. Bad input (a picture or an answer that is cut off, too large, of another format) is a
+//! nobody took is replaced by the next one. [`Camera`] is where the endoscope looks and how its lens bends the picture; [`Board`] is what it
+//! is calibrated with; [`time_code`], [`jpeg::encode`] and [`board::Portrait`] are for emulators and tests. Bad input (a picture or an answer that is cut off, too large, of another format) is a
 //! [`Trouble`] with its cure, or a [`Damage`] of one picture. Knows no loop, device or window.
 //!
 //! ```
@@ -20,6 +20,7 @@
 #![warn(missing_docs)]
 
 mod address;
+pub mod board;
 mod camera;
 mod feed;
 mod files;
@@ -31,7 +32,8 @@ pub mod time_code;
 mod trouble;
 
 pub use address::{Address, AddressError};
-pub use camera::{Camera, Lens};
+pub use board::{Board, BoardError};
+pub use camera::{Bend, Camera, Lens};
 pub use feed::{Feed, Look};
 pub use jpeg::{Damage, Picture};
 pub use judge::{FROZEN, LATE, Standing, Wrong};

@@ -54,10 +54,6 @@ impl Painter {
         Self { camera, surface_m: ground.surface_m, picture: pixels.clone(), ground: pixels }
     }
 
-    pub(super) const fn size_px(&self) -> [usize; 2] {
-        self.camera.lens.size_px
-    }
-
     /// The picture with these instruments.
     pub(super) fn draw(&mut self, instruments: &[Instrument]) -> &mut [u8] {
         self.picture.copy_from_slice(&self.ground);

@@ -6,9 +6,13 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
-use nima_endoscope::{jpeg, time_code};
+use nima_endoscope::{Board, jpeg, time_code};
 
-use super::{Body, Emulated, draw::Painter};
+use super::{
+    Body, Emulated,
+    board::{Drawn, Hands},
+    draw::Painter,
+};
 use crate::{
     emulators::{
         EmulatedFault, Emulator, Peer, Turn,
@@ -27,16 +31,38 @@ const PATHS: [&str; 4] = ["/", "/stream", "/stream.mjpg", "/?action=stream"];
 
 pub(super) struct Endoscope {
     emulated: Emulated,
-    scene: Scene,
-    body: Body,
-    /// Made when the first picture is wanted.
-    painter: Option<Painter>,
+    shown: Shown,
     clients: Vec<Client>,
     due_s: f64,
     /// The last picture as it was sent, which a frozen camera sends again.
     last: Option<Vec<u8>>,
     /// When each late picture leaves, s.
     late: VecDeque<(f64, Vec<u8>)>,
+}
+
+/// What is before the lens; how it is drawn is made when the first picture is wanted.
+pub(super) enum Shown {
+    /// A scene with its instruments.
+    Scene(Box<Scene>, Body, Option<Painter>),
+    /// A board for the calibration.
+    Board(Board, Hands, Option<Drawn>),
+}
+
+impl Shown {
+    /// The picture at a time, s.
+    fn draw(&mut self, emulated: &Emulated, now_s: f64) -> &mut [u8] {
+        let camera = emulated.camera;
+        match self {
+            Self::Scene(scene, body, painter) => {
+                let instruments = body(now_s);
+                painter.get_or_insert_with(|| Painter::new(camera, scene)).draw(&instruments)
+            }
+            Self::Board(board, hands, drawn) => {
+                let camera_from_board = hands(now_s);
+                drawn.get_or_insert_with(|| Drawn::new(*board, &camera.lens)).draw(&camera_from_board)
+            }
+        }
+    }
 }
 
 struct Client {
@@ -46,9 +72,9 @@ struct Client {
 }
 
 impl Endoscope {
-    pub(super) fn new(emulated: Emulated, scene: &Scene, body: Body) -> Self {
+    pub(super) fn new(emulated: Emulated, shown: Shown) -> Self {
         let (clients, late) = (Vec::new(), VecDeque::new());
-        Self { emulated, scene: scene.clone(), body, painter: None, clients, due_s: 0.0, last: None, late }
+        Self { emulated, shown, clients, due_s: 0.0, last: None, late }
     }
 
     fn is_watched(&self) -> bool {
@@ -59,11 +85,8 @@ impl Endoscope {
     fn part(&mut self, now_s: f64, fault: EmulatedFault) -> Vec<u8> {
         // Before it is looked: whoever reads this time knows that nothing in the picture is older.
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let instruments = (self.body)(now_s);
-        let (camera, scene) = (self.emulated.camera, &self.scene);
-        let painter = self.painter.get_or_insert_with(|| Painter::new(camera, scene));
-        let size_px @ [width, _] = painter.size_px();
-        let rgb = painter.draw(&instruments);
+        let size_px @ [width, _] = self.emulated.camera.lens.size_px;
+        let rgb = self.shown.draw(&self.emulated, now_s);
         let (quality, square_px) = (self.emulated.quality, self.emulated.square_px);
         if square_px > 0 {
             time_code::draw(since.as_micros() as u64, square_px, rgb, width);

@@ -161,14 +161,48 @@ fn frozen_is_told_in_time_and_a_cut_is_mended_within_a_second() {
 }
 
 #[test]
+fn a_board_is_held_before_the_lens_whole_at_every_pose() {
+    let lens = small(-0.3).lens;
+    let board = nima_endoscope::Board::new([9, 6], 0.01).unwrap();
+    let mut hands = held(board, &lens);
+    let mut places = Vec::new();
+    for pose in 0..20 {
+        let [early, late] = [0.1, 1.7].map(|more| hands(2.2 * f64::from(pose) + more));
+        assert_eq!(early, late, "it is held still");
+        for place_m in board.places_m() {
+            let place_px = lens.project(&(early * nalgebra::Point3::from(place_m)).coords).unwrap();
+            assert!((0.0..640.0).contains(&place_px.x) && (0.0..360.0).contains(&place_px.y), "{pose}: {place_px}");
+            places.push(place_px);
+        }
+    }
+    let far =
+        |from: [f64; 2]| places.iter().map(|place| (place - Vector2::from(from)).norm()).fold(f64::INFINITY, f64::min);
+    for side in [[0.0, 180.0], [640.0, 180.0], [320.0, 0.0], [320.0, 360.0]] {
+        assert!(far(side) < 100.0, "{side:?}: {}", far(side));
+    }
+    let serving =
+        Emulated { camera: small(-0.3), ..Emulated::of(&scene(), 0) }.with_board(board, hands).serve().unwrap();
+    let feed = feed(&serving);
+    let look = until(&feed, "a board", |look| look.standing == Standing::Live && look.picture.is_some());
+    let rgba = look.picture.unwrap().1.rgba.clone();
+    let share =
+        |wanted: fn(u8) -> bool| rgba.iter().step_by(4).filter(|grey| wanted(**grey)).count() as f64 / (640.0 * 360.0);
+    assert!(share(|grey| grey > 190) > 0.04 && share(|grey| grey < 60) > 0.04, "white and black squares");
+}
+
+#[test]
 fn a_wrong_page_and_a_wrong_setting_are_told() {
     let serving = serve();
     let address = format!("{}nothing", serving.endpoint).parse().unwrap();
     let feed = Feed::start(address, None, || {}).unwrap();
     until(&feed, "404", |look| matches!(look.standing, Standing::Lost(Trouble::Refused { status: 404, .. })));
-    for (setting, word) in
-        [("k1=9", "-2 to 2"), ("width=9", "64 to 4096"), ("rate_hz=0", "1 to 120"), ("scene=none", "none")]
-    {
+    for (setting, word) in [
+        ("k1=9", "-2 to 2"),
+        ("width=9", "64 to 4096"),
+        ("rate_hz=0", "1 to 120"),
+        ("scene=none", "none"),
+        ("board=9x7", "upside down"),
+    ] {
         let settings = super::super::Settings::new(&[setting.to_owned()]).unwrap();
         let told = alone::endoscope(&settings).err().unwrap().to_string();
         assert!(told.contains(word), "{setting}: {told}");

@@ -22,6 +22,9 @@ use nima_world::emulators::endoscope::camera_of;
 use self::{place::Place, poses::Poses};
 use super::{live::Live, text, theme};
 
+/// A camera whose check was worse is not trusted, in widths of the picture: 10 px of 1280. Its forces are drawn with this opacity.
+const OFF: f64 = 10.0 / 1280.0;
+const DOUBTFUL: f32 = 0.35;
 /// The figures stand still for so long, so that they can be read.
 const FIGURES_EVERY: Duration = Duration::from_millis(250);
 /// Time from one frame to the next where the words have a clock, and no picture wakes the window.
@@ -73,7 +76,7 @@ impl Eyes {
         }
         *self = Self { wanted: wanted.cloned(), hides_forces: self.hides_forces, ..Self::default() };
         let Some(Endoscope { url, camera, .. }) = wanted else { return };
-        self.camera = camera.as_ref().map(camera_of);
+        self.camera = camera.as_ref().filter(|camera| camera.position_m.is_some()).map(camera_of);
         let address = match url.parse::<Address>() {
             Ok(address) => address,
             Err(error) => {
@@ -82,7 +85,7 @@ impl Eyes {
             }
         };
         let ctx = ctx.clone();
-        let size_px = self.camera.map(|camera| camera.lens.size_px);
+        let size_px = camera.as_ref().map(|camera| camera.size_px);
         match Feed::start(address, size_px, move || ctx.request_repaint()) {
             Ok(feed) => self.feed = Some(feed),
             Err(error) => self.refused = Some(text::eyes::refused(&error.to_string())),
@@ -97,6 +100,11 @@ impl Eyes {
     /// Pictures wake the window often enough for everything else that moves.
     pub(in crate::console) fn wakes(&self) -> bool {
         self.rate_hz >= WAKES_HZ
+    }
+
+    /// The newest picture and its number, for who looks at it otherwise than this does.
+    pub(in crate::console) fn newest(&self) -> Option<(u64, Arc<Picture>)> {
+        self.feed.as_ref()?.look(Instant::now()).picture
     }
 
     /// A tick of the loop: where a tip is at its time.
@@ -148,6 +156,10 @@ impl Eyes {
         let mut tips = Vec::new();
         if let (Some(place), Some(camera), true) = (&place, &self.camera, fits) {
             let age = look.as_ref().and_then(|look| look.age).unwrap_or_default();
+            let mut painter = painter.clone();
+            if self.off_px().is_some() {
+                painter.multiply_opacity(DOUBTFUL);
+            }
             let seen = overlay::Seen { painter: &painter, place, camera, ceiling_n: live.gate_settings().ceiling_n };
             tips = seen.draw(live.sides().filter_map(|side| self.poses.at(side, now, age)), self.hides_forces);
         }
@@ -165,6 +177,12 @@ impl Eyes {
         }
         self.figures_ui(&painter, view, (&tips, fits), look.as_ref(), now);
         ui.ctx().request_repaint_after(until_told(look.as_ref(), is_good));
+    }
+
+    /// How far forces are drawn beside the tips, px, if the check of the camera was worse than is tolerable.
+    fn off_px(&self) -> Option<f64> {
+        let camera = self.wanted.as_ref()?.camera?;
+        camera.checked_px.filter(|off_px| *off_px > OFF * camera.size_px[0] as f64)
     }
 
     /// Uploads a new picture and draws it as large as it can be; gives its place.
@@ -218,15 +236,18 @@ impl Eyes {
             };
             self.shown = Some((now, figures));
         }
-        let forces = match (&self.camera, self.hides_forces) {
-            (None, _) => text::eyes::NO_CAMERA,
+        let has_lens = self.wanted.as_ref().is_some_and(|wanted| wanted.camera.is_some());
+        let forces = match (&self.camera, self.hides_forces, self.off_px()) {
+            (None, ..) if has_lens => text::eyes::NO_PLACE.to_owned(),
+            (None, ..) => text::eyes::NO_CAMERA.to_owned(),
             // Where the picture is not of now, they would be at a wrong place.
-            _ if !fits => "",
-            (_, true) => text::eyes::FORCES_HIDDEN,
-            (_, false) => text::eyes::FORCES_DRAWN,
+            _ if !fits => String::new(),
+            (_, true, _) => text::eyes::FORCES_HIDDEN.to_owned(),
+            (_, false, Some(off_px)) => text::eyes::forces_off(off_px),
+            (_, false, None) => text::eyes::FORCES_DRAWN.to_owned(),
         };
         let figures = self.shown.as_ref().map(|(_, figures)| figures.as_str()).unwrap_or_default();
-        let lines = [(figures, 15.0, theme::DARK.text), (forces, 13.0, theme::DARK.text_weak)];
+        let lines = [(figures, 15.0, theme::DARK.text), (forces.as_str(), 13.0, theme::DARK.text_weak)];
         let inner = view.shrink(MARGIN);
         let corners = [
             (inner.left_bottom(), Align2::LEFT_BOTTOM),

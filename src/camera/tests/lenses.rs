@@ -96,3 +96,57 @@ fn figures_of_calibrations_from_rendered_boards() {
     }
     assert!(errors[errors.len() - 1] < 0.5 && held_out[held_out.len() - 1] < 0.3 && refused == 0, "{refused} refused");
 }
+
+#[test]
+#[ignore = "throw-away"]
+fn throwaway_dump() {
+    let mut rng = Rng::with_seed(77);
+    for set in 0..6 {
+        let k1 = [-0.3, 0.0, 0.3, -0.25, 0.15, -0.1][set];
+        let centre_px = Vector2::new(640.0 + 20.0 * normal(&mut rng), 360.0 + 15.0 * normal(&mut rng));
+        let real = Lens {
+            size_px: SIZE_PX,
+            focal_px: Vector2::repeat(650.0 + 350.0 * rng.f64()),
+            centre_px,
+            bend: Bend::radial(k1),
+        };
+        let sensor = Sensor {
+            blur_px: [0.6, 1.0, 1.5, 2.0, 1.0, 0.8][set],
+            noise: [2.0, 3.0, 5.0, 4.0, 6.0, 3.0][set],
+            edge: 0.4,
+        };
+        let poses = usual(&mut rng, &real, &board(), 14);
+        let portrait = Portrait::new(&real);
+        let mut views = Vec::new();
+        let mut text = String::new();
+        for (at, pose) in poses.iter().enumerate() {
+            let picture = sensor.picture(&mut rng, &portrait, &board(), pose);
+            let bytes: Vec<u8> = picture.values().iter().map(|v| *v as u8).collect();
+            std::fs::write(format!("/tmp/h3-dump/{set}-{at:02}.raw"), bytes).unwrap();
+            let sight = find(&picture, &board()).unwrap();
+            for (ours, truth) in sight.corners_px.iter().zip(corners_px(&real, &board(), pose).unwrap()) {
+                text.push_str(&[at as f64, ours.x, ours.y, truth.x, truth.y].map(|v| v.to_string()).join(" "));
+                text.push('\n');
+            }
+            views.push(sight);
+        }
+        std::fs::write(format!("/tmp/h3-dump/{set}-corners.txt"), text).unwrap();
+        let report = calibrate(&board(), SIZE_PX, &views);
+        let found = report.lens.unwrap();
+        std::fs::write(
+            format!("/tmp/h3-dump/{set}-lens.txt"),
+            format!(
+                "{} {} {} {k1}\n{} {} {} {}\n",
+                real.focal_px.x,
+                centre_px.x,
+                centre_px.y,
+                found.lens.focal_px.x,
+                found.lens.centre_px.x,
+                found.lens.centre_px.y,
+                found.lens.bend.k1
+            ),
+        )
+        .unwrap();
+        println!("{set}: {found:?} {:?}", report.cause);
+    }
+}

@@ -1,8 +1,9 @@
-//! Where an endoscope looks, and how its lens bends the picture: a pinhole with one coefficient of radial distortion (Brown 1966).
+//! Where an endoscope looks, and how its lens bends the picture: a pinhole with radial and tangential distortion (Brown 1966), the first four
+//! coefficients of the usual model (`OpenCV`).
 //!
 //! The camera's frame: x to the right of the picture, y down, z away from the lens, m. Pixels are counted from the upper left corner.
 
-use nalgebra::{Isometry3, Vector2, Vector3};
+use nalgebra::{Isometry3, Matrix2, Vector2, Vector3};
 
 /// A thing must be so far in front of the lens, m.
 const NEAREST_M: f64 = 1e-4;
@@ -16,51 +17,120 @@ const TANGENT_MOST: f64 = 3.8;
 pub struct Lens {
     /// Width and height of the picture, px.
     pub size_px: [usize; 2],
-    /// Focal length, px.
-    pub focal_px: f64,
+    /// Focal lengths across and down the picture, px; the same where pixels are square.
+    pub focal_px: Vector2<f64>,
     /// Where the lens's axis meets the picture, px.
     pub centre_px: Vector2<f64>,
-    /// Radial distortion: the tangent of the angle from the axis, `t`, is seen at `t (1 + k1 t^2)`. Below 0 as a barrel.
+    /// How the lens bends the picture.
+    pub bend: Bend,
+}
+
+/// Distortion: where a direction is seen, both with z = 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bend {
+    /// Radial: the tangent of the angle from the axis, `t`, is seen at `t (1 + k1 t^2 + k2 t^4)`. Below 0 as a barrel.
     pub k1: f64,
+    /// The next radial term.
+    pub k2: f64,
+    /// Tangential, of a lens that is not square to the sensor.
+    pub p1: f64,
+    /// The same across.
+    pub p2: f64,
+}
+
+impl Bend {
+    /// Radial distortion with one coefficient.
+    pub const fn radial(k1: f64) -> Self {
+        Self { k1, k2: 0.0, p1: 0.0, p2: 0.0 }
+    }
+
+    /// Where a direction is seen.
+    pub fn at(&self, flat: &Vector2<f64>) -> Vector2<f64> {
+        let Self { p1, p2, .. } = *self;
+        let (square, [x, y]) = (flat.norm_squared(), [flat.x, flat.y]);
+        let cross = 2.0 * x * y;
+        let tangential =
+            Vector2::new(p1 * cross + p2 * (square + 2.0 * x * x), p2 * cross + p1 * (square + 2.0 * y * y));
+        flat * self.radially(square) + tangential
+    }
+
+    /// How that place moves with the direction.
+    pub fn slope(&self, flat: &Vector2<f64>) -> Matrix2<f64> {
+        let Self { k1, k2, p1, p2 } = *self;
+        let (square, [x, y]) = (flat.norm_squared(), [flat.x, flat.y]);
+        let (radially, more) = (self.radially(square), 2.0 * k1 + 4.0 * k2 * square);
+        let across = x * y * more + 2.0 * (p1 * x + p2 * y);
+        Matrix2::new(
+            radially + x * x * more + 2.0 * p1 * y + 6.0 * p2 * x,
+            across,
+            across,
+            radially + y * y * more + 6.0 * p1 * y + 2.0 * p2 * x,
+        )
+    }
+
+    fn radially(&self, square: f64) -> f64 {
+        1.0 + square * (self.k1 + square * self.k2)
+    }
+
+    /// The tangent at which the picture turns back on itself: nothing beyond has a place.
+    pub fn tangent_most(&self) -> f64 {
+        // Where 1 + 3 k1 t^2 + 5 k2 t^4 is zero first.
+        let (half, discriminant) = (3.0 * self.k1, 9.0 * self.k1 * self.k1 - 20.0 * self.k2);
+        if discriminant < 0.0 {
+            return TANGENT_MOST;
+        }
+        let squares = [2.0 / (-half + discriminant.sqrt()), 2.0 / (-half - discriminant.sqrt())];
+        let turns = squares.into_iter().filter(|square| *square > 0.0).fold(f64::INFINITY, f64::min);
+        turns.sqrt().min(TANGENT_MOST)
+    }
+
+    /// The direction that is seen at `bent`; `None` where there is none.
+    fn straightened(&self, bent: &Vector2<f64>) -> Option<Vector2<f64>> {
+        let far = bent.norm();
+        if !far.is_finite() {
+            return None;
+        }
+        if far < 1e-12 && self.p1 == 0.0 && self.p2 == 0.0 {
+            return Some(*bent);
+        }
+        let most = self.tangent_most();
+        let mut tangent = far.min(0.999 * most);
+        for _ in 0..STEPS {
+            let square = tangent * tangent;
+            let miss = tangent * self.radially(square) - far;
+            let slope = 1.0 + square * (3.0 * self.k1 + 5.0 * self.k2 * square);
+            tangent = (tangent - miss / slope).clamp(0.0, 0.999_999 * most);
+        }
+        let mut flat = bent * (tangent / far.max(1e-12));
+        if self.p1 != 0.0 || self.p2 != 0.0 {
+            for _ in 0..STEPS {
+                flat -= self.slope(&flat).try_inverse()? * (self.at(&flat) - bent);
+            }
+        }
+        let found = (self.at(&flat) - bent).norm() < 1e-9 * (1.0 + far) && flat.norm() < most;
+        found.then_some(flat)
+    }
 }
 
 impl Lens {
-    /// The tangent at which the picture turns back on itself: nothing beyond has a place.
-    fn tangent_most(&self) -> f64 {
-        let turns = if self.k1 < 0.0 { (-1.0 / (3.0 * self.k1)).sqrt() } else { f64::INFINITY };
-        turns.min(TANGENT_MOST)
+    /// A lens with square pixels, looking through the middle of the picture.
+    pub fn simple(size_px: [usize; 2], focal_px: f64, k1: f64) -> Self {
+        let centre_px = Vector2::from(size_px.map(|side| 0.5 * side as f64));
+        Self { size_px, focal_px: Vector2::repeat(focal_px), centre_px, bend: Bend::radial(k1) }
     }
 
     /// Place in the picture of a point in the camera's frame (m), px; `None` if the lens does not see it. The place may be outside of the picture.
     pub fn project(&self, point_m: &Vector3<f64>) -> Option<Vector2<f64>> {
         let ahead = point_m.z > NEAREST_M && point_m.iter().all(|x| x.is_finite());
         let flat = ahead.then(|| point_m.xy() / point_m.z)?;
-        let square = flat.norm_squared();
-        let seen = square.sqrt() < self.tangent_most();
-        seen.then(|| self.centre_px + flat * (self.focal_px * (1.0 + self.k1 * square)))
+        let seen = flat.norm() < self.bend.tangent_most();
+        seen.then(|| self.centre_px + self.bend.at(&flat).component_mul(&self.focal_px))
     }
 
     /// The direction of what is seen at a place of the picture (px), with z = 1; `None` where the lens sees nothing.
     pub fn direction(&self, place_px: &Vector2<f64>) -> Option<Vector3<f64>> {
-        let bent = (place_px - self.centre_px) / self.focal_px;
-        let far = bent.norm();
-        if !far.is_finite() {
-            return None;
-        }
-        if far < 1e-12 {
-            return Some(Vector3::z());
-        }
-        let most = self.tangent_most();
-        let mut tangent = far.min(0.999 * most);
-        for _ in 0..STEPS {
-            let miss = tangent * (1.0 + self.k1 * tangent * tangent) - far;
-            tangent = (tangent - miss / (1.0 + 3.0 * self.k1 * tangent * tangent)).clamp(0.0, 0.999_999 * most);
-        }
-        let found = (tangent * (1.0 + self.k1 * tangent * tangent) - far).abs() < 1e-9 * (1.0 + far);
-        found.then(|| {
-            let flat = bent * (tangent / far);
-            Vector3::new(flat.x, flat.y, 1.0)
-        })
+        let bent = (place_px - self.centre_px).component_div(&self.focal_px);
+        self.bend.straightened(&bent).map(|flat| flat.push(1.0))
     }
 }
 
@@ -111,7 +181,7 @@ mod tests {
     use super::*;
 
     fn lens(k1: f64) -> Lens {
-        Lens { size_px: [1280, 720], focal_px: 900.0, centre_px: Vector2::new(640.0, 360.0), k1 }
+        Lens::simple([1280, 720], 900.0, k1)
     }
 
     #[test]
@@ -125,6 +195,34 @@ mod tests {
         assert_eq!(lens(0.0).project(&Vector3::new(f64::NAN, 0.0, 0.1)), None);
         // A barrel turns back on itself: what is far beside has no second place within the picture.
         assert_eq!(lens(-0.3).project(&Vector3::new(0.2, 0.0, 0.1)), None);
+    }
+
+    #[test]
+    fn the_slope_is_that_of_the_bend() {
+        let bend = Bend { k1: -0.3, k2: 0.08, p1: 0.003, p2: -0.002 };
+        let flat = Vector2::new(0.4, -0.3);
+        let slope = bend.slope(&flat);
+        for axis in 0..2 {
+            let mut step = Vector2::zeros();
+            step[axis] = 1e-6;
+            let measured = (bend.at(&(flat + step)) - bend.at(&(flat - step))) / 2e-6;
+            assert!((measured - slope.column(axis)).norm() < 1e-8, "{axis}: {measured} {slope}");
+        }
+    }
+
+    #[test]
+    fn every_term_bends_a_direction_and_it_is_found_again() {
+        let bend = Bend { k1: -0.25, k2: 0.06, p1: 0.004, p2: -0.003 };
+        let lens = Lens { focal_px: Vector2::new(900.0, 880.0), bend, ..lens(0.0) };
+        for place in [[640.0, 360.0], [10.0, 20.0], [1270.0, 700.0], [300.0, 650.0]] {
+            let place_px = Vector2::from(place);
+            let again_px = lens.project(&(lens.direction(&place_px).unwrap() * 0.2)).unwrap();
+            assert!((again_px - place_px).norm() < 1e-6, "{again_px} {place_px}");
+        }
+        // With x and y exchanged, p1 and p2 exchange their parts.
+        let other = Bend { p1: bend.p2, p2: bend.p1, ..bend };
+        let flat = Vector2::new(0.3, 0.1);
+        assert!((bend.at(&flat).yx() - other.at(&flat.yx())).norm() < 1e-15);
     }
 
     proptest! {

@@ -2,8 +2,8 @@
 //!
 //! A [`Feed`] takes an [`Address`] (motion JPEG over HTTP, a camera of this computer, a file, a folder), opens it on threads of its own, opens it again when it is lost,
 //! and has the newest picture ready, with its age, its rate and what is wrong with it ([`Standing`]). Nobody waits for anybody: a picture that
-//! nobody took is replaced by the next one. [`Camera`] is where the endoscope looks and how its lens bends the picture; [`time_code`] and
-//! [`jpeg::encode`] are for emulators and tests. Bad input (a picture or an answer that is cut off, too large, of another format) is a
+//! nobody took is replaced by the next one. [`Camera`] is where the endoscope looks and how its lens bends the picture; [`Board`] is what it
+//! is calibrated with; [`time_code`], [`jpeg::encode`] and [`board::Portrait`] are for emulators and tests. Bad input (a picture or an answer that is cut off, too large, of another format) is a
 //! [`Trouble`] with its cure, or a [`Damage`] of one picture. Knows no loop, device or window.
 //!
 //! ```
@@ -20,6 +20,7 @@
 #![warn(missing_docs)]
 
 mod address;
+pub mod board;
 mod camera;
 pub mod colour;
 mod feed;
@@ -39,7 +40,8 @@ mod v4l2;
 mod waiting;
 
 pub use address::{Address, AddressError, Capture, Pixels};
-pub use camera::{Camera, Lens};
+pub use board::{Board, BoardError};
+pub use camera::{Bend, Camera, Lens};
 pub use colour::{Colours, Layout, Raw};
 pub use feed::{Feed, Look};
 pub use jpeg::{Damage, Picture};

@@ -6,6 +6,7 @@ pub mod command;
 pub mod console;
 mod emulators;
 pub mod leaving;
+mod lens;
 mod line;
 mod objects;
 mod recording;

@@ -44,7 +44,8 @@ const fn is_zero(value: &u16) -> bool {
     *value == 0
 }
 
-/// A pinhole with radial distortion at a place of the workspace. Its frame: x to the right of the picture, y down, z away from the lens.
+/// A pinhole with distortion, and its place in the workspace once that is known. Its frame: x to the right of the picture, y down, z away from the
+/// lens.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EndoscopeCamera {
@@ -52,16 +53,38 @@ pub struct EndoscopeCamera {
     pub size_px: [usize; 2],
     /// Focal length, px.
     pub focal_px: f64,
+    /// Focal length down the picture, px, where pixels are not square.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub focal_y_px: Option<f64>,
     /// Where the lens's axis meets the picture, px; its middle if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub centre_px: Option<[f64; 2]>,
     /// Radial distortion: the tangent `t` of the angle from the axis is seen at `t (1 + k1 t^2)`.
     #[serde(default)]
     pub k1: f64,
-    /// Place of the lens in the workspace, m.
-    pub position_m: Vector3<f64>,
+    /// The next radial term, with `t^4`.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub k2: f64,
+    /// Tangential distortion.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub p1: f64,
+    /// Tangential distortion, across.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub p2: f64,
+    /// Place of the lens in the workspace, m; without it no forces are drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position_m: Option<Vector3<f64>>,
     /// Roll, pitch, yaw of the camera's frame in the workspace, degrees.
-    pub world_from_camera_deg: Vector3<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub world_from_camera_deg: Option<Vector3<f64>>,
+    /// How far touched points were beside where the camera saw them, px: root mean square of held-out points, by the wizard.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub checked_px: Option<f64>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_nothing(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl Endoscope {
@@ -87,18 +110,36 @@ impl Endoscope {
                 "2: view = \"left\", \"right\" or \"both\"",
             )?;
         }
-        let Some(camera) = &self.camera else { return Ok(()) };
-        let [width, height] = camera.size_px.map(|side| side as f64);
+        self.camera.as_ref().map_or(Ok(()), |camera| camera.check(ranges))
+    }
+}
+
+impl EndoscopeCamera {
+    fn check(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
+        let [width, height] = self.size_px.map(|side| side as f64);
         let sides = |side: f64| (16.0..=4096.0).contains(&side);
         ranges.check("endoscope.camera.size_px", width, sides(width) && sides(height), "16 to 4096 px each")?;
-        let focal = camera.focal_px;
-        ranges.check("endoscope.camera.focal_px", focal, (1.0..=1e5).contains(&focal), "1 to 100000 px")?;
-        let [x, y] = camera.centre_px.unwrap_or([0.5 * width, 0.5 * height]);
+        let focals = [self.focal_px, self.focal_y_px.unwrap_or(self.focal_px)];
+        for (key, focal) in ["endoscope.camera.focal_px", "endoscope.camera.focal_y_px"].into_iter().zip(focals) {
+            ranges.check(key, focal, (1.0..=1e5).contains(&focal), "1 to 100000 px")?;
+        }
+        let [x, y] = self.centre_px.unwrap_or([0.5 * width, 0.5 * height]);
         let inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
         ranges.check("endoscope.camera.centre_px", x, inside, "within the picture")?;
-        ranges.check("endoscope.camera.k1", camera.k1, (-2.0..=2.0).contains(&camera.k1), "-2 to 2")?;
-        ranges.finite("endoscope.camera.position_m", &camera.position_m)?;
-        ranges.finite("endoscope.camera.world_from_camera_deg", &camera.world_from_camera_deg)
+        ranges.check("endoscope.camera.k1", self.k1, (-2.0..=2.0).contains(&self.k1), "-2 to 2")?;
+        ranges.check("endoscope.camera.k2", self.k2, (-5.0..=5.0).contains(&self.k2), "-5 to 5")?;
+        for (key, value) in [("endoscope.camera.p1", self.p1), ("endoscope.camera.p2", self.p2)] {
+            ranges.check(key, value, (-0.5..=0.5).contains(&value), "-0.5 to 0.5")?;
+        }
+        if let Some(checked_px) = self.checked_px {
+            ranges.not_negative("endoscope.camera.checked_px", checked_px)?;
+        }
+        let given = [self.position_m, self.world_from_camera_deg].map(|part| part.is_some());
+        let count = f64::from(u8::from(given[0]) + u8::from(given[1]));
+        let whole = "2: position_m and world_from_camera_deg, or none of them";
+        ranges.check("endoscope.camera (parts of its place)", count, given[0] == given[1], whole)?;
+        ranges.finite("endoscope.camera.position_m", &self.position_m.unwrap_or_default())?;
+        ranges.finite("endoscope.camera.world_from_camera_deg", &self.world_from_camera_deg.unwrap_or_default())
     }
 }
 
@@ -134,6 +175,10 @@ mod tests {
             ("[1280, 720]", "[0, 720]", "16 to 4096"),
             ("726.6", "nan", "focal_px"),
             ("-0.3", "7.0", "k1 is 7"),
+            ("k1 = -0.3", "k2 = 9.0", "k2 is 9"),
+            ("k1 = -0.3", "focal_y_px = 0.0", "focal_y_px is 0"),
+            ("k1 = -0.3", "checked_px = -1.0", "checked_px"),
+            ("position_m = [0.0, -0.1, 0.09]", "", "position_m and world_from_camera_deg"),
             ("mirror", "mirrors", "mirrors"),
             ("\"both\"", "\"middle\"", "middle"),
             ("0.004", "4.0", "baseline_m is 4"),

@@ -34,7 +34,8 @@ impl std::fmt::Debug for Reader {
 /// What an open wizard asks of the person at the arm.
 pub const fn task_of(open: Option<Which>) -> Task {
     match open {
-        None => Task::Surgery,
+        // The emulators' technician has no board.
+        None | Some(Which::Camera) => Task::Surgery,
         // Both take poses in all directions of gravity.
         Some(Which::Gravity | Which::Frame(Kind::Mount)) => Task::Gravity,
         Some(Which::Correspondence) => Task::Correspondence,

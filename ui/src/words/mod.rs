@@ -5,6 +5,7 @@
 //! Causes are sentences; cures say what the operator can do; reasons start in lower case, because they follow a colon.
 
 mod calibration;
+pub(crate) mod camera;
 mod channels;
 mod commands;
 mod disk;

@@ -115,6 +115,57 @@ fn a_key_hides_the_forces() {
     assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "O draws the forces at the tips")));
 }
 
+/// Greatest opacity of the letters of these words, wherever they are painted.
+fn opacities(harness: &Console, words: &str) -> Vec<u8> {
+    fn of(shape: &Shape, words: &str, found: &mut Vec<u8>) {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| of(shape, words, found)),
+            Shape::Text(text) if text.galley.text().contains(words) => {
+                let vertices = text.galley.rows.iter().flat_map(|row| &row.visuals.mesh.vertices);
+                found.extend(vertices.map(|vertex| vertex.color.a()).max());
+            }
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    harness.output().shapes.iter().for_each(|clipped| of(&clipped.shape, words, &mut found));
+    found
+}
+
+#[test]
+fn the_forces_fade_where_the_check_of_the_camera_was_worse_than_ten_pixels() {
+    let checked = |checked_px: Option<f64>| {
+        let (serving, mut endoscope) = camera();
+        endoscope.camera.as_mut().unwrap().checked_px = checked_px;
+        let mut harness = surgeon(endoscope, [1280.0, 720.0]);
+        told(&mut harness, "Endoscope's picture: live");
+        (serving, harness)
+    };
+    // The picture is half as wide as the one for which the 10 px are said.
+    let (_serving, mut harness) = checked(Some(14.0));
+    assert!(comes(&mut harness, TIMEOUT, |harness| {
+        is_painted(harness, "14 px beside the tips") && opacities(harness, "ceiling 4 N").iter().any(|most| *most < 128)
+    }));
+    let (_serving, mut harness) = checked(Some(4.0));
+    assert!(comes(&mut harness, TIMEOUT, |harness| {
+        let opacities = opacities(harness, "ceiling 4 N");
+        is_painted(harness, "Forces are drawn at the tips")
+            && opacities.len() > 1
+            && opacities.iter().all(|most| *most > 250)
+    }));
+}
+
+#[test]
+fn a_camera_whose_place_is_not_known_draws_no_forces_and_says_so() {
+    let (_serving, mut endoscope) = camera();
+    let camera = endoscope.camera.as_mut().unwrap();
+    (camera.position_m, camera.world_from_camera_deg) = (None, None);
+    let mut harness = surgeon(endoscope, [1280.0, 720.0]);
+    told(&mut harness, "Endoscope's picture: live");
+    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "the camera's place is not known")));
+    assert!(!is_painted(&harness, "O hides them"));
+}
+
 #[test]
 fn a_key_chooses_the_half_of_two_lenses_and_the_forces_go_with_it() {
     let (_serving, endoscope) = lenses(Some(0.004));

@@ -22,6 +22,7 @@ mod training;
 mod view;
 mod virtual_rig;
 mod walk;
+mod wizard_camera;
 mod wizard_correspondence;
 mod wizard_frames;
 mod wizard_gravity;

@@ -1,13 +1,15 @@
 //! `nima emulate endoscope`: a picture of a scene whose hands do their task in the air.
 //!
 //! Settings: `port`, `scene` (a name or a file), `rate_hz`, `k1` (radial distortion), `width` and `height` (px), `quality` (of the JPEGs),
-//! `baseline_m` (of a second lens), `pipe` (a file or named pipe that also gets the pictures: H.264 if it ends in `.h264`, else JPEGs).
+//! `baseline_m` (of a second lens), `pipe` (a file or named pipe that also gets the pictures: H.264 if it ends in `.h264`, else JPEGs); `board`
+//! (inner corners, as `9x6`) and `square_mm` show a board for the calibration in place of the scene.
 
 use std::io::{Error, ErrorKind, Result};
 
+use nima_endoscope::{Board, board::Corners};
 use nima_machine::rig::Side;
 
-use super::{Body, Emulated, Instrument, camera_of, usual};
+use super::{Body, Emulated, Instrument, camera_of, held, usual};
 use crate::{
     Hand,
     emulators::{Emulator, Settings, alone::unusable},
@@ -16,6 +18,8 @@ use crate::{
 
 /// Where clients find it if nobody says another port.
 const PORT: u16 = 47_150;
+/// Side of a square of a board, mm.
+const SQUARE_MM: f64 = 10.0;
 /// Step of the hands, s, and what is made up for after a pause.
 const STEP_S: f64 = 1e-3;
 const CATCH_UP_S: f64 = 0.5;
@@ -54,7 +58,19 @@ pub(in crate::emulators) fn endoscope(settings: &Settings) -> Result<Box<dyn Emu
         super::pipe::check(path, rate_hz)?;
     }
     let emulated = Emulated { rate_hz, camera: camera_of(&camera), baseline_m, quality, pipe, ..usual };
+    if let Some(board) = board(settings)? {
+        let hands = held(board, &emulated.camera.lens);
+        return Ok(emulated.with_board(board, hands));
+    }
     Ok(emulated.with(&scene, in_the_air(&scene)))
+}
+
+/// The board that is to be shown, if one is.
+fn board(settings: &Settings) -> Result<Option<Board>> {
+    let square_mm = settings.get_or("square_mm", SQUARE_MM)?;
+    let Some(named) = settings.get::<String>("board")? else { return Ok(None) };
+    let made = named.parse::<Corners>().and_then(|Corners(corners)| Board::new(corners, square_mm * 1e-3));
+    made.map(Some).map_err(|error| unusable("board", &named, &error.to_string()))
 }
 
 /// The hands of a scene do their task as if nothing were there to press.

@@ -1,11 +1,12 @@
 //! An emulated endoscope: renders the simulated scene through a lens that bends the picture, and serves it on loopback: as motion JPEG over HTTP
 //! and, in a program with the feature `h264`, as H.264 over RTSP at the same port; and into a named pipe.
 //!
-//! What is seen comes from its [`Body`], a closure of the emulator's time. A code in the upper left corner of the picture tells when it was
+//! What is seen comes from its [`Body`], a closure of the emulator's time; or it sees a board for the calibration, in somebody's [`Hands`]. A code in the upper left corner of the picture tells when it was
 //! rendered. Pictures are made only while somebody watches. Faults that concern the meaning are its own (`freeze`, `black`, `torn`, `late`,
 //! `wrong-size`, `other-format`); a client that does not take its pictures is cut off.
 
 pub(super) mod alone;
+mod board;
 mod draw;
 mod pipe;
 mod rtsp;
@@ -16,9 +17,10 @@ mod tests;
 
 use std::path::PathBuf;
 
+pub use board::{Hands, held};
 use nalgebra::{Isometry3, UnitQuaternion, Vector2, Vector3};
 use nima_core::frames::from_roll_pitch_yaw_deg;
-use nima_endoscope::{Camera, Lens};
+use nima_endoscope::{Bend, Board, Camera, Lens};
 use nima_machine::config::EndoscopeCamera;
 
 use super::Emulator;
@@ -64,7 +66,14 @@ impl Emulated {
 
     /// With what it sees.
     pub fn with(self, scene: &Scene, body: Body) -> Box<dyn Emulator> {
-        Box::new(serve::Endoscope::new(self, scene, body))
+        let shown = shot::Shown::Scene(Box::new(scene.clone()), body, Vec::new());
+        Box::new(serve::Endoscope::new(self, shown))
+    }
+
+    /// With a board for the calibration before its one lens, and without a time code, which would cover it.
+    pub fn with_board(self, board: Board, hands: Hands) -> Box<dyn Emulator> {
+        let shown = shot::Shown::Board(board, hands, None);
+        Box::new(serve::Endoscope::new(Self { square_px: 0, baseline_m: None, ..self }, shown))
     }
 }
 
@@ -89,18 +98,29 @@ pub fn usual(scene: &Scene) -> EndoscopeCamera {
     EndoscopeCamera {
         size_px: SIZE_PX,
         focal_px: 0.5 * SIZE_PX[1] as f64 / (0.5 * FIELD_OF_VIEW).tan(),
+        focal_y_px: None,
         centre_px: None,
         k1: K1,
-        position_m: MIDDLE_M + back_m,
-        world_from_camera_deg: Vector3::new(-90.0 - PITCH.to_degrees(), 0.0, yaw.to_degrees()),
+        k2: 0.0,
+        p1: 0.0,
+        p2: 0.0,
+        position_m: Some(MIDDLE_M + back_m),
+        world_from_camera_deg: Some(Vector3::new(-90.0 - PITCH.to_degrees(), 0.0, yaw.to_degrees())),
+        checked_px: None,
     }
 }
 
-/// The camera that a rig file describes.
-pub fn camera_of(settings: &EndoscopeCamera) -> Camera {
-    let EndoscopeCamera { size_px, focal_px, centre_px, k1, position_m, world_from_camera_deg } = *settings;
+/// The lens that a rig file describes.
+pub fn lens_of(settings: &EndoscopeCamera) -> Lens {
+    let EndoscopeCamera { size_px, focal_px, focal_y_px, centre_px, k1, k2, p1, p2, .. } = *settings;
     let middle_px = Vector2::from(size_px.map(|side| 0.5 * side as f64));
-    let lens = Lens { size_px, focal_px, centre_px: centre_px.map_or(middle_px, Vector2::from), k1 };
-    let rotation: UnitQuaternion<f64> = from_roll_pitch_yaw_deg(&world_from_camera_deg);
-    Camera { lens, world_from_camera: Isometry3::from_parts(position_m.into(), rotation) }
+    let focal_px = Vector2::new(focal_px, focal_y_px.unwrap_or(focal_px));
+    Lens { size_px, focal_px, centre_px: centre_px.map_or(middle_px, Vector2::from), bend: Bend { k1, k2, p1, p2 } }
+}
+
+/// The camera that a rig file describes; at the workspace's origin where its place is not known.
+pub fn camera_of(settings: &EndoscopeCamera) -> Camera {
+    let rotation: UnitQuaternion<f64> = from_roll_pitch_yaw_deg(&settings.world_from_camera_deg.unwrap_or_default());
+    let place_m = settings.position_m.unwrap_or_default();
+    Camera { lens: lens_of(settings), world_from_camera: Isometry3::from_parts(place_m.into(), rotation) }
 }

@@ -8,17 +8,14 @@ use nima_endoscope::{
 };
 
 use super::{
-    Body, Emulated,
+    Emulated,
     pipe::Pipe,
     rtsp::{self, Reply},
-    shot::{Shot, Studio},
+    shot::{Shot, Shown, Studio},
 };
-use crate::{
-    emulators::{
-        EmulatedFault, Emulator, Peer, Turn,
-        wires::{End, tcp},
-    },
-    scene::Scene,
+use crate::emulators::{
+    EmulatedFault, Emulator, Peer, Turn,
+    wires::{End, tcp},
 };
 
 /// Longest request that is read.
@@ -71,8 +68,8 @@ impl Client {
 }
 
 impl Endoscope {
-    pub(super) fn new(emulated: Emulated, scene: &Scene, body: Body) -> Self {
-        let studio = Studio::new(emulated.clone(), scene, body);
+    pub(super) fn new(emulated: Emulated, shown: Shown) -> Self {
+        let studio = Studio::new(emulated.clone(), shown);
         let (clients, late) = (Vec::new(), VecDeque::new());
         Self { emulated, studio, encoder: None, wants_key: true, pipe: None, clients, due_s: 0.0, late }
     }

@@ -2,19 +2,62 @@
 
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use nima_endoscope::time_code;
+use nima_endoscope::{Board, time_code};
 
-use super::{Body, Emulated, draw::Painter};
+use super::{
+    Body, Emulated,
+    board::{Drawn, Hands},
+    draw::Painter,
+};
 use crate::{emulators::EmulatedFault, scene::Scene};
 
 pub(super) struct Studio {
     emulated: Emulated,
-    scene: Scene,
-    body: Body,
-    /// One for each lens, made when the first picture is wanted.
-    painters: Vec<Painter>,
+    shown: Shown,
     rgb: Vec<u8>,
     size_px: [usize; 2],
+}
+
+/// What is before the lens; how it is drawn is made when the first picture is wanted.
+pub(super) enum Shown {
+    /// A scene with its instruments, drawn for each lens.
+    Scene(Box<Scene>, Body, Vec<Painter>),
+    /// A board for the calibration of one lens.
+    Board(Board, Hands, Option<Drawn>),
+}
+
+impl Shown {
+    /// The picture at a time, and its size.
+    fn draw(&mut self, emulated: &Emulated, now_s: f64, rgb: &mut Vec<u8>) -> [usize; 2] {
+        let camera = emulated.camera;
+        let [width, height] = camera.lens.size_px;
+        match self {
+            Self::Scene(scene, body, painters) => {
+                let instruments = body(now_s);
+                if painters.is_empty() {
+                    let second = emulated.baseline_m.map(|baseline_m| camera.beside(baseline_m));
+                    let lenses = [Some(camera), second].into_iter().flatten();
+                    *painters = lenses.map(|camera| Painter::new(camera, scene)).collect();
+                }
+                let size_px = [width * painters.len(), height];
+                rgb.resize(3 * size_px[0] * height, 0);
+                for (number, painter) in painters.iter_mut().enumerate() {
+                    let rows = painter.draw(&instruments).chunks_exact(3 * width);
+                    for (whole, row) in rgb.chunks_exact_mut(3 * size_px[0]).zip(rows) {
+                        whole[3 * width * number..][..3 * width].copy_from_slice(row);
+                    }
+                }
+                size_px
+            }
+            Self::Board(board, hands, drawn) => {
+                let camera_from_board = hands(now_s);
+                let drawn = drawn.get_or_insert_with(|| Drawn::new(*board, &camera.lens));
+                rgb.clear();
+                rgb.extend_from_slice(drawn.draw(&camera_from_board));
+                [width, height]
+            }
+        }
+    }
 }
 
 /// A picture of three bytes a pixel.
@@ -26,8 +69,8 @@ pub(super) struct Shot<'a> {
 }
 
 impl Studio {
-    pub(super) fn new(emulated: Emulated, scene: &Scene, body: Body) -> Self {
-        Self { emulated, scene: scene.clone(), body, painters: Vec::new(), rgb: Vec::new(), size_px: [0; 2] }
+    pub(super) fn new(emulated: Emulated, shown: Shown) -> Self {
+        Self { emulated, shown, rgb: Vec::new(), size_px: [0; 2] }
     }
 
     /// The last picture again, as a camera that hangs sends it; the picture of this time if there was none.
@@ -43,22 +86,7 @@ impl Studio {
     pub(super) fn take(&mut self, now_s: f64, fault: EmulatedFault) -> Shot<'_> {
         // Before it is looked: whoever reads this time knows that nothing in the picture is older.
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let instruments = (self.body)(now_s);
-        if self.painters.is_empty() {
-            let camera = self.emulated.camera;
-            let second = self.emulated.baseline_m.map(|baseline_m| camera.beside(baseline_m));
-            let lenses = [Some(camera), second].into_iter().flatten();
-            self.painters = lenses.map(|camera| Painter::new(camera, &self.scene)).collect();
-        }
-        let [width, height] = self.emulated.camera.lens.size_px;
-        let size_px = [width * self.painters.len(), height];
-        self.rgb.resize(3 * size_px[0] * height, 0);
-        for (number, painter) in self.painters.iter_mut().enumerate() {
-            let rows = painter.draw(&instruments).chunks_exact(3 * width);
-            for (whole, row) in self.rgb.chunks_exact_mut(3 * size_px[0]).zip(rows) {
-                whole[3 * width * number..][..3 * width].copy_from_slice(row);
-            }
-        }
+        let size_px = self.shown.draw(&self.emulated, now_s, &mut self.rgb);
         if self.emulated.square_px > 0 {
             time_code::draw(since.as_micros() as u64, self.emulated.square_px, &mut self.rgb, size_px[0]);
         }

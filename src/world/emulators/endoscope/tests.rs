@@ -178,7 +178,8 @@ fn two_lenses_see_a_tip_where_each_camera_says() {
     let trocar_m = scene().trocar_m;
     let tip_m = Vector3::new(0.01, 0.005, 0.01);
     let body = Box::new(move |_: f64| vec![Instrument { tip_m, trocar_m }]);
-    let mut studio = shot::Studio::new(emulated, &scene(), body);
+    let shown = shot::Shown::Scene(Box::new(scene()), body, Vec::new());
+    let mut studio = shot::Studio::new(emulated, shown);
     let shot = studio.take(0.0, EmulatedFault::None);
     assert_eq!(shot.size_px, [1280, 360]);
     for (number, camera) in [camera, camera.beside(BASELINE_M)].into_iter().enumerate() {
@@ -220,6 +221,36 @@ fn without_its_feature_rtsp_and_a_raw_stream_are_refused_in_words() {
 }
 
 #[test]
+fn a_board_is_held_before_the_lens_whole_at_every_pose() {
+    let lens = small(-0.3).lens;
+    let board = nima_endoscope::Board::new([9, 6], 0.01).unwrap();
+    let mut hands = held(board, &lens);
+    let mut places = Vec::new();
+    for pose in 0..20 {
+        let [early, late] = [0.1, 1.7].map(|more| hands(2.2 * f64::from(pose) + more));
+        assert_eq!(early, late, "it is held still");
+        for place_m in board.places_m() {
+            let place_px = lens.project(&(early * nalgebra::Point3::from(place_m)).coords).unwrap();
+            assert!((0.0..640.0).contains(&place_px.x) && (0.0..360.0).contains(&place_px.y), "{pose}: {place_px}");
+            places.push(place_px);
+        }
+    }
+    let far =
+        |from: [f64; 2]| places.iter().map(|place| (place - Vector2::from(from)).norm()).fold(f64::INFINITY, f64::min);
+    for side in [[0.0, 180.0], [640.0, 180.0], [320.0, 0.0], [320.0, 360.0]] {
+        assert!(far(side) < 100.0, "{side:?}: {}", far(side));
+    }
+    let serving =
+        Emulated { camera: small(-0.3), ..Emulated::of(&scene(), 0) }.with_board(board, hands).serve().unwrap();
+    let feed = feed(&serving);
+    let look = until(&feed, "a board", |look| look.standing == Standing::Live && look.picture.is_some());
+    let rgba = look.picture.unwrap().1.rgba.clone();
+    let share =
+        |wanted: fn(u8) -> bool| rgba.iter().step_by(4).filter(|grey| wanted(**grey)).count() as f64 / (640.0 * 360.0);
+    assert!(share(|grey| grey > 190) > 0.04 && share(|grey| grey < 60) > 0.04, "white and black squares");
+}
+
+#[test]
 fn a_wrong_page_and_a_wrong_setting_are_told() {
     let serving = serve();
     let address = format!("{}nothing", serving.endpoint).parse().unwrap();
@@ -231,6 +262,7 @@ fn a_wrong_page_and_a_wrong_setting_are_told() {
         ("rate_hz=0", "1 to 120"),
         ("scene=none", "none"),
         ("baseline_m=1", "0.0005 to 0.05"),
+        ("board=9x7", "upside down"),
     ] {
         let settings = super::super::Settings::new(&[setting.to_owned()]).unwrap();
         let told = alone::endoscope(&settings).err().unwrap().to_string();

@@ -59,7 +59,9 @@ pub(in crate::command) struct Arguments {
 impl Arguments {
     /// Those of the force, unless another was asked for: the frames of an emulated rig are those of its file.
     fn does(&self, which: Which) -> bool {
-        self.only.map_or(self.frames || !matches!(which, Which::Frame(_)), |only| only == which)
+        let usual = self.frames || !matches!(which, Which::Frame(_));
+        // The simulated technician has no board.
+        which != Which::Camera && self.only.map_or(usual, |only| only == which)
     }
 }
 
@@ -68,6 +70,9 @@ fn side(word: &str) -> Result<Side, String> {
 }
 
 pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if arguments.only == Some(Which::Camera) {
+        bail!("the simulated technician has no board; calibrate the camera with `nima console --calibrate camera`");
+    }
     let setup = Setup::of(&arguments.rig, arguments.scene.as_deref());
     let (rig, scene) = setup.load()?;
     let sides: Vec<_> = Side::ALL.into_iter().filter(|side| arguments.arm.is_none_or(|arm| arm == *side)).collect();

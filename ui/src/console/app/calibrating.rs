@@ -122,6 +122,11 @@ impl ConsoleApp {
     fn saved(&mut self, saving: Saving) -> Result<(RigConfig, String), String> {
         let (rig, path, words) = match saving {
             Saving::Frame(saving) => self.in_force.save_frame(*saving, &self.running.rig, self.settings.folder())?,
+            Saving::Camera(changes) => {
+                let (path, rig) = self.in_force.change_rig(&changes, &self.running.rig, self.settings.folder())?;
+                let words = text::camera::written(&path);
+                (rig, path, words)
+            }
             Saving::Undo(changes) => {
                 let (path, rig) = self.in_force.change_rig(&changes, &self.running.rig, self.settings.folder())?;
                 (rig, path, text::frames::UNDONE.to_owned())
@@ -168,6 +173,7 @@ impl ConsoleApp {
             });
         });
         let binding = self.binding();
+        self.wizards.see(|| self.panels.eyes.newest(), ui.ctx());
         let mut asked = None;
         CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {

@@ -26,9 +26,8 @@ pub(super) const fn next(view: StereoView) -> StereoView {
     }
 }
 
-/// Size of the whole picture of which a camera sees a part, px.
-pub(super) fn whole_px(camera: &Camera, endoscope: &Endoscope) -> [usize; 2] {
-    let [width, height] = camera.lens.size_px;
+/// Size of the whole picture of which a lens sees a part, px.
+pub(super) fn whole_px([width, height]: [usize; 2], endoscope: &Endoscope) -> [usize; 2] {
     if endoscope.view.is_some() { [2 * width, height] } else { [width, height] }
 }
 
@@ -95,7 +94,7 @@ mod tests {
         let camera = camera_of(&settings);
         let mut endoscope = Endoscope { camera: Some(settings), view: Some(StereoView::Both), ..Endoscope::default() };
         endoscope.baseline_m = Some(0.004);
-        assert_eq!(whole_px(&camera, &endoscope), [2560, 720]);
+        assert_eq!(whole_px(camera.lens.size_px, &endoscope), [2560, 720]);
         let area = Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 360.0));
         let [left, right] = halves(area, [2560, 720], &endoscope, Some(StereoView::Both), Some(&camera))[..] else {
             panic!("two halves")

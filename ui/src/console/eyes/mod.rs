@@ -28,6 +28,9 @@ use self::place::Place;
 use self::{halves::Half, poses::Poses};
 use super::{live::Live, text, theme};
 
+/// A camera whose check was worse is not trusted, in widths of the picture: 10 px of 1280. Its forces are drawn with this opacity.
+const OFF: f64 = 10.0 / 1280.0;
+const DOUBTFUL: f32 = 0.35;
 /// The figures stand still for so long, so that they can be read.
 const FIGURES_EVERY: Duration = Duration::from_millis(250);
 /// Time from one frame to the next where the words have a clock, and no picture wakes the window.
@@ -81,7 +84,7 @@ impl Eyes {
         }
         *self = Self { wanted: wanted.cloned(), hides_forces: self.hides_forces, ..Self::default() };
         let Some(endoscope @ Endoscope { url, camera, view, .. }) = wanted else { return };
-        self.camera = camera.as_ref().map(camera_of);
+        self.camera = camera.as_ref().filter(|camera| camera.position_m.is_some()).map(camera_of);
         self.view = *view;
         let address = match url.parse::<Address>() {
             Ok(address) => address,
@@ -91,7 +94,7 @@ impl Eyes {
             }
         };
         let ctx = ctx.clone();
-        let size_px = self.camera.map(|camera| halves::whole_px(&camera, endoscope));
+        let size_px = camera.as_ref().map(|camera| halves::whole_px(camera.size_px, endoscope));
         match Feed::start(address, size_px, move || ctx.request_repaint()) {
             Ok(feed) => self.feed = Some(feed),
             Err(error) => self.refused = Some(text::eyes::refused(&error.to_string())),
@@ -106,6 +109,11 @@ impl Eyes {
     /// Pictures wake the window often enough for everything else that moves.
     pub(in crate::console) fn wakes(&self) -> bool {
         self.rate_hz >= WAKES_HZ
+    }
+
+    /// The newest picture and its number, for who looks at it otherwise than this does.
+    pub(in crate::console) fn newest(&self) -> Option<(u64, Arc<Picture>)> {
+        self.feed.as_ref()?.look(Instant::now()).picture
     }
 
     /// A tick of the loop: where a tip is at its time.
@@ -164,8 +172,11 @@ impl Eyes {
         for Half { place, camera, within } in halves.iter().filter(|_| fits) {
             let Some(camera) = camera else { continue };
             let age = look.as_ref().and_then(|look| look.age).unwrap_or_default();
-            let painter = &painter.with_clip_rect(*within);
-            let seen = overlay::Seen { painter, place, camera, ceiling_n: live.gate_settings().ceiling_n };
+            let mut painter = painter.with_clip_rect(*within);
+            if self.off_px().is_some() {
+                painter.multiply_opacity(DOUBTFUL);
+            }
+            let seen = overlay::Seen { painter: &painter, place, camera, ceiling_n: live.gate_settings().ceiling_n };
             tips.extend(seen.draw(live.sides().filter_map(|side| self.poses.at(side, now, age)), self.hides_forces));
         }
         if !is_good {
@@ -182,6 +193,12 @@ impl Eyes {
         }
         self.figures_ui(&painter, view, (&tips, fits), look.as_ref(), now);
         ui.ctx().request_repaint_after(until_told(look.as_ref(), is_good));
+    }
+
+    /// How far forces are drawn beside the tips, px, if the check of the camera was worse than is tolerable.
+    fn off_px(&self) -> Option<f64> {
+        let camera = self.wanted.as_ref()?.camera?;
+        camera.checked_px.filter(|off_px| *off_px > OFF * camera.size_px[0] as f64)
     }
 
     /// Uploads a new picture and draws it as large as it can be; gives what is shown of it.
@@ -237,17 +254,20 @@ impl Eyes {
             };
             self.shown = Some((now, figures));
         }
-        let forces = match (&self.camera, self.hides_forces) {
-            (None, _) => text::eyes::NO_CAMERA,
+        let has_lens = self.wanted.as_ref().is_some_and(|wanted| wanted.camera.is_some());
+        let forces = match (&self.camera, self.hides_forces, self.off_px()) {
+            (None, ..) if has_lens => text::eyes::NO_PLACE.to_owned(),
+            (None, ..) => text::eyes::NO_CAMERA.to_owned(),
             // Where the picture is not of now, they would be at a wrong place.
-            _ if !fits => "",
-            (_, true) => text::eyes::FORCES_HIDDEN,
-            (_, false) => text::eyes::FORCES_DRAWN,
+            _ if !fits => String::new(),
+            (_, true, _) => text::eyes::FORCES_HIDDEN.to_owned(),
+            (_, false, Some(off_px)) => text::eyes::forces_off(off_px),
+            (_, false, None) => text::eyes::FORCES_DRAWN.to_owned(),
         };
         let figures = self.shown.as_ref().map(|(_, figures)| figures.as_str()).unwrap_or_default();
         let half = self.wanted.as_ref().map_or("", |endoscope| halves::told(self.view, endoscope));
         let weak = theme::DARK.text_weak;
-        let lines = [(figures, 15.0, theme::DARK.text), (forces, 13.0, weak), (half, 13.0, weak)];
+        let lines = [(figures, 15.0, theme::DARK.text), (forces.as_str(), 13.0, weak), (half, 13.0, weak)];
         let inner = view.shrink(MARGIN);
         let corners = [
             (inner.left_bottom(), Align2::LEFT_BOTTOM),

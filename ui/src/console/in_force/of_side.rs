@@ -229,7 +229,9 @@ impl OfSide {
                 self.tip_force = Some(Loaded { record: *model, age: Age::Fresh, path: path.clone() });
                 path
             }
-            Saving::Frame(_) | Saving::Undo(_) => return Err(text::calibrations::NOT_OF_A_SENSOR.to_owned()),
+            Saving::Frame(_) | Saving::Camera(_) | Saving::Undo(_) => {
+                return Err(text::calibrations::NOT_OF_A_SENSOR.to_owned());
+            }
         };
         self.unusable.clear();
         Ok(path)

@@ -61,7 +61,11 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
     }
     // The frames are those of an arm with joints.
     let has_arm = live.rig.devices.is_some();
-    for which in Which::ALL.into_iter().filter(|which| has_arm || which.scene().is_some()) {
+    let offered = |which: &Which| match which {
+        Which::Camera => live.rig.endoscope.is_some(),
+        _ => has_arm || which.scene().is_some(),
+    };
+    for which in Which::ALL.into_iter().filter(offered) {
         let text = text::calibrations::calibrate(&which.name().to_lowercase());
         let is_open = open == Some(Page::Wizard(which));
         let button =

@@ -21,6 +21,14 @@ pub(in crate::console) const RIGHT_WITHOUT_FORCES: &str =
 pub(in crate::console) const BOTH_HALVES: &str = "Both halves; V shows the left one";
 pub(in crate::console) const NO_CAMERA: &str = "No forces are drawn: the rig file has no [endoscope.camera]";
 
+pub(in crate::console) const NO_PLACE: &str =
+    "No forces are drawn: the camera's place is not known; calibrate the camera";
+
+/// The check of the camera was too bad.
+pub(in crate::console) fn forces_off(off_px: f64) -> String {
+    format!("Forces are drawn {off_px:.0} px beside the tips or more: calibrate the camera; O hides them")
+}
+
 /// No new picture for so long.
 pub(in crate::console) fn frozen(stood: Duration) -> String {
     format!("Picture is frozen: nothing new for {:.1} s", stood.as_secs_f64())

@@ -10,6 +10,7 @@
 
 pub(super) mod alarms;
 pub(super) mod calibrations;
+pub(super) mod camera;
 pub(super) mod checkup;
 pub(super) mod common;
 pub(super) mod correspondence;

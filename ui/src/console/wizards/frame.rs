@@ -89,6 +89,10 @@ pub(super) trait Wizard {
     /// Removes the data, but keeps the settings of the rig.
     fn start_over(&mut self);
 
+    /// Whether the result belongs to the wrist sensor and its tool.
+    fn is_of_a_sensor(&self) -> bool {
+        true
+    }
     /// Whether this step has all that it asks for.
     fn is_done(&self) -> bool {
         true
@@ -134,7 +138,8 @@ pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding)
         wish = wizard.step_ui(ui, binding).or(wish);
     } else if wizard.before_saving(ui) {
         let proof = wizard.proof();
-        if save_card(ui, binding, proof.as_deref(), wizard.frame_mut()) {
+        let of_sensor = wizard.is_of_a_sensor().then_some(binding);
+        if save_card(ui, of_sensor, proof.as_deref(), wizard.frame_mut()) {
             saving = wizard.made(binding);
         }
         if let (None, Some(judgement)) = (proof, saving.as_mut().and_then(Saving::judgement_mut)) {
@@ -205,15 +210,19 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, going_on: &GoingOn) -> Opti
     wish
 }
 
-/// The last step of every wizard: sensor and tool of the record, and the save button; returns true when it is pressed.
+/// The last step of every wizard: sensor and tool of the record, if it is bound to them, and the save button; returns true when it is pressed.
 /// Without `proof` a name and a reason are required.
-fn save_card(ui: &mut Ui, binding: &Binding, proof: Option<&str>, frame: &mut Frame) -> bool {
-    card(ui, text::wizards::STEP_SAVE, text::wizards::SAVE_HOVER, |ui| {
-        figure(ui, text::wizards::SENSOR, &binding.sensor, text::wizards::SENSOR_HOVER);
-        figure(ui, text::wizards::TOOL, &binding.tool, text::wizards::TOOL_HOVER);
+fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame: &mut Frame) -> bool {
+    let meaning = if binding.is_some() { text::wizards::SAVE_HOVER } else { text::camera::STEP_SAVE_HOVER };
+    card(ui, text::wizards::STEP_SAVE, meaning, |ui| {
+        if let Some(binding) = binding {
+            figure(ui, text::wizards::SENSOR, &binding.sensor, text::wizards::SENSOR_HOVER);
+            figure(ui, text::wizards::TOOL, &binding.tool, text::wizards::TOOL_HOVER);
+        }
         let wanted = if let Some(proof) = proof {
             ui.label(proof);
-            let (known, next) = (!binding.sensor.is_empty(), !frame.is_saved());
+            let known = binding.is_none_or(|binding| !binding.sensor.is_empty());
+            let next = !frame.is_saved();
             let save =
                 ui.add_enabled(known, next_button(text::wizards::SAVE_AND_USE, next).min_size(vec2(180.0, 36.0)));
             if !known {

@@ -5,6 +5,7 @@
 //! to be saved. It does not change the loop; saving puts the new calibration in force.
 
 mod attend;
+mod camera;
 mod checks;
 mod correspondence;
 mod frame;
@@ -13,6 +14,8 @@ mod gravity;
 mod pictures;
 mod report;
 mod tip_force;
+
+use std::sync::Arc;
 
 use clap::{ValueEnum, builder::PossibleValue};
 use egui::{RichText, Ui};
@@ -25,6 +28,7 @@ use nima_core::{
     },
     tip_force::Model,
 };
+use nima_endoscope::Picture;
 use nima_machine::{
     config::RigFile,
     messages::Tick,
@@ -40,7 +44,10 @@ pub use frames::{FrameCalibration, FrameKept, FrameSaving, FrameWizard, Kind, Su
 pub use gravity::GravityWizard;
 pub use tip_force::TipForceWizard;
 
-use self::frame::{Wizard, wizard_ui};
+use self::{
+    camera::CameraWizard,
+    frame::{Wizard, wizard_ui},
+};
 use super::{scene3d::side_name, theme, widgets::small};
 use crate::console::text;
 
@@ -81,6 +88,8 @@ pub enum Which {
     TipForce,
     /// A calibration of the frames.
     Frame(Kind),
+    /// Lens and place of the endoscope's camera.
+    Camera,
 }
 
 /// As an argument of a command: by one word, whether it is of the frames or not.
@@ -95,6 +104,7 @@ impl ValueEnum for Which {
             Self::Correspondence => PossibleValue::new("correspondence"),
             Self::TipForce => PossibleValue::new("tip-force"),
             Self::Frame(kind) => kind.to_possible_value()?,
+            Self::Camera => PossibleValue::new("camera"),
         };
         Some(value.help(self.meaning()))
     }
@@ -102,7 +112,7 @@ impl ValueEnum for Which {
 
 impl Which {
     /// All wizards, in the order of use: what is measured at the wrist is turned by the frames, so these come first.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Frame(Kind::Mount),
         Self::Frame(Kind::Tip),
         Self::Frame(Kind::HandEye),
@@ -112,6 +122,7 @@ impl Which {
         Self::Gravity,
         Self::Correspondence,
         Self::TipForce,
+        Self::Camera,
     ];
 
     /// Name on buttons.
@@ -121,6 +132,7 @@ impl Which {
             Self::Correspondence => text::wizards::CORRESPONDENCE,
             Self::TipForce => text::wizards::TIP_FORCE,
             Self::Frame(kind) => kind.name(),
+            Self::Camera => text::camera::NAME,
         }
     }
 
@@ -131,6 +143,7 @@ impl Which {
             Self::Correspondence => text::wizards::CORRESPONDENCE_MEANING,
             Self::TipForce => text::wizards::TIP_FORCE_MEANING,
             Self::Frame(kind) => kind.meaning(),
+            Self::Camera => text::camera::MEANING,
         }
     }
 
@@ -140,7 +153,7 @@ impl Which {
             Self::Gravity => Some("gravity"),
             Self::Correspondence => Some("correspondence"),
             Self::TipForce => Some("isolation"),
-            Self::Frame(_) => None,
+            Self::Frame(_) | Self::Camera => None,
         }
     }
 
@@ -152,7 +165,7 @@ impl Which {
             Self::Gravity => guided,
             Self::Correspondence => guided && scene.tissue_sensor.is_some(),
             Self::TipForce => guided && scene.tissue_sensor.is_some() && scene.trocar.is_some(),
-            Self::Frame(_) => true,
+            Self::Frame(_) | Self::Camera => true,
         }
     }
 }
@@ -214,6 +227,8 @@ pub enum Saving {
     TipForce(Box<Model>),
     /// A frame calibration, with what it changes in the rig file.
     Frame(Box<FrameSaving>),
+    /// Lens and place of the camera, as they change the rig file.
+    Camera(Vec<RigChange>),
     /// Values that are put back into the rig file.
     Undo(Vec<RigChange>),
 }
@@ -226,7 +241,7 @@ impl Saving {
             Self::Correspondence(record) => Some(&mut record.judgement),
             Self::TipForce(model) => model.origin.check.as_mut().map(|check| &mut check.judgement),
             Self::Frame(saving) => Some(saving.record.judgement_mut()),
-            Self::Undo(_) => None,
+            Self::Camera(_) | Self::Undo(_) => None,
         }
     }
 }
@@ -241,6 +256,7 @@ pub struct Wizards {
     tip_force: TipForceWizard,
     /// In the order of [`Kind::ALL`].
     frames: [FrameWizard; Kind::ALL.len()],
+    camera: CameraWizard,
 }
 
 impl Default for Wizards {
@@ -251,6 +267,7 @@ impl Default for Wizards {
             correspondence: CorrespondenceWizard::default(),
             tip_force: TipForceWizard::default(),
             frames: Kind::ALL.map(FrameWizard::new),
+            camera: CameraWizard::default(),
         }
     }
 }
@@ -267,6 +284,7 @@ impl Wizards {
             Which::Correspondence => &self.correspondence,
             Which::TipForce => &self.tip_force,
             Which::Frame(kind) => &self.frames[kind as usize],
+            Which::Camera => &self.camera,
         }
     }
 
@@ -276,6 +294,7 @@ impl Wizards {
             Which::Correspondence => &mut self.correspondence,
             Which::TipForce => &mut self.tip_force,
             Which::Frame(kind) => &mut self.frames[kind as usize],
+            Which::Camera => &mut self.camera,
         }
     }
 
@@ -283,6 +302,13 @@ impl Wizards {
     pub fn tick(&mut self, tick: &Tick, rate_hz: f64) {
         if let Some(which) = self.open {
             self.the_mut(which).tick(tick, rate_hz);
+        }
+    }
+
+    /// Shows the newest picture of the endoscope to a wizard that looks at it; asks for it only then.
+    pub fn see(&mut self, newest: impl FnOnce() -> Option<(u64, Arc<Picture>)>, ctx: &egui::Context) {
+        if self.open == Some(Which::Camera) {
+            self.camera.see(newest(), ctx);
         }
     }
 

@@ -1,0 +1,87 @@
+//! Which parts of the picture have shown corners of a board.
+
+use nalgebra::Vector2;
+
+use crate::Grey;
+
+/// Columns and rows of cells into which the picture is divided.
+pub const CELLS: [usize; 2] = [6, 4];
+const COUNT: usize = CELLS[0] * CELLS[1];
+/// A pixel is lit from this brightness on, of 255, and a cell where half of its pixels are: an endoscope leaves the corners of the picture black.
+const LIT: f32 = 20.0;
+/// Every so many pixels one is looked at.
+const STEP: usize = 7;
+
+/// Cells of the picture, row by row.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Coverage {
+    /// Corners in each cell.
+    pub corners: [u32; COUNT],
+    /// The cell has light.
+    pub lit: [bool; COUNT],
+}
+
+/// A ninth of the picture: column and row, 0 to 2 each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region(pub [usize; 2]);
+
+fn cell(place_px: &Vector2<f64>, size_px: [usize; 2]) -> Option<usize> {
+    let share = [place_px.x / size_px[0] as f64, place_px.y / size_px[1] as f64];
+    let inside = share.iter().all(|share| (0.0..1.0).contains(share));
+    let [column, row] = [0, 1].map(|axis| (share[axis] * CELLS[axis] as f64) as usize);
+    inside.then_some(row * CELLS[0] + column)
+}
+
+impl Coverage {
+    /// Of one picture.
+    pub fn of(picture: &Grey, corners_px: &[Vector2<f64>]) -> Self {
+        let size_px @ [_, height] = picture.size_px();
+        let (mut lit, mut seen) = ([0_u32; COUNT], [0_u32; COUNT]);
+        for y in (0..height).step_by(STEP) {
+            for (x, value) in picture.row(y).iter().enumerate().step_by(STEP) {
+                if let Some(at) = cell(&Vector2::new(x as f64, y as f64), size_px) {
+                    seen[at] += 1;
+                    lit[at] += u32::from(*value >= LIT);
+                }
+            }
+        }
+        let mut corners = [0; COUNT];
+        for at in corners_px.iter().filter_map(|place_px| cell(place_px, size_px)) {
+            corners[at] += 1;
+        }
+        Self { corners, lit: std::array::from_fn(|at| 2 * lit[at] > seen[at]) }
+    }
+
+    /// With what another picture shows.
+    pub fn add(&mut self, other: &Self) {
+        for at in 0..COUNT {
+            self.corners[at] += other.corners[at];
+            self.lit[at] |= other.lit[at];
+        }
+    }
+
+    /// Share of the cells with light in which corners were.
+    pub fn share(&self) -> f64 {
+        let lit = (0..COUNT).filter(|at| self.is_wanted(*at)).count();
+        let seen = self.corners.iter().filter(|count| **count > 0).count();
+        if lit == 0 { 0.0 } else { seen as f64 / lit as f64 }
+    }
+
+    /// It has light, or a corner was seen there.
+    const fn is_wanted(&self, at: usize) -> bool {
+        self.lit[at] || self.corners[at] > 0
+    }
+
+    /// The ninth of the picture that has the most cells without a corner; `None` if each cell has one.
+    pub fn emptiest(&self) -> Option<Region> {
+        let empty = |Region([column, row]): Region| {
+            let inside = |at: &usize| {
+                let here = [at % CELLS[0] * 3 / CELLS[0], at / CELLS[0] * 3 / CELLS[1]];
+                here == [column, row]
+            };
+            (0..COUNT).filter(inside).filter(|at| self.is_wanted(*at) && self.corners[*at] == 0).count()
+        };
+        let regions = (0..3).flat_map(|row| (0..3).map(move |column| Region([column, row])));
+        regions.filter(|region| empty(*region) > 0).max_by_key(|region| empty(*region))
+    }
+}

@@ -1,0 +1,177 @@
+//! Finds a board in a picture.
+
+use nalgebra::Vector2;
+use nima_endoscope::Board;
+
+use crate::{
+    Coverage, Grey,
+    grid::{Cells, grids, light_side, size},
+    refine::{blur_px, corner},
+    saddle::{Saddle, saddles},
+};
+
+/// The picture is also looked at half and a quarter as large: what is blurred is sharp there.
+const SCALES: usize = 3;
+/// Smoothing before saddles are looked for, and before corners are placed, px.
+const SADDLES_PX: f32 = 1.5;
+const CORNERS_PX: f32 = 0.8;
+/// A corner is this near to where it was first seen, in distances to the next one.
+const NEAR: f64 = 0.3;
+
+/// A board that is seen whole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sight {
+    /// Its inner corners in the order of the board, px.
+    pub corners_px: Vec<Vector2<f64>>,
+    /// Standard deviation of the blur at its edges, px; of motion too.
+    pub blur_px: f64,
+    /// The picture's cells in which corners are, and those that have light.
+    pub coverage: Coverage,
+}
+
+impl Sight {
+    /// How far the corners are from those of another sight on average, px.
+    pub fn mean_move_px(&self, other: &Self) -> f64 {
+        let moves = self.corners_px.iter().zip(&other.corners_px).map(|(a, b)| (a - b).norm());
+        moves.sum::<f64>() / self.corners_px.len().max(1) as f64
+    }
+}
+
+/// Why no board is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unseen {
+    /// Nothing like it is in the picture.
+    Nothing,
+    /// Only a part of it is seen.
+    Part {
+        /// Inner corners that are seen.
+        seen: usize,
+        /// Inner corners of the board.
+        of: usize,
+    },
+    /// There is a board with other numbers of inner corners.
+    Other([usize; 2]),
+}
+
+/// The board in a picture, whole.
+///
+/// # Errors
+/// [`Unseen`].
+pub fn find(picture: &Grey, board: &Board) -> Result<Sight, Unseen> {
+    let mut unseen = Unseen::Nothing;
+    let mut level = Some(picture.clone());
+    for halvings in 0..SCALES {
+        let Some(grey) = level else { break };
+        let scale = f64::from(1_u32 << halvings);
+        match coarse(&grey, board) {
+            Ok(rough) => {
+                let rough: Vec<_> = rough.into_iter().map(|place| place * scale).collect();
+                if let Some(sight) = fine(picture, board, &rough) {
+                    return Ok(sight);
+                }
+                unseen = Unseen::Part { seen: 0, of: board.count() };
+            }
+            Err(other) if weight(&other) > weight(&unseen) => unseen = other,
+            Err(_) => {}
+        }
+        level = grey.halved();
+    }
+    Err(unseen)
+}
+
+fn weight(unseen: &Unseen) -> usize {
+    match unseen {
+        Unseen::Nothing => 0,
+        Unseen::Part { seen, .. } => *seen,
+        Unseen::Other([across, down]) => across * down,
+    }
+}
+
+/// The corners of the board to a pixel or two.
+fn coarse(grey: &Grey, board: &Board) -> Result<Vec<Vector2<f64>>, Unseen> {
+    let smooth = grey.smooth(SADDLES_PX);
+    let saddles = saddles(&smooth);
+    let grids = grids(&smooth, &saddles);
+    if let Some(places) = grids.iter().find_map(|cells| in_order(&smooth, &saddles, cells, board)) {
+        return Ok(places);
+    }
+    let Some(largest) = grids.first() else { return Err(Unseen::Nothing) };
+    let [columns, rows] = size(largest);
+    let is_whole = largest.len() == columns * rows && columns > 2 && rows > 2;
+    let is_larger = columns.min(rows) > board.corners().into_iter().min().unwrap_or_default()
+        || columns.max(rows) > board.corners().into_iter().max().unwrap_or_default();
+    if is_whole && is_larger {
+        return Err(Unseen::Other([columns.max(rows), columns.min(rows)]));
+    }
+    Err(Unseen::Part { seen: largest.len().min(board.count()), of: board.count() })
+}
+
+/// Where a corner of the board is in a grid with so many columns and rows.
+type Turn = fn([usize; 2], [usize; 2]) -> [usize; 2];
+
+/// The saddles of a grid as the board's corners; `None` if it is not this board.
+fn in_order(smooth: &Grey, saddles: &[Saddle], cells: &Cells, board: &Board) -> Option<Vec<Vector2<f64>>> {
+    let [columns, rows] = size(cells);
+    if cells.len() != board.count() {
+        return None;
+    }
+    let [across, down] = board.corners();
+    // Quarter turns, each right-handed as the board is.
+    let turns: [Turn; 4] = [
+        |[i, j], _| [i, j],
+        |[i, j], [columns, _]| [(columns - 1).wrapping_sub(j), i],
+        |[i, j], [columns, rows]| [(columns - 1).wrapping_sub(i), (rows - 1).wrapping_sub(j)],
+        |[i, j], [_, rows]| [j, (rows - 1).wrapping_sub(i)],
+    ];
+    turns.into_iter().find_map(|turn| {
+        let saddle = |i: usize, j: usize| cells.get(&turn([i, j], [columns, rows])).map(|index| &saddles[*index]);
+        let all: Option<Vec<&Saddle>> =
+            (0..down).flat_map(|j| (0..across).map(move |i| [i, j])).map(|[i, j]| saddle(i, j)).collect();
+        let all = all?;
+        // Below a way to the right from a corner is a black square where column and row are both even or both odd; most ways have to say so.
+        let says = |at: usize| {
+            let [from, to] = [all[at], all[at + 1]];
+            let contrast = from.contrast.min(to.contrast);
+            let is_light = light_side(smooth, [&from.place_px, &to.place_px], contrast)?;
+            Some(is_light == ((at % across + at / across) % 2 == 1))
+        };
+        let said: Vec<bool> = (0..all.len()).filter(|at| at % across + 1 < across).filter_map(says).collect();
+        let agree = said.iter().filter(|says| **says).count();
+        (2 * agree > said.len()).then(|| all.iter().map(|saddle| saddle.place_px).collect())
+    })
+}
+
+/// The corners exactly, and how sharp the picture is.
+fn fine(picture: &Grey, board: &Board, rough: &[Vector2<f64>]) -> Option<Sight> {
+    let smooth = picture.smooth(CORNERS_PX);
+    let [across, down] = board.corners();
+    let neighbours = |at: usize| {
+        let (i, j) = (at % across, at / across);
+        let beside = [
+            (i > 0, at.wrapping_sub(1)),
+            (i + 1 < across, at + 1),
+            (j > 0, at.wrapping_sub(across)),
+            (j + 1 < down, at + across),
+        ];
+        beside.into_iter().filter(|(there, _)| *there).map(|(_, other)| other)
+    };
+    let spacing =
+        |at: usize| neighbours(at).map(|other| (rough[other] - rough[at]).norm()).fold(f64::INFINITY, f64::min);
+    let exact = (0..rough.len()).map(|at| {
+        let spacing_px = spacing(at);
+        let place_px = corner(&smooth, rough[at], spacing_px)?;
+        ((place_px - rough[at]).norm() < NEAR * spacing_px).then_some(place_px)
+    });
+    let corners_px = exact.collect::<Option<Vec<_>>>()?;
+    let pair = |at: usize, step: usize| blur_px(picture, [&corners_px[at], &corners_px[at + step]]);
+    let in_rows = (0..rough.len()).filter(|at| at % across + 1 < across).filter_map(|at| pair(at, 1));
+    let in_columns = (0..rough.len()).filter(|at| at / across + 1 < down).filter_map(|at| pair(at, across));
+    let blur_px = f64::max(median(in_rows.collect())?, median(in_columns.collect())?);
+    let coverage = Coverage::of(picture, &corners_px);
+    Some(Sight { corners_px, blur_px, coverage })
+}
+
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}

@@ -1,0 +1,166 @@
+//! The saddles of a board in their rows and columns. Neighbours are joined where light is on one side of the way between them and dark on the
+//! other: that holds between neighbours only, however the lens bends the board. Which side is light tells rows from columns, because it
+//! alternates from square to square.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use nalgebra::Vector2;
+
+use crate::{Grey, saddle::Saddle};
+
+/// So many of the nearest saddles are looked at as neighbours.
+const NEAREST: usize = 12;
+/// Places along the way between two saddles at which both sides are compared, in lengths.
+const ALONG: [f64; 5] = [0.25, 0.37, 0.5, 0.63, 0.75];
+/// How far beside the way, in lengths, and px at least.
+const BESIDE: f64 = 0.15;
+const BESIDE_PX: f64 = 1.5;
+/// Least difference between both sides, in contrasts of the ends.
+const DIFFERENCE: f64 = 0.3;
+
+/// A way along the edge between two squares.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    to: usize,
+    /// The right-hand side is light.
+    light_right: bool,
+}
+
+/// Saddles by column and row, each from zero.
+pub(crate) type Cells = BTreeMap<[usize; 2], usize>;
+/// The same while they grow to all sides.
+type Growing = BTreeMap<[i32; 2], usize>;
+
+/// Whether the right-hand side of the way from one place to another is the light one (px; y is down); `None` if that is not so all the way.
+pub(crate) fn light_side(picture: &Grey, [from, to]: [&Vector2<f64>; 2], contrast: f64) -> Option<bool> {
+    let way = to - from;
+    let length = way.norm();
+    let right = Vector2::new(-way.y, way.x) * ((BESIDE * length).max(BESIDE_PX) / length.max(1e-9));
+    let mut light = None;
+    for along in ALONG {
+        let at = from + way * along;
+        let difference = picture.at(&(at + right)) - picture.at(&(at - right));
+        let is_light = difference > 0.0;
+        if difference.abs() < DIFFERENCE * contrast || light.is_some_and(|before| before != is_light) {
+            return None;
+        }
+        light = Some(is_light);
+    }
+    light
+}
+
+fn edges(picture: &Grey, saddles: &[Saddle]) -> Vec<Vec<Edge>> {
+    let mut all = Vec::with_capacity(saddles.len());
+    for (index, saddle) in saddles.iter().enumerate() {
+        let away = |other: &Saddle| (other.place_px - saddle.place_px).norm_squared();
+        let mut others: Vec<(f64, usize)> = saddles.iter().map(away).zip(0..).filter(|(_, at)| *at != index).collect();
+        let near = NEAREST.min(others.len());
+        if near < others.len() {
+            others.select_nth_unstable_by(near, |a, b| a.0.total_cmp(&b.0));
+        }
+        let joined = others[..near].iter().filter_map(|(_, to)| {
+            let other = &saddles[*to];
+            let contrast = saddle.contrast.min(other.contrast);
+            let light_right = light_side(picture, [&saddle.place_px, &other.place_px], contrast)?;
+            Some(Edge { to: *to, light_right })
+        });
+        all.push(joined.collect());
+    }
+    all
+}
+
+/// Every grid of saddles in a picture, the largest first, with its first column and row at zero.
+pub(crate) fn grids(picture: &Grey, saddles: &[Saddle]) -> Vec<Cells> {
+    let edges = edges(picture, saddles);
+    let mut used = vec![false; saddles.len()];
+    let mut all = Vec::new();
+    for seed in 0..saddles.len() {
+        if used[seed] || edges[seed].len() != 4 {
+            continue;
+        }
+        let Some(cells) = grown(saddles, &edges, seed) else { continue };
+        for index in cells.values() {
+            used[*index] = true;
+        }
+        let cells = from_zero(&pruned(cells));
+        if cells.len() > 3 {
+            all.push(cells);
+        }
+    }
+    all.sort_by_key(|cells| std::cmp::Reverse(cells.len()));
+    all
+}
+
+/// A saddle of the grid that grows, and the ways to the next column and row, px.
+struct Front {
+    index: usize,
+    cell: [i32; 2],
+    ways: [Vector2<f64>; 2],
+}
+
+/// Grows a grid from a saddle with four neighbours.
+fn grown(saddles: &[Saddle], edges: &[Vec<Edge>], seed: usize) -> Option<Growing> {
+    let way = |from: usize, to: usize| saddles[to].place_px - saddles[from].place_px;
+    // Along columns the right-hand side is light at the seed; the row's way is the one to the right of it.
+    let along =
+        |light: bool| edges[seed].iter().filter(move |edge| edge.light_right == light).map(|edge| way(seed, edge.to));
+    if along(true).count() != 2 {
+        return None;
+    }
+    let column = along(true).next()?;
+    let row = along(false).max_by(|a, b| column.perp(a).total_cmp(&column.perp(b)))?;
+    let mut cells = Growing::from([([0, 0], seed)]);
+    let mut placed = BTreeMap::from([(seed, [0, 0])]);
+    let mut fronts = VecDeque::from([Front { index: seed, cell: [0, 0], ways: [column, row] }]);
+    while let Some(Front { index, cell, ways }) = fronts.pop_front() {
+        let is_even = (cell[0] + cell[1]).rem_euclid(2) == 0;
+        for edge in &edges[index] {
+            let step = way(index, edge.to);
+            let axis = usize::from(edge.light_right != is_even);
+            let forward = step.dot(&ways[axis]) > 0.0;
+            let mut next = cell;
+            next[axis] += if forward { 1 } else { -1 };
+            if cells.contains_key(&next) || placed.contains_key(&edge.to) {
+                continue;
+            }
+            let mut ways = ways;
+            ways[axis] = if forward { step } else { -step };
+            cells.insert(next, edge.to);
+            placed.insert(edge.to, next);
+            fronts.push_back(Front { index: edge.to, cell: next, ways });
+        }
+    }
+    Some(cells)
+}
+
+/// Without what hangs on by one neighbour only: a corner of a board has two.
+fn pruned(mut cells: Growing) -> Growing {
+    loop {
+        let beside = [[1, 0], [-1, 0], [0, 1], [0, -1]];
+        let neighbours = |cell: &[i32; 2]| {
+            beside.iter().filter(|by| cells.contains_key(&[cell[0] + by[0], cell[1] + by[1]])).count()
+        };
+        let loose: Vec<[i32; 2]> = cells.keys().filter(|cell| neighbours(cell) < 2).copied().collect();
+        if loose.is_empty() {
+            return cells;
+        }
+        for cell in loose {
+            cells.remove(&cell);
+        }
+    }
+}
+
+fn from_zero(cells: &Growing) -> Cells {
+    let least = |axis: usize| cells.keys().map(|cell| cell[axis]).min().unwrap_or_default();
+    let [column, row] = [least(0), least(1)];
+    cells
+        .iter()
+        .map(|(cell, index)| ([cell[0].abs_diff(column) as usize, cell[1].abs_diff(row) as usize], *index))
+        .collect()
+}
+
+/// Columns and rows of a grid.
+pub(crate) fn size(cells: &Cells) -> [usize; 2] {
+    let most = |axis: usize| cells.keys().map(|cell| cell[axis] + 1).max().unwrap_or_default();
+    [most(0), most(1)]
+}

@@ -1,0 +1,51 @@
+//! How well a lens predicts views from which it was not found.
+
+use nima_endoscope::Lens;
+
+use crate::{
+    fit::{Corners, Fit, Terms, refined_pose},
+    plane,
+};
+
+/// The views are divided into so many parts, each of which is left out once.
+const FOLDS: usize = 4;
+const STEPS: usize = 12;
+
+/// Errors of held-out corners, px.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HeldOut {
+    pub(crate) rms_px: f64,
+    pub(crate) max_px: f64,
+}
+
+/// Leaves views out in turn. Of a view that was left out, every second corner tells the board's pose, and the others are compared.
+pub(crate) fn held_out(fit: &Fit, views: &[Corners], terms: Terms) -> Option<HeldOut> {
+    let mut squares = Vec::new();
+    for fold in 0..FOLDS {
+        let is_out = |at: usize| at % FOLDS == fold;
+        let kept: Vec<usize> = (0..views.len()).filter(|at| !is_out(*at)).collect();
+        let of: Vec<Corners> = kept.iter().map(|at| views[*at].clone()).collect();
+        let begin = Fit { lens: fit.lens, poses: kept.iter().map(|at| fit.poses[*at]).collect() };
+        let lens = begin.refined(&of, terms, STEPS)?.lens;
+        for at in (0..views.len()).filter(|at| is_out(*at)) {
+            squares.extend(predicted(&lens, &views[at])?);
+        }
+    }
+    if squares.is_empty() {
+        return None;
+    }
+    let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+    let most = squares.iter().copied().fold(0.0, f64::max);
+    Some(HeldOut { rms_px: mean.sqrt(), max_px: most.sqrt() })
+}
+
+fn predicted(lens: &Lens, view: &Corners) -> Option<Vec<f64>> {
+    let half = |odd: usize| {
+        let pairs = view.places_m.iter().zip(&view.seen_px).enumerate().filter(|(at, _)| at % 2 == odd);
+        let (places_m, seen_px) = pairs.map(|(_, (place, seen))| (*place, *seen)).unzip();
+        Corners { places_m, seen_px }
+    };
+    let (used, compared) = (half(0), half(1));
+    let first = plane::pose(lens, &used.places_m, &used.seen_px)?;
+    compared.squares(lens, &refined_pose(lens, &used, first, STEPS)?)
+}

@@ -1,0 +1,165 @@
+//! Where the camera is in the workspace, from corners of a board that lies still: seen by the camera, and touched with the tip of an instrument
+//! whose place is known.
+
+use nalgebra::{Isometry3, Matrix3, Translation3, Vector2, Vector3};
+use nima_core::calibration::Verdict;
+use nima_endoscope::{Board, Camera, Lens};
+
+use crate::{
+    Sight,
+    fit::{Corners, refined_pose},
+    plane,
+};
+
+/// Fewest touched corners.
+const TOUCHES: usize = 4;
+/// The touched corners have to span a plane: least spread in its shorter direction, in squares.
+const SPREAD: f64 = 1.0;
+/// Largest distance between where touched corners were and where a rigid board has them, m.
+const RIGID_M: f64 = 0.002;
+/// Largest error of held-out corners, in widths of the picture: 10 px of 1280.
+const HELD_OUT: f64 = 10.0 / 1280.0;
+const STEPS: usize = 40;
+
+/// A corner that was touched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Column and row of the corner, from zero.
+    pub corner: [usize; 2],
+    /// The tip at it, in the workspace, m.
+    pub tip_m: Vector3<f64>,
+}
+
+/// Why there is no place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlaceError {
+    /// Too few corners were touched.
+    TooFew {
+        /// Corners that were touched, and that are needed.
+        touched: usize,
+        /// Corners that are needed.
+        needed: usize,
+    },
+    /// The touched corners are on one line.
+    OneLine,
+    /// The board cannot be placed before the lens.
+    NotSeen,
+}
+
+/// What makes a place useless.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lack {
+    /// The touched points are not those of a flat board with these squares: a corner was missed, or the board moved.
+    NotRigid {
+        /// The corner that is farthest away.
+        corner: [usize; 2],
+        /// How far, m.
+        by_m: f64,
+    },
+    /// Touched points are too far from where the camera sees them.
+    HeldOut {
+        /// Root mean square, px.
+        rms_px: f64,
+        /// Allowed, px.
+        most_px: f64,
+    },
+}
+
+/// Where the camera is.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// The camera's frame in the workspace.
+    pub world_from_camera: Isometry3<f64>,
+    /// Root mean square of the distances of the touched points from a rigid board, m.
+    pub fitted_m: f64,
+    /// Root mean square of the distances of touched points from the seen corners, each with a camera found without it, px.
+    pub held_out_px: f64,
+    /// The largest of these.
+    pub held_out_max_px: f64,
+    /// What makes it useless; `None` if nothing does.
+    pub lack: Option<Lack>,
+}
+
+impl Placed {
+    /// Whether it may be used.
+    pub const fn verdict(&self) -> Verdict {
+        if self.lack.is_some() { Verdict::PoorData } else { Verdict::Accepted }
+    }
+}
+
+/// The pose of a board before a lens.
+pub fn board_pose(board: &Board, lens: &Lens, sight: &Sight) -> Option<Isometry3<f64>> {
+    let view = Corners { places_m: board.places_m(), seen_px: sight.corners_px.clone() };
+    let first = plane::pose(lens, &view.places_m, &view.seen_px)?;
+    refined_pose(lens, &view, first, STEPS)
+}
+
+/// The camera's place from touched corners of a board that it sees.
+///
+/// # Errors
+/// [`PlaceError`].
+pub fn place(board: &Board, lens: &Lens, sight: &Sight, touches: &[Touch]) -> Result<Placed, PlaceError> {
+    if touches.len() < TOUCHES {
+        return Err(PlaceError::TooFew { touched: touches.len(), needed: TOUCHES });
+    }
+    let on_board = |touch: &Touch| {
+        let [across, down] = touch.corner.map(|at| at as f64 * board.square_m());
+        Vector3::new(across, down, 0.0)
+    };
+    let spread_m = plane::spread(&touches.iter().map(on_board).collect::<Vec<_>>())[1];
+    if spread_m < SPREAD * board.square_m() {
+        return Err(PlaceError::OneLine);
+    }
+    let camera_from_board = board_pose(board, lens, sight).ok_or(PlaceError::NotSeen)?;
+    let world_from_board = |touches: &[Touch]| {
+        rigid(
+            &touches.iter().map(on_board).collect::<Vec<_>>(),
+            &touches.iter().map(|touch| touch.tip_m).collect::<Vec<_>>(),
+        )
+    };
+    let whole = world_from_board(touches).ok_or(PlaceError::OneLine)?;
+    let away =
+        |touch: &Touch| (whole * nalgebra::Point3::from(on_board(touch)) - nalgebra::Point3::from(touch.tip_m)).norm();
+    let camera_at = |world_from_board: &Isometry3<f64>| Camera {
+        lens: *lens,
+        world_from_camera: world_from_board * camera_from_board.inverse(),
+    };
+    let mut errors_px = Vec::new();
+    for (at, left_out) in touches.iter().enumerate() {
+        let others: Vec<Touch> =
+            touches.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, touch)| *touch).collect();
+        let seen: Option<&Vector2<f64>> = sight.corners_px.get(board.index(left_out.corner));
+        let predicted = world_from_board(&others).and_then(|found| camera_at(&found).project(&left_out.tip_m));
+        errors_px.push(seen.zip(predicted).map_or(f64::INFINITY, |(seen, predicted)| (seen - predicted).norm()));
+    }
+    let root = |sum: f64| (sum / touches.len() as f64).sqrt();
+    let held_out_px = root(errors_px.iter().map(|error| error * error).sum());
+    let farthest = touches.iter().max_by(|a, b| away(a).total_cmp(&away(b)));
+    let most_px = HELD_OUT * lens.size_px[0] as f64;
+    let (is_rigid, is_predicted) = (touches.iter().all(|touch| away(touch) <= RIGID_M), held_out_px <= most_px);
+    let lack = match farthest {
+        Some(touch) if !is_rigid => Some(Lack::NotRigid { corner: touch.corner, by_m: away(touch) }),
+        _ if !is_predicted => Some(Lack::HeldOut { rms_px: held_out_px, most_px }),
+        _ => None,
+    };
+    Ok(Placed {
+        world_from_camera: camera_at(&whole).world_from_camera,
+        fitted_m: root(touches.iter().map(|touch| away(touch).powi(2)).sum()),
+        held_out_px,
+        held_out_max_px: errors_px.into_iter().fold(0.0, f64::max),
+        lack,
+    })
+}
+
+/// The rigid motion that takes points to others best (Kabsch 1976); points on one line do not determine it.
+fn rigid(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Isometry3<f64>> {
+    let count = from.len().min(to.len()).max(1) as f64;
+    let [a, b] = [from, to].map(|points| points.iter().sum::<Vector3<f64>>() / count);
+    let [longest, shorter, _] = plane::spread(from);
+    if shorter <= 1e-3 * longest {
+        return None;
+    }
+    let crossed: Matrix3<f64> = from.iter().zip(to).map(|(p, q)| (q - b) * (p - a).transpose()).sum();
+    let rotation = plane::nearest_rotation(&crossed)?;
+    Some(Isometry3::from_parts(Translation3::from(b - rotation * a), rotation))
+}

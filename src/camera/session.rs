@@ -1,0 +1,178 @@
+//! Takes views while the board is moved, and says which one is wanted next.
+
+use nalgebra::Vector3;
+use nima_endoscope::{Board, Lens};
+
+use crate::{
+    Coverage, Region, Sight,
+    calibrate::{VIEWS, is_blurred, is_same_place},
+    plane,
+};
+
+/// A board that has moved less from one picture to the next is held still, in widths of the picture: 1 px of 1280.
+const STILL: f64 = 0.0008;
+/// Views that are wanted, and share of the picture with corners.
+const WANTED: usize = VIEWS + 4;
+const SHARE: f64 = 0.75;
+/// A tilt counts from this angle on, degrees; a smaller one than the second is none.
+const TILTED_DEG: f64 = 15.0;
+const FLAT_DEG: f64 = 12.0;
+/// Focal length as long as none is known, in widths of the picture.
+const FOCAL: f64 = 0.8;
+
+/// Which side of the board is nearer to the lens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// The left one.
+    Left,
+    /// The right one.
+    Right,
+    /// The upper one.
+    Up,
+    /// The lower one.
+    Down,
+}
+
+/// The view that is wanted next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ask {
+    /// Straight before the lens.
+    Flat,
+    /// With this side nearer.
+    Tilted(Way),
+    /// In this part of the picture.
+    There(Region),
+    /// Anywhere else.
+    Other,
+    /// None: there are enough.
+    Complete,
+}
+
+/// What became of a view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Offer {
+    /// It was taken.
+    Taken,
+    /// The board moves.
+    Moving,
+    /// It is blurred.
+    Blurred,
+    /// The board was there before.
+    TakenHere,
+}
+
+/// Views of a board.
+#[derive(Clone, Debug)]
+pub struct Session {
+    board: Board,
+    size_px: [usize; 2],
+    views: Vec<Sight>,
+    last: Option<Sight>,
+}
+
+impl Session {
+    /// Without views, for pictures of this size.
+    pub const fn new(board: Board, size_px: [usize; 2]) -> Self {
+        Self { board, size_px, views: Vec::new(), last: None }
+    }
+
+    /// The board.
+    pub const fn board(&self) -> &Board {
+        &self.board
+    }
+
+    /// Size of the pictures, px.
+    pub const fn size_px(&self) -> [usize; 2] {
+        self.size_px
+    }
+
+    /// The views that were taken.
+    pub fn views(&self) -> &[Sight] {
+        &self.views
+    }
+
+    /// Shows the board of another picture; it is taken if it is held still at a new place.
+    pub fn offer(&mut self, sight: Sight) -> Offer {
+        let width = self.size_px[0];
+        let before = self.last.replace(sight.clone());
+        if sight.corners_px.len() != self.board.count() {
+            return Offer::Moving;
+        }
+        if !before.is_some_and(|before| before.mean_move_px(&sight) < STILL * width as f64) {
+            return Offer::Moving;
+        }
+        if is_blurred(sight.blur_px, width) {
+            return Offer::Blurred;
+        }
+        if self.views.iter().any(|view| is_same_place(view, &sight, width)) {
+            return Offer::TakenHere;
+        }
+        self.views.push(sight);
+        Offer::Taken
+    }
+
+    /// No board is in the picture.
+    pub fn miss(&mut self) {
+        self.last = None;
+    }
+
+    /// Removes the view that was taken last.
+    pub fn undo(&mut self) {
+        self.views.pop();
+    }
+
+    /// Where corners were.
+    pub fn coverage(&self) -> Coverage {
+        let mut all = Coverage::default();
+        for view in &self.views {
+            all.add(&view.coverage);
+        }
+        all
+    }
+
+    /// The view that is wanted next.
+    pub fn asks(&self) -> Ask {
+        let tilts = self.tilts_deg();
+        if !tilts.iter().any(|[x, y]| x.hypot(*y) < FLAT_DEG) {
+            return Ask::Flat;
+        }
+        let tilted = |way: Way| match way {
+            Way::Left => tilts.iter().any(|[x, _]| *x < -TILTED_DEG),
+            Way::Right => tilts.iter().any(|[x, _]| *x > TILTED_DEG),
+            Way::Up => tilts.iter().any(|[_, y]| *y < -TILTED_DEG),
+            Way::Down => tilts.iter().any(|[_, y]| *y > TILTED_DEG),
+        };
+        let missing = [Way::Left, Way::Right, Way::Up, Way::Down].into_iter().find(|way| !tilted(*way));
+        if let Some(way) = missing {
+            return Ask::Tilted(way);
+        }
+        let coverage = self.coverage();
+        match coverage.emptiest().filter(|_| coverage.share() < SHARE) {
+            Some(region) => Ask::There(region),
+            None if self.views.len() < WANTED => Ask::Other,
+            None => Ask::Complete,
+        }
+    }
+
+    /// Share of what is wanted, 0 to 1.
+    pub fn share(&self) -> f64 {
+        if self.asks() == Ask::Complete {
+            return 1.0;
+        }
+        let views = (self.views.len() as f64 / WANTED as f64).min(1.0);
+        let seen = (self.coverage().share() / SHARE).min(1.0);
+        (0.5 * (views + seen)).min(0.99)
+    }
+
+    /// Of each view about the upright and about the level axis: above zero if the right-hand or the lower side is nearer. By a usual lens.
+    fn tilts_deg(&self) -> Vec<[f64; 2]> {
+        let lens = Lens::simple(self.size_px, FOCAL * self.size_px[0] as f64, 0.0);
+        let places_m = self.board.places_m();
+        let tilt = |view: &Sight| {
+            let pose = plane::pose(&lens, &places_m, &view.corners_px)?;
+            let normal = pose.rotation * Vector3::z();
+            Some([normal.x.atan2(normal.z), normal.y.atan2(normal.z)].map(f64::to_degrees))
+        };
+        self.views.iter().filter_map(tilt).collect()
+    }
+}

@@ -1,0 +1,259 @@
+//! The checkerboard that a camera is calibrated with: its places, on paper, and in a picture (for emulators and tests).
+//!
+//! A board is named by its inner corners, where four squares meet. One of the two numbers is odd and the other even, so that the board looks
+//! different upside down. Its frame: the origin at the first inner corner, beside the black square in the corner of the board; x along the first
+//! number, y along the second, z away from who looks at it, m.
+
+use std::{fmt::Write as _, str::FromStr};
+
+use nalgebra::{Isometry3, Vector2, Vector3};
+
+use crate::Lens;
+
+/// Inner corners along a side.
+const CORNERS: std::ops::RangeInclusive<usize> = 3..=40;
+/// Side of a square, m.
+const SQUARE_M: std::ops::RangeInclusive<f64> = 0.000_5..=0.2;
+/// White paper around the squares, in squares.
+const MARGIN: f64 = 1.0;
+/// Samples of a pixel along each side where an edge runs through it.
+const SAMPLES: usize = 6;
+/// Grey values: of what is printed, of the paper, and of what is behind it.
+const BLACK: f64 = 28.0;
+const WHITE: f64 = 222.0;
+const BEHIND: f64 = 92.0;
+
+/// A checkerboard.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Board {
+    /// Inner corners along x and y.
+    corners: [usize; 2],
+    square_m: f64,
+}
+
+/// Why there is no such board.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BoardError {
+    /// It is not written as two numbers.
+    #[error("\"{0}\" is no board; give its inner corners, such as 9x6")]
+    Text(String),
+    /// A side has too few or too many corners.
+    #[error("{0} inner corners along a side are not supported; give 3 to 40")]
+    Corners(usize),
+    /// It looks the same upside down.
+    #[error("a board of {0}x{1} inner corners looks the same upside down; give an odd and an even number, such as 9x6")]
+    Ambiguous(usize, usize),
+    /// Its squares are too small or too large.
+    #[error("squares of {0} mm are not supported; give 0.5 to 200 mm")]
+    Square(f64),
+}
+
+/// Inner corners along both sides, as `9x6`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Corners(pub [usize; 2]);
+
+impl FromStr for Corners {
+    type Err = BoardError;
+
+    fn from_str(text: &str) -> Result<Self, BoardError> {
+        let sides =
+            text.split_once(['x', 'X']).and_then(|(a, b)| Some([a.trim().parse().ok()?, b.trim().parse().ok()?]));
+        sides.map(Self).ok_or_else(|| BoardError::Text(text.to_owned()))
+    }
+}
+
+impl Board {
+    /// A board with so many inner corners, and squares of this side.
+    ///
+    /// # Errors
+    /// [`BoardError`].
+    pub fn new(corners @ [across, down]: [usize; 2], square_m: f64) -> Result<Self, BoardError> {
+        if let Some(side) = corners.into_iter().find(|side| !CORNERS.contains(side)) {
+            return Err(BoardError::Corners(side));
+        }
+        if (across + down) % 2 == 0 {
+            return Err(BoardError::Ambiguous(across, down));
+        }
+        if !SQUARE_M.contains(&square_m) {
+            return Err(BoardError::Square(square_m * 1e3));
+        }
+        Ok(Self { corners, square_m })
+    }
+
+    /// Inner corners along x and y.
+    pub const fn corners(&self) -> [usize; 2] {
+        self.corners
+    }
+
+    /// Side of a square, m.
+    pub const fn square_m(&self) -> f64 {
+        self.square_m
+    }
+
+    /// Number of inner corners.
+    pub const fn count(&self) -> usize {
+        self.corners[0] * self.corners[1]
+    }
+
+    /// Number of a corner in the order of [`Self::places_m`].
+    pub const fn index(&self, [across, down]: [usize; 2]) -> usize {
+        down * self.corners[0] + across
+    }
+
+    /// All inner corners in the board's frame, row by row, m.
+    pub fn places_m(&self) -> Vec<Vector3<f64>> {
+        let [across, down] = self.corners;
+        let place = |i: usize, j: usize| Vector3::new(i as f64, j as f64, 0.0) * self.square_m;
+        (0..down).flat_map(|j| (0..across).map(move |i| place(i, j))).collect()
+    }
+
+    /// The middle of the board, m.
+    pub fn middle_m(&self) -> Vector3<f64> {
+        let [across, down] = self.corners.map(|side| 0.5 * (side - 1) as f64);
+        Vector3::new(across, down, 0.0) * self.square_m
+    }
+
+    /// Brightness of a place in units of squares; `None` beside the paper.
+    fn grey(&self, place: &Vector2<f64>) -> Option<f64> {
+        let size = Vector2::from(self.corners.map(|side| (side + 1) as f64));
+        // From the outer corner of the squares.
+        let from = place.add_scalar(1.0);
+        let on_paper = from.iter().zip(&size).all(|(at, size)| (-MARGIN..=size + MARGIN).contains(at));
+        let on_squares = from.iter().zip(&size).all(|(at, size)| (0.0..*size).contains(at));
+        on_paper.then(|| {
+            let is_black = on_squares && (from.x.floor() + from.y.floor()).rem_euclid(2.0) == 0.0;
+            if is_black { BLACK } else { WHITE }
+        })
+    }
+
+    /// The board as a drawing in its true size, for a printer.
+    ///
+    /// ```
+    /// let board = nima_endoscope::Board::new([9, 6], 0.010)?;
+    /// let svg = board.svg();
+    /// assert!(svg.contains("width=\"120mm\" height=\"90mm\""));
+    /// assert_eq!(svg.matches("M").count(), 35, "half of the 10 x 7 squares");
+    /// # Ok::<(), nima_endoscope::BoardError>(())
+    /// ```
+    pub fn svg(&self) -> String {
+        let square = self.square_m * 1e3;
+        let [across, down] = self.corners.map(|side| side + 1);
+        let [width, height] = [across, down].map(|side| square * (side as f64 + 2.0 * MARGIN));
+        let mut squares = String::new();
+        for (row, column) in (0..down).flat_map(|row| (0..across).map(move |column| (row, column))) {
+            if (row + column) % 2 == 0 {
+                let [x, y] = [column, row].map(|at| square * (at as f64 + MARGIN));
+                // Writing into a String cannot fail.
+                write!(squares, "M{x} {y}h{square}v{square}h-{square}z").ok();
+            }
+        }
+        let words = format!(
+            "nima board {}x{}, squares of {square} mm: measure one, print at 100 %",
+            self.corners[0], self.corners[1]
+        );
+        let (at, size) = (height - 0.3 * square, 0.3 * square);
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\">\
+             <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/><path d=\"{squares}\"/>\
+             <text x=\"{square}\" y=\"{at}\" font-size=\"{size}\" font-family=\"sans-serif\" fill=\"#999\">{words}</text></svg>\n"
+        )
+    }
+}
+
+/// Draws boards as one lens sees them, with the share of each pixel that an edge covers.
+#[derive(Debug)]
+pub struct Portrait {
+    size_px: [usize; 2],
+    /// Direction of each pixel's middle, where the lens sees something.
+    sights: Vec<Option<Vector2<f64>>>,
+}
+
+impl Portrait {
+    /// Takes some tenths of a second.
+    pub fn new(lens: &Lens) -> Self {
+        let [width, height] = lens.size_px;
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| Vector2::new(x as f64 + 0.5, y as f64 + 0.5)));
+        let sights = places.map(|place_px| lens.direction(&place_px).map(|sight| sight.xy())).collect();
+        Self { size_px: lens.size_px, sights }
+    }
+
+    /// Grey values, 0 to 255, row by row, of a board at this place before the lens.
+    pub fn draw(&self, board: &Board, camera_from_board: &Isometry3<f64>) -> Vec<f32> {
+        let [width, height] = self.size_px;
+        let (from, way) = (camera_from_board.inverse(), camera_from_board.rotation.inverse());
+        let eye = from.translation.vector / board.square_m;
+        // Where a line of sight meets the board, in squares.
+        let meets = |sight: &Vector2<f64>| {
+            let direction = way * sight.push(1.0);
+            let steps = -eye.z / direction.z;
+            (steps > 0.0 && steps.is_finite()).then(|| (eye + direction * steps).xy())
+        };
+        let met: Vec<Option<Vector2<f64>>> = self.sights.iter().map(|sight| sight.as_ref().and_then(meets)).collect();
+        let mut greys = vec![BEHIND as f32; width * height];
+        for (at, grey) in greys.iter_mut().enumerate() {
+            let Some(middle) = met[at] else {
+                if self.sights[at].is_none() {
+                    *grey = 4.0;
+                }
+                continue;
+            };
+            let [x, y] = [at % width, at / width];
+            // How far the next pixel is on the board.
+            let next = |there: bool, step: usize| if there { met[at + step].map(|next| next - middle) } else { None };
+            let before = |there: bool, step: usize| if there { met[at - step].map(|last| middle - last) } else { None };
+            let across = next(x + 1 < width, 1).or_else(|| before(x > 0, 1)).unwrap_or_default();
+            let down = next(y + 1 < height, width).or_else(|| before(y > 0, width)).unwrap_or_default();
+            *grey = shade(board, &middle, &across, &down) as f32;
+        }
+        greys
+    }
+}
+
+/// Brightness of a pixel whose sides are these ways on the board.
+fn shade(board: &Board, middle: &Vector2<f64>, across: &Vector2<f64>, down: &Vector2<f64>) -> f64 {
+    let reach = (across.abs() + down.abs()) * 0.5;
+    let is_even = middle.iter().zip(&reach).all(|(at, reach)| (at - at.round()).abs() > *reach);
+    if is_even {
+        return board.grey(middle).unwrap_or(BEHIND);
+    }
+    let share = |k: usize| (k as f64 + 0.5) / SAMPLES as f64 - 0.5;
+    let samples = (0..SAMPLES).flat_map(|row| (0..SAMPLES).map(move |column| [share(column), share(row)]));
+    let sum: f64 = samples.map(|[u, v]| board.grey(&(middle + across * u + down * v)).unwrap_or(BEHIND)).sum();
+    sum / (SAMPLES * SAMPLES) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_board_that_cannot_be_told_from_itself_is_refused() {
+        for (text, square_m, word) in [
+            ("9", 0.01, "give its inner corners"),
+            ("axb", 0.01, "give its inner corners"),
+            ("2x5", 0.01, "3 to 40"),
+            ("9x7", 0.01, "upside down"),
+            ("8x8", 0.01, "upside down"),
+            ("9x6", 0.0, "0.5 to 200 mm"),
+            ("9x6", f64::NAN, "0.5 to 200 mm"),
+        ] {
+            let made = text.parse::<Corners>().and_then(|Corners(corners)| Board::new(corners, square_m));
+            let told = made.unwrap_err().to_string();
+            assert!(told.contains(word), "{text}: {told}");
+        }
+        assert_eq!("9x6".parse::<Corners>().map(|Corners(corners)| corners), Ok([9, 6]));
+    }
+
+    #[test]
+    fn its_picture_has_the_first_corner_where_the_lens_says_and_black_above_it() {
+        let board = Board::new([5, 4], 0.01).unwrap();
+        let lens = Lens::simple([320, 240], 300.0, -0.2);
+        let camera_from_board = Isometry3::translation(-0.02, -0.015, 0.15);
+        let greys = Portrait::new(&lens).draw(&board, &camera_from_board);
+        let first_px = lens.project(&camera_from_board.translation.vector).unwrap();
+        let at = |x: f64, y: f64| greys[(first_px.y + y) as usize * 320 + (first_px.x + x) as usize];
+        assert!(at(-6.0, -6.0) < 40.0 && at(6.0, 6.0) < 40.0, "black above and left of it, and across");
+        assert!(at(6.0, -6.0) > 200.0 && at(-6.0, 6.0) > 200.0);
+        assert!((greys[0] - BEHIND as f32).abs() < 1.0, "nothing of it is in the corner of the picture");
+    }
+}

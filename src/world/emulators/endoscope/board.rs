@@ -1,0 +1,100 @@
+//! A checkerboard before the lens, as a person holds it while a camera is calibrated.
+
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector2};
+use nima_endoscope::{Board, Lens, board::Portrait};
+
+/// The board's place before the lens at a time, s since the emulator began.
+pub type Hands = Box<dyn FnMut(f64) -> Isometry3<f64> + Send>;
+
+/// How long a pose is held, and how long the way to the next one takes, s.
+const HELD_S: f64 = 1.8;
+const WAY_S: f64 = 0.4;
+/// Share of the picture's width that the board takes, and free space around its corners, px.
+const WIDE: f64 = 0.4;
+const FREE_PX: f64 = 16.0;
+/// Where a barrel turns back on itself squares are squeezed to nothing: the board stays within this share of the tangent there.
+const SQUEEZED: f64 = 0.8;
+/// Where the middle of the board is seen, -1 to 1 across and down.
+const PLACES: [[f64; 2]; 9] = [
+    [0.0, 0.0],
+    [-0.62, -0.6],
+    [0.62, -0.6],
+    [0.62, 0.6],
+    [-0.62, 0.6],
+    [0.0, -0.6],
+    [0.62, 0.0],
+    [0.0, 0.6],
+    [-0.62, 0.0],
+];
+/// Its tilt about the level and the upright axis, and its turn, degrees.
+const TURNS_DEG: [[f64; 3]; 5] =
+    [[0.0, 0.0, 4.0], [26.0, 0.0, -6.0], [-26.0, 0.0, 8.0], [0.0, 26.0, 0.0], [0.0, -26.0, -10.0]];
+const POSES: usize = 20;
+/// Noise of the sensor, of 255: without it every picture of a board that is held would be the same, as of a frozen camera.
+const NOISE: f32 = 2.0;
+
+/// A person who holds the board still at one place after the other, over the whole picture, and tilts it each way.
+pub fn held(board: Board, lens: &Lens) -> Hands {
+    let poses: Vec<_> = (0..POSES).map(|k| pose(&board, lens, k)).collect();
+    Box::new(move |now_s| {
+        let at = (now_s / (HELD_S + WAY_S)).max(0.0);
+        let [from, to] = [0, 1].map(|more| poses[(at as usize + more) % POSES]);
+        let share = (at.fract() * (HELD_S + WAY_S) - HELD_S) / WAY_S;
+        from.lerp_slerp(&to, share.clamp(0.0, 1.0))
+    })
+}
+
+/// A pose of the list, as near to its place as the whole board can be seen.
+fn pose(board: &Board, lens: &Lens, k: usize) -> Isometry3<f64> {
+    let [width, height] = lens.size_px.map(|side| side as f64);
+    let side_m = board.corners()[0] as f64 * board.square_m();
+    let far_m = lens.focal_px.x * side_m / (WIDE * width);
+    let [level, upright, turn] = TURNS_DEG[k % TURNS_DEG.len()].map(f64::to_radians);
+    let rotation = UnitQuaternion::from_euler_angles(level, upright, turn);
+    let [x, y] = PLACES[k % PLACES.len()];
+    let at = |share: f64| {
+        let place_px = Vector2::new(0.5 * width * (1.0 + share * x), 0.5 * height * (1.0 + share * y));
+        let middle_m = lens.direction(&place_px)? * far_m;
+        Some(Isometry3::from_parts(Translation3::from(middle_m - rotation * board.middle_m()), rotation))
+    };
+    let inside = |place_px: Vector2<f64>| {
+        (FREE_PX..width - FREE_PX).contains(&place_px.x) && (FREE_PX..height - FREE_PX).contains(&place_px.y)
+    };
+    let most = SQUEEZED * lens.bend.tangent_most();
+    let is_whole = |pose: &Isometry3<f64>| {
+        board.places_m().into_iter().all(|place_m| {
+            let at_m = (pose * nalgebra::Point3::from(place_m)).coords;
+            (at_m.xy() / at_m.z).norm() < most && lens.project(&at_m).is_some_and(inside)
+        })
+    };
+    let shares = (0..=20).rev().map(|k| f64::from(k) / 20.0);
+    let far = Isometry3::from_parts(Translation3::new(0.0, 0.0, far_m), rotation);
+    shares.filter_map(at).find(is_whole).unwrap_or(far)
+}
+
+/// Draws the board in pictures of three bytes a pixel.
+pub(super) struct Drawn {
+    board: Board,
+    portrait: Portrait,
+    picture: Vec<u8>,
+    noise: u32,
+}
+
+impl Drawn {
+    /// Takes some tenths of a second.
+    pub(super) fn new(board: Board, lens: &Lens) -> Self {
+        let [width, height] = lens.size_px;
+        Self { board, portrait: Portrait::new(lens), picture: vec![0; 3 * width * height], noise: 1 }
+    }
+
+    pub(super) fn draw(&mut self, camera_from_board: &Isometry3<f64>) -> &mut [u8] {
+        let greys = self.portrait.draw(&self.board, camera_from_board);
+        for (pixel, grey) in self.picture.chunks_exact_mut(3).zip(greys) {
+            // Numerical Recipes' quick generator: it need not be good.
+            self.noise = self.noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let noise = ((self.noise >> 16) as f32 / 65_536.0 - 0.5) * 2.0 * NOISE;
+            pixel.fill((grey + noise).clamp(0.0, 255.0) as u8);
+        }
+        &mut self.picture
+    }
+}

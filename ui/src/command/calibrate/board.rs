@@ -1,0 +1,34 @@
+//! `nima calibrate board`: a checkerboard for a printer.
+
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use clap::Args;
+use nima_endoscope::{Board, board::Corners};
+
+use crate::command::output;
+
+#[derive(Debug, Args)]
+pub(in crate::command) struct Arguments {
+    /// Inner corners along both sides, one number odd and the other even
+    #[arg(long, value_name = "AxB", default_value = "9x6")]
+    board: Corners,
+    /// Side of a square
+    #[arg(long, value_name = "MM", default_value_t = 10.0)]
+    square_mm: f64,
+    /// Write the drawing to this file
+    #[arg(long, value_name = "F.svg")]
+    out: PathBuf,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let Corners(corners) = arguments.board;
+    let board = Board::new(corners, arguments.square_mm * 1e-3)?;
+    output::check(&arguments.out, &[])?;
+    nima_files::write_atomically(&arguments.out, |file| file.write_all(board.svg().as_bytes()))
+        .with_context(|| format!("cannot write {}", arguments.out.display()))?;
+    output::line(&format!(
+        "{}: print it at 100 %, measure a square, and fix the paper to something flat and stiff",
+        arguments.out.display()
+    ))
+}

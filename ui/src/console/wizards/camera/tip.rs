@@ -1,0 +1,46 @@
+//! The instrument's tip, while it is held still at a corner of the board.
+
+use std::collections::VecDeque;
+
+use nalgebra::Vector3;
+
+/// Time between two places that are kept, s, and how long they are, s.
+const STEP_S: f64 = 0.01;
+const KEPT_S: f64 = 0.4;
+/// Held for so long, s, and no place farther from the mean than this, m.
+const HELD_S: f64 = 0.3;
+const STILL_M: f64 = 0.3e-3;
+
+#[derive(Debug, Default)]
+pub(super) struct Tip {
+    kept: VecDeque<(f64, Vector3<f64>)>,
+}
+
+impl Tip {
+    pub(super) fn note(&mut self, t_s: f64, tip_m: Vector3<f64>) {
+        if !tip_m.iter().all(|x| x.is_finite()) {
+            self.kept.clear();
+            return;
+        }
+        match self.kept.back() {
+            // A loop that was started again begins at zero.
+            Some((last_s, _)) if t_s < *last_s => self.kept.clear(),
+            Some((last_s, _)) if t_s < last_s + STEP_S => return,
+            _ => {}
+        }
+        self.kept.push_back((t_s, tip_m));
+        while self.kept.front().is_some_and(|(first_s, _)| *first_s < t_s - KEPT_S) {
+            self.kept.pop_front();
+        }
+    }
+
+    /// Its place, m; `None` while it moves.
+    pub(super) fn still_m(&self) -> Option<Vector3<f64>> {
+        let (first, last) = (self.kept.front()?, self.kept.back()?);
+        if last.0 - first.0 < HELD_S {
+            return None;
+        }
+        let mean_m = self.kept.iter().map(|(_, tip_m)| tip_m).sum::<Vector3<f64>>() / self.kept.len() as f64;
+        self.kept.iter().all(|(_, tip_m)| (tip_m - mean_m).norm() < STILL_M).then_some(mean_m)
+    }
+}

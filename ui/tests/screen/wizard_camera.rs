@@ -1,0 +1,134 @@
+//! The camera's wizard, walked by accessible names with an emulated endoscope before which a board is held.
+
+use std::{
+    path::Path,
+    sync::{Arc, Mutex},
+};
+
+use nalgebra::Isometry3;
+use nima_console::console::{Options, settings::Kept, wizards::Which};
+use nima_endoscope::Board;
+use nima_machine::config::{RigConfig, RigFile};
+use nima_tests::plan;
+use nima_world::{
+    Plan,
+    emulators::{
+        Serving,
+        endoscope::{Emulated, Hands, camera_of, held, usual},
+    },
+    scene::Scene,
+};
+
+use crate::bench::{Console, can_press, pick, read, shown, shows, until, wait};
+
+/// A small picture, so that a busy machine keeps up.
+const SIZE_PX: [usize; 2] = [640, 360];
+
+/// An emulated endoscope, the board's place before it, and the poses in which a person holds it.
+struct Bench {
+    _serving: Serving,
+    pose: Arc<Mutex<Isometry3<f64>>>,
+    poses: Hands,
+    url: String,
+}
+
+const FOCAL_PX: f64 = 380.0;
+const CENTRE_PX: [f64; 2] = [327.0, 174.0];
+
+impl Bench {
+    fn new() -> Self {
+        let scene = Scene::load("peg_transfer").unwrap();
+        let mut settings = usual(&scene);
+        (settings.size_px, settings.focal_px, settings.k1) = (SIZE_PX, FOCAL_PX, -0.25);
+        settings.centre_px = Some(CENTRE_PX);
+        let camera = camera_of(&settings);
+        let board = Board::new([9, 6], 0.01).unwrap();
+        let mut poses = held(board, &camera.lens);
+        let pose = Arc::new(Mutex::new(poses(0.0)));
+        let shown = Arc::clone(&pose);
+        let emulated = Emulated { camera, quality: 90, ..Emulated::of(&scene, 0) };
+        let serving = emulated.with_board(board, Box::new(move |_| *shown.lock().unwrap())).serve().unwrap();
+        Self { url: serving.endpoint.clone(), _serving: serving, pose, poses }
+    }
+
+    /// The board is held at another place.
+    fn hold(&mut self, number: u32) {
+        *self.pose.lock().unwrap() = (self.poses)(2.2 * f64::from(number) + 0.5);
+    }
+
+    fn console(&self, folder: &Path, size: [f32; 2]) -> (Console, String) {
+        let mut file = RigFile::of("simulated").unwrap();
+        file.set("endoscope.url", self.url.as_str());
+        let path = folder.join("theatre.toml");
+        let rig = file.save(&path).unwrap();
+        let name = path.display().to_string();
+        let plan = Plan { rig, ..plan("peg_transfer") };
+        let (kept, running) = (folder.to_path_buf(), name.clone());
+        let console = shown(&plan, size, move |app| {
+            let mut settings = Kept::open(&kept);
+            settings.now.toured = true;
+            let options = Options { wizard: Some(Which::Camera), ..Options::default() };
+            app.with_settings(settings).with_rig_name(running).with_options(options)
+        });
+        (console, name)
+    }
+}
+
+#[test]
+fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut bench = Bench::new();
+    let (mut console, rig) = bench.console(folder.path(), [1280.0, 720.0]);
+    until(&mut console, "any tick", |_| true);
+    read(&mut console, "Picture: fine");
+    pick(&mut console, "Next");
+    read(&mut console, "Hold the board straight before the lens");
+    assert!(!can_press(&console, "Next"), "there are no views yet");
+    for number in 0..18 {
+        bench.hold(number);
+        read(&mut console, &format!("{} taken;", number + 1));
+    }
+    read(&mut console, "All views are taken");
+    pick(&mut console, "Remove the last view");
+    read(&mut console, "18 taken;");
+    pick(&mut console, "Next");
+    read(&mut console, "Accepted: it predicts views that were left out");
+    pick(&mut console, "Next");
+    // The board lies still, but the tip stays where it is: that is no place.
+    for touched in 0..4 {
+        read(&mut console, "Touch the marked corner with the tip");
+        pick(&mut console, "Tip is at it");
+        read(&mut console, &format!("{} corners touched", touched + 1));
+    }
+    read(&mut console, "beside the board");
+    assert!(!can_press(&console, "Next"));
+    pick(&mut console, "Lay it anew");
+    read(&mut console, "0 corners touched");
+    pick(&mut console, "Next");
+    read(&mut console, "the place is not known");
+    assert!(
+        RigConfig::load(&rig).unwrap().endoscope.unwrap().camera.is_none(),
+        "nothing is changed before it is saved"
+    );
+    pick(&mut console, "Save and use");
+    wait(&mut console, "saved", |console| shows(console, "Saved in "));
+    let camera = RigConfig::load(&rig).unwrap().endoscope.unwrap().camera.unwrap();
+    let [x, y] = camera.centre_px.unwrap();
+    for (found, real) in [(camera.focal_px, FOCAL_PX), (x, CENTRE_PX[0]), (y, CENTRE_PX[1])] {
+        assert!((found - real).abs() < 0.005 * FOCAL_PX, "{found} {real}");
+    }
+    assert_eq!((camera.size_px, camera.position_m), (SIZE_PX, None));
+    pick(&mut console, "Put the values of before back");
+    read(&mut console, "The values of before are in the rig file again");
+    assert!(RigConfig::load(&rig).unwrap().endoscope.unwrap().camera.is_none());
+}
+
+#[test]
+fn without_a_picture_the_wizard_says_what_it_needs() {
+    let folder = tempfile::tempdir().unwrap();
+    let bench = Bench { url: "http://127.0.0.1:1/".to_owned(), ..Bench::new() };
+    let (mut console, _) = bench.console(folder.path(), [1280.0, 720.0]);
+    until(&mut console, "any tick", |_| true);
+    read(&mut console, "no picture has come");
+    assert!(!can_press(&console, "Next"));
+}

@@ -18,6 +18,10 @@ const BESIDE_PX: f64 = 1.5;
 /// Least difference between both sides, in contrasts of the ends.
 const DIFFERENCE: f64 = 0.3;
 
+/// Cosine of the angle between the ways to both neighbours in a row, at most; and one way from corner to corner in lengths of the one before.
+const OPPOSITE: f64 = -0.7;
+const ALIKE: std::ops::RangeInclusive<f64> = 0.5..=2.0;
+
 /// A way along the edge between two squares.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
@@ -82,7 +86,7 @@ pub(crate) fn grids(picture: &Grey, saddles: &[Saddle]) -> Vec<Cells> {
         for index in cells.values() {
             used[*index] = true;
         }
-        let cells = from_zero(&pruned(cells));
+        let cells = from_zero(&pruned(trimmed(pruned(cells))));
         if cells.len() > 3 {
             all.push(cells);
         }
@@ -104,11 +108,17 @@ fn grown(saddles: &[Saddle], edges: &[Vec<Edge>], seed: usize) -> Option<Growing
     // Along columns the right-hand side is light at the seed; the row's way is the one to the right of it.
     let along =
         |light: bool| edges[seed].iter().filter(move |edge| edge.light_right == light).map(|edge| way(seed, edge.to));
-    if along(true).count() != 2 {
+    let [columns, rows] = [true, false].map(|light| along(light).collect::<Vec<_>>());
+    // Of a saddle at the border of the board a farther one may be taken for a neighbour: then rows and columns could change places.
+    let are_opposite = |ways: &[Vector2<f64>]| match ways {
+        [a, b] => a.dot(b) < OPPOSITE * a.norm() * b.norm(),
+        _ => false,
+    };
+    if !are_opposite(&columns) || !are_opposite(&rows) {
         return None;
     }
-    let column = along(true).next()?;
-    let row = along(false).max_by(|a, b| column.perp(a).total_cmp(&column.perp(b)))?;
+    let column = columns[0];
+    let row = rows.into_iter().find(|row| column.perp(row) > 0.0)?;
     let mut cells = Growing::from([([0, 0], seed)]);
     let mut placed = BTreeMap::from([(seed, [0, 0])]);
     let mut fronts = VecDeque::from([Front { index: seed, cell: [0, 0], ways: [column, row] }]);
@@ -117,6 +127,9 @@ fn grown(saddles: &[Saddle], edges: &[Vec<Edge>], seed: usize) -> Option<Growing
         for edge in &edges[index] {
             let step = way(index, edge.to);
             let axis = usize::from(edge.light_right != is_even);
+            if !ALIKE.contains(&(step.norm() / ways[axis].norm())) {
+                continue;
+            }
             let forward = step.dot(&ways[axis]) > 0.0;
             let mut next = cell;
             next[axis] += if forward { 1 } else { -1 };
@@ -146,6 +159,31 @@ fn pruned(mut cells: Growing) -> Growing {
         }
         for cell in loose {
             cells.remove(&cell);
+        }
+    }
+}
+
+/// Without rows and columns at the border of which less than half is there: a board has whole ones, and noise beside it has not.
+fn trimmed(mut cells: Growing) -> Growing {
+    loop {
+        let before = cells.len();
+        for axis in 0..2 {
+            let ends = |cells: &Growing| {
+                let along = || cells.keys().map(|cell| cell[axis]);
+                along().min().zip(along().max())
+            };
+            let across = cells.keys().map(|cell| cell[1 - axis]);
+            let length =
+                across.clone().max().zip(across.min()).map_or(0, |(most, least)| most.abs_diff(least) as usize + 1);
+            let Some((first, last)) = ends(&cells) else { return cells };
+            for end in [first, last] {
+                if 2 * cells.keys().filter(|cell| cell[axis] == end).count() < length {
+                    cells.retain(|cell, _| cell[axis] != end);
+                }
+            }
+        }
+        if cells.len() == before {
+            return cells;
         }
     }
 }

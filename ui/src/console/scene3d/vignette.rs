@@ -21,6 +21,13 @@ pub(super) fn share_of_width(rect: Rect) -> f32 {
     (2.0 * dark / rect.width().max(1.0)).clamp(0.0, 1.0)
 }
 
+/// Whether a place, with so much room around it, is in the undimmed part of the picture.
+#[cfg(test)]
+pub(super) fn shows(rect: Rect, place: Pos2, room: f32) -> bool {
+    let [clear, _] = radii(rect);
+    rect.shrink(room).contains(place) && (place - rect.center()).length() + room <= clear
+}
+
 /// Covers what an endoscope does not show.
 pub(super) fn paint(painter: &Painter, rect: Rect) {
     let [clear, dark] = radii(rect);

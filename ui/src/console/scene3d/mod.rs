@@ -268,11 +268,12 @@ fn triangles(
     let (eye_m, right) = (camera.eye_m(), camera.right());
     let style = stage::Style { eye_m: &eye_m, right: &right, fine: smooth, shadows: extras.shadows };
     let is_round = view.look == Look::Endoscope && extras.round;
+    // What a round picture covers is neither drawn nor drawn again.
+    let part = if is_round { vignette::part_of(rect) } else { rect };
     let frame = gl::Frame {
-        share: if is_round { vignette::share_of_width(rect) } else { 1.0 },
         mesh: stage::build(&live.scene, arms, wanted.shown.as_ref(), style),
         dims: if extras.depth { camera.dims() } else { [0.0; 2] },
-        clip_from_workspace: camera.clip_from_workspace(rect.aspect_ratio()),
+        clip_from_workspace: vignette::part_from_whole(part, rect) * camera.clip_from_workspace(rect.aspect_ratio()),
         eye_m,
         shafts_m: arms.iter().map(|arm| [arm.pose.tip_m, arm.trocar_m]).collect(),
         backdrop: [theme::FIELD_FAR, theme::FIELD_NEAR],
@@ -281,7 +282,7 @@ fn triangles(
     let paint = egui_glow::CallbackFn::new(move |info, painter| {
         renderer.paint(painter.gl(), &info.viewport_in_pixels(), &frame);
     });
-    let callback = egui::PaintCallback { rect, callback: Arc::new(paint) };
+    let callback = egui::PaintCallback { rect: part, callback: Arc::new(paint) };
     view.drawn = Some((wanted, callback.clone()));
     Some(callback)
 }

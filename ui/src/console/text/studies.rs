@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use nima_score::{LEAST_TRIALS, LearningCurve, Shape};
 use nima_user_study::{Comparison, Done, Excludes, Label, Phase, Questionnaire, Step, TrialId};
 
 pub(in crate::console) const OPEN: &str = "User studies";
@@ -134,6 +135,9 @@ pub(in crate::console) const REPORT: &str = "Report";
 pub(in crate::console) const REPORT_HOVER: &str = "The whole analysis as one page; a study that is blind stays blind";
 pub(in crate::console) const REPORT_WRITE: &str = "Write the report";
 pub(in crate::console) const REPORT_WRITING: &str = "Writing the report";
+pub(in crate::console) const REPORT_OPEN: &str = "Open the report";
+pub(in crate::console) const REPORT_NOT_OPENED: &str =
+    "No program of this desktop opens it: open the file report.html in the study's folder yourself";
 pub(in crate::console) const UNBLINDING: &str = "Unblinding";
 pub(in crate::console) const UNBLINDING_HOVER: &str =
     "Shows what each label stands for; name, reason and time are kept in the journal";
@@ -156,12 +160,14 @@ pub(in crate::console) const KEYS_SEARCH: &str = "X marks a place, D ends the tr
 pub(in crate::console) const BREAK: &str = "Break";
 pub(in crate::console) const BREAK_OVER: &str = "The break may end";
 pub(in crate::console) const BREAK_END: &str = "End the break";
+pub(in crate::console) const BREAK_MAY_END: &str = "It may last longer";
+pub(in crate::console) const BREAK_BACK: &str = "Back: the break did not happen, and stays the next step";
 pub(in crate::console) const BREAK_DONE: &str = "The break is over";
 pub(in crate::console) const SUBMIT: &str = "Submit";
 pub(in crate::console) const SUBMITTED: &str = "The answers are kept";
 pub(in crate::console) const RATE: &str = "Click or drag on each line to rate it";
 pub(in crate::console) const PAIRS: &str = "Of each pair, choose what contributed more to the workload";
-pub(in crate::console) const SUS_ENDS: &str = "1 strongly disagree, 5 strongly agree";
+pub(in crate::console) const AGREE: [&str; 2] = ["Strongly disagree", "Strongly agree"];
 pub(in crate::console) const FREE_TEXT: &str = "What do you want to tell us?";
 pub(in crate::console) const FREE_TEXT_HINT: &str = "It may stay empty";
 pub(in crate::console) const NOT_ANSWERED: &str = "not yet";
@@ -341,6 +347,11 @@ pub(in crate::console) fn clock(seconds: f64) -> String {
     format!("{}:{:02}", whole / 60, whole % 60)
 }
 
+/// How long a break lasts.
+pub(in crate::console) fn break_least(least_s: f64) -> String {
+    format!("Until it may end; the study asks for {} at least", clock(least_s))
+}
+
 /// Time of a trial, of its limit.
 pub(in crate::console) fn time_of(seconds: f64, limit_s: f64) -> String {
     format!("{} of {}", clock(seconds), clock(limit_s))
@@ -364,6 +375,19 @@ pub(in crate::console) fn statement(number: usize) -> String {
 /// Trials of a learning curve.
 pub(in crate::console) fn curve(participant: &str, practice: usize, trials: usize) -> String {
     format!("Learning of {participant}: {practice} trials of practice, {trials} trials completed")
+}
+
+/// What is drawn of them.
+pub(in crate::console) fn curve_marks(curve: Option<&LearningCurve>) -> String {
+    let marks = "Rings: practice. Discs: trials that count.";
+    match curve {
+        Some(curve) if curve.shape == Shape::Flat => format!("{marks} Line: {:.0} s, no learning", curve.asymptote_s),
+        Some(curve) => {
+            let seen = if curve.plateau_seen { "reached" } else { "not reached yet" };
+            format!("{marks} Line: fitted curve, plateau {:.0} s ({seen})", curve.asymptote_s)
+        }
+        None => format!("{marks} A curve needs {LEAST_TRIALS} completed trials"),
+    }
 }
 
 /// Facts of a study: its rig, who has finished, whether it is blind.

@@ -195,7 +195,7 @@ fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_fro
     }
     set(&mut window, "Participants", 6.0);
     set(&mut window, "Trials of each condition", 1.0);
-    choose(&mut window, "Primary measure", "path_length_m_right: How far the tip moved");
+    choose(&mut window, "Primary measure", "idle_time_s: How long both hands rested");
     choose(&mut window, "Add a measure", "drops: How often a ring was dropped");
     choose(&mut window, "Add a measure", "drops: How often a ring was dropped");
     let rules = window.query_all_by_label_contains(": leaves out").count();
@@ -221,7 +221,7 @@ fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_fro
     let place = folder.path().join("studies/two-rings");
     let study = Study::read(&place).unwrap();
     let plan = study.plan();
-    assert_eq!(plan.primary, "path_length_m_right");
+    assert_eq!(plan.primary, "idle_time_s");
     assert_eq!(plan.secondary.iter().filter(|key| *key == "drops").count(), 1, "{:?}", plan.secondary);
     assert!(plan.practice.is_none() && !plan.record, "{plan:?}");
     let [rule] = plan.exclusion.as_slice() else { panic!("{:?}", plan.exclusion) };

@@ -26,6 +26,7 @@
 #![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod applicable;
 mod catalogue;
 mod economy;
 mod ellipsoid;

@@ -26,7 +26,8 @@ use crate::{
     recorder::Attached,
     topics::{
         ALARM_LINE, ARROWS_TOPIC, FRAMES_TOPIC, HAPPENING_LINE, HAPPENINGS_TOPIC, LINE, LOG_TOPIC, MARK_LINE,
-        RINGS_TOPIC, happenings_channel, line, plot::Plot, plots, redrawn, rings, rings_channel, rings_of,
+        MARKS_TOPIC, RINGS_TOPIC, happenings_channel, line, marks, marks_channel, marks_of, plot::Plot, plots, redrawn,
+        rings, rings_channel, rings_of,
     },
 };
 
@@ -139,6 +140,7 @@ enum Topic {
     Frames(Channel),
     Arrows(Channel),
     Rings(Channel),
+    Marks(Channel),
     Happenings(Channel),
     Log(Channel),
 }
@@ -150,6 +152,7 @@ impl Topic {
             FRAMES_TOPIC => Some(Self::Frames(out.channel(name, foxglove::encoding::<FrameTransforms>())?)),
             ARROWS_TOPIC => Some(Self::Arrows(out.channel(name, foxglove::encoding::<SceneUpdate>())?)),
             RINGS_TOPIC => Some(Self::Rings(rings_channel(out)?)),
+            MARKS_TOPIC => Some(Self::Marks(marks_channel(out)?)),
             HAPPENINGS_TOPIC => Some(Self::Happenings(happenings_channel(out)?)),
             LOG_TOPIC => Some(Self::Log(out.channel(name, foxglove::encoding::<Log>())?)),
             _ => plots().into_iter().find(|(topic, ..)| topic == name).map(|(topic, names, forces)| Self::Numbers {
@@ -199,6 +202,9 @@ impl Topic {
             }
             Self::Rings(channel) => {
                 out.message(*channel, time_ns, &rings(time_ns, &rings_of(data)).encode_to_vec())?;
+            }
+            Self::Marks(channel) => {
+                out.message(*channel, time_ns, &marks(time_ns, &marks_of(data)).encode_to_vec())?;
             }
             Self::Happenings(channel) => {
                 if let Some(happening) = objects::decode(data) {

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::{
     recorder::Attached,
-    topics::{ARROWS_TOPIC, FORCES, FRAMES_TOPIC, LOG_TOPIC, OF_GATES, RINGS_TOPIC, gates},
+    topics::{ARROWS_TOPIC, FORCES, FRAMES_TOPIC, LOG_TOPIC, MARKS_TOPIC, OF_GATES, RINGS_TOPIC, gates},
 };
 
 /// Names of the attachments.
@@ -77,7 +77,7 @@ fn foxglove(sides: &[Side]) -> Value {
     }
     panels.insert(
         "3D!scene".to_owned(),
-        json!({"followMode": "follow-none", "topics": {ARROWS_TOPIC: {"visible": true}, FRAMES_TOPIC: {"visible": true}, RINGS_TOPIC: {"visible": true}}}),
+        json!({"followMode": "follow-none", "topics": {ARROWS_TOPIC: {"visible": true}, FRAMES_TOPIC: {"visible": true}, RINGS_TOPIC: {"visible": true}, MARKS_TOPIC: {"visible": true}}}),
     );
     panels.insert("RosOut!log".to_owned(), json!({"topicToRender": LOG_TOPIC}));
     columns.push(split("column", vec!["3D!scene".into(), "RosOut!log".into()]));

@@ -1,4 +1,4 @@
-//! Objects of a scene in a session: where rings are, what jaws do, and what happens to them.
+//! Objects of a scene in a session: where rings are, what jaws do, what happens to them, and how far the task has come.
 //!
 //! They come from a simulation beside the loop and are no input of it, so the journal and its replay know nothing of them. What is recorded
 //! is told by an [`ObjectSource`]; [`happenings`], [`openings`] and [`at`] read it again.
@@ -17,7 +17,10 @@ pub(crate) use happening::{SCHEMA, SCHEMA_NAME, decode, encode};
 
 use crate::{
     plotted::{beginning_ns, topic},
-    topics::{HAPPENINGS_TOPIC, JAWS_PLOT, RINGS_TOPIC, columns::Columns, jaws_of, rings_of},
+    topics::{
+        HAPPENINGS_TOPIC, JAWS_PLOT, MARKS_TOPIC, RINGS_TOPIC, TASK_TOPIC, columns::Columns, jaws_of, marks_of,
+        rings_of, standing_of,
+    },
 };
 
 /// A moment on the screen shows objects that are at most so old, ns.
@@ -38,6 +41,49 @@ pub struct Jaws {
     pub touched: [bool; 4],
 }
 
+/// A place that was marked as a lump. Frame `world`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mark {
+    /// Where, on the tissue at rest, m.
+    pub at_m: Vector3<f64>,
+    /// Whether a lump lies there.
+    pub is_true: bool,
+}
+
+/// The loop of an instrument, and the wire.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WireLoop {
+    /// It touches the wire.
+    pub touches: bool,
+    /// The wire goes through it.
+    pub on_wire: bool,
+}
+
+/// How far the task of a scene has come, at one time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Standing {
+    /// The trial is over.
+    pub ended: bool,
+    /// Share of the way along the wire that is done, 0 to 1.
+    pub share: f64,
+    /// How many places were marked, and how many different lumps are among them.
+    pub marked: u32,
+    /// See `marked`.
+    pub found: u32,
+    /// How often loops touched the wire.
+    pub touches: u32,
+    /// How often rings were handed over in mid-air, put on pegs, and dropped, in view or out of it.
+    pub passed: u32,
+    /// See `passed`.
+    pub placed: u32,
+    /// See `passed`.
+    pub dropped: u32,
+    /// The loop of each instrument.
+    pub loops: [WireLoop; SIDES],
+    /// The places that were marked, in their order; the first ones, if there are very many.
+    pub marks: Vec<Mark>,
+}
+
 /// The objects of a scene at one time. Frame `world`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Objects {
@@ -47,6 +93,8 @@ pub struct Objects {
     pub rings: Vec<Option<Isometry3<f64>>>,
     /// Jaws of each side; `None`: an instrument without jaws, or none.
     pub jaws: [Option<Jaws>; SIDES],
+    /// How far the task has come; `None`: not told.
+    pub task: Option<Standing>,
 }
 
 /// Who tells a recording of objects: a simulation. It is asked on the recorder's thread and must not wait.
@@ -63,12 +111,12 @@ pub fn are_told(reader: &Reader) -> bool {
     has(reader, HAPPENINGS_TOPIC)
 }
 
-/// Whether rings or jaws are recorded in this session.
+/// Whether rings, jaws or the state of a task are recorded in this session.
 pub fn are_shown(reader: &Reader) -> bool {
     Side::ALL
         .into_iter()
         .map(|side| topic(side, JAWS_PLOT))
-        .chain([RINGS_TOPIC.to_owned()])
+        .chain([RINGS_TOPIC, TASK_TOPIC].map(str::to_owned))
         .any(|name| has(reader, &name))
 }
 
@@ -114,12 +162,12 @@ pub fn openings(reader: &Reader, side: Side, times_ns: Range<u64>) -> Result<Vec
 /// [`ReadError`] if the session cannot be read.
 pub fn at(reader: &Reader, begin_ns: u64, time_ns: u64) -> Result<Option<Objects>, ReadError> {
     let jaws_topics = Side::ALL.map(|side| topic(side, JAWS_PLOT));
-    let topics = [RINGS_TOPIC, &jaws_topics[0], &jaws_topics[1]];
+    let topics = [RINGS_TOPIC, MARKS_TOPIC, TASK_TOPIC, &jaws_topics[0], &jaws_topics[1]];
     let place = |id| {
         let channel = reader.channels().iter().find(|channel| channel.id == id)?;
         topics.iter().position(|topic| *topic == channel.topic)
     };
-    let mut newest = [None, None, None];
+    let mut newest = [None, None, None, None, None];
     for message in reader.messages(&topics, time_ns.saturating_sub(STALE_NS)..time_ns.saturating_add(1)) {
         let message = message?;
         if let Some(place) = place(message.channel()) {
@@ -127,13 +175,16 @@ pub fn at(reader: &Reader, begin_ns: u64, time_ns: u64) -> Result<Option<Objects
         }
     }
     let Some(last_ns) = newest.iter().flatten().map(Message::log_time_ns).max() else { return Ok(None) };
-    let [rings, jaws @ ..] = &newest;
+    let [rings, marks, task, jaws @ ..] = &newest;
     let read =
         |(message, topic): (&Option<Message>, &String)| jaws_of(Columns::of(topic)?.read(message.as_ref()?.data())?);
+    let standing = || standing_of(Columns::of(TASK_TOPIC)?.read(task.as_ref()?.data())?);
+    let marks = marks.as_ref().map(|marks| marks_of(marks.data())).unwrap_or_default();
     let mut objects = Objects {
         t_s: last_ns.saturating_sub(begin_ns) as f64 / 1e9,
         rings: rings.as_ref().map(|rings| rings_of(rings.data())).unwrap_or_default(),
         jaws: [None; SIDES],
+        task: standing().map(|standing| Standing { marks, ..standing }),
     };
     for (side, one) in Side::ALL.into_iter().zip(jaws.iter().zip(&jaws_topics)) {
         objects.jaws[side.index()] = read(one);

@@ -20,7 +20,8 @@ use nima_recording::{
 };
 
 pub(crate) use objects::{
-    HAPPENINGS_TOPIC, JAWS_PLOT, RINGS_TOPIC, happenings_channel, jaws_of, rings, rings_channel, rings_of,
+    HAPPENINGS_TOPIC, JAWS_PLOT, MARKS_TOPIC, RINGS_TOPIC, TASK_TOPIC, happenings_channel, jaws_of, marks,
+    marks_channel, marks_of, rings, rings_channel, rings_of, standing_of,
 };
 pub(crate) use scene::{ARROWS_TOPIC, FRAMES_TOPIC};
 pub(crate) use timing::{TIMES, TIMING_TOPIC};
@@ -33,7 +34,7 @@ use crate::{
 
 use self::{
     identification::Identified,
-    objects::{JAWS, OfObjects},
+    objects::{JAWS, OfObjects, TASK},
     plot::Plot,
     scene::Scene,
     timing::Times,
@@ -116,7 +117,8 @@ pub(crate) fn plots() -> Vec<(String, Vec<String>, bool)> {
         })
     };
     let timing = (TIMING_TOPIC.to_owned(), timing::names(), false);
-    Side::ALL.into_iter().flat_map(of_side).chain([timing]).collect()
+    let task = (TASK_TOPIC.to_owned(), TASK.map(str::to_owned).to_vec(), false);
+    Side::ALL.into_iter().flat_map(of_side).chain([timing, task]).collect()
 }
 
 pub(crate) fn gates() -> impl Iterator<Item = &'static str> {

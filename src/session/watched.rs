@@ -1,5 +1,5 @@
 //! What a screen elsewhere is told of a loop: every event, a tick of each side every few milliseconds, and once a bundle the objects of the
-//! scene.
+//! scene and how far its task has come.
 //!
 //! A bundle of moments can be read without those before it, so that a screen may come late, and miss some.
 
@@ -11,17 +11,18 @@ use nima_machine::{
 
 use crate::{
     codec::{Columns, Put, Sink, Source, Take, Unpacked, Wrong, number, record, take_number},
-    objects::{Jaws, Objects},
+    objects::{Jaws, Mark, Objects, Standing, WireLoop},
 };
 
 /// Version of the bundles; another one is refused.
-const VERSION: u8 = 2;
+const VERSION: u8 = 3;
 /// Time between two ticks of a bundle, s: what a trace on a screen can show.
 const STEP_S: f64 = 0.005;
 /// Most moments of a bundle, and most events of a moment.
 const MOST: u64 = 1024;
-/// Most rings of a bundle.
+/// Most rings of a bundle, and most marks.
 const RINGS_MOST: u64 = 64;
+const MARKS_MOST: u64 = 64;
 
 /// What happened up to a tick.
 #[derive(Clone, Debug)]
@@ -164,7 +165,7 @@ const OF_JAWS: usize = 8;
 
 fn put_objects(bytes: &mut Vec<u8>, objects: Option<&Objects>) {
     number(bytes, u64::from(objects.is_some()));
-    let Some(Objects { t_s, rings, jaws }) = objects else { return };
+    let Some(Objects { t_s, rings, jaws, task }) = objects else { return };
     number(bytes, t_s.to_bits());
     let rings = &rings[..rings.len().min(RINGS_MOST as usize)];
     number(bytes, rings.len() as u64);
@@ -189,6 +190,57 @@ fn put_objects(bytes: &mut Vec<u8>, objects: Option<&Objects>) {
     for touched in jaws.iter().flatten().map(|jaws| jaws.touched) {
         bytes.extend(touched.map(u8::from));
     }
+    put_standing(bytes, task.as_ref());
+}
+
+fn put_standing(bytes: &mut Vec<u8>, standing: Option<&Standing>) {
+    number(bytes, u64::from(standing.is_some()));
+    let Some(standing) = standing else { return };
+    let Standing { ended, share, marked, found, touches, passed, placed, dropped, loops, marks } = standing;
+    number(bytes, share.to_bits());
+    for count in [marked, found, touches, passed, placed, dropped] {
+        number(bytes, u64::from(*count));
+    }
+    bytes.push(u8::from(*ended));
+    bytes.extend(loops.iter().flat_map(|one| [one.touches, one.on_wire].map(u8::from)));
+    let marks = &marks[..marks.len().min(MARKS_MOST as usize)];
+    number(bytes, marks.len() as u64);
+    for Mark { at_m, is_true } in marks {
+        bytes.push(u8::from(*is_true));
+        at_m.iter().for_each(|value| bytes.extend(value.to_le_bytes()));
+    }
+}
+
+fn take_standing(from: &mut &[u8]) -> Result<Option<Standing>, Wrong> {
+    if take_number(from)? == 0 {
+        return Ok(None);
+    }
+    let share = f64::from_bits(take_number(from)?);
+    let mut counts = [0; 6];
+    for count in &mut counts {
+        *count = u32::try_from(take_number(from)?).map_err(|_| Wrong::NoSuchValue)?;
+    }
+    let [marked, found, touches, passed, placed, dropped] = counts;
+    let ended = take_byte(from)? != 0;
+    let mut loops = [WireLoop::default(); SIDES];
+    for one in &mut loops {
+        *one = WireLoop { touches: take_byte(from)? != 0, on_wire: take_byte(from)? != 0 };
+    }
+    let count = take_number(from)?;
+    if count > MARKS_MOST {
+        return Err(Wrong::Long);
+    }
+    let mark = |from: &mut &[u8]| -> Result<Mark, Wrong> {
+        Ok(Mark { is_true: take_byte(from)? != 0, at_m: vector(&take_numbers::<3>(from)?) })
+    };
+    let marks = (0..count).map(|_| mark(from)).collect::<Result<_, Wrong>>()?;
+    Ok(Some(Standing { ended, share, marked, found, touches, passed, placed, dropped, loops, marks }))
+}
+
+fn take_byte(from: &mut &[u8]) -> Result<u8, Wrong> {
+    let (byte, rest) = from.split_first().ok_or(Wrong::Short)?;
+    *from = rest;
+    Ok(*byte)
 }
 
 fn take_objects(from: &mut &[u8]) -> Result<Option<Objects>, Wrong> {
@@ -222,7 +274,8 @@ fn take_objects(from: &mut &[u8]) -> Result<Option<Objects>, Wrong> {
             *place = *byte != 0;
         }
     }
-    Ok(Some(Objects { t_s, rings, jaws }))
+    let task = take_standing(from)?;
+    Ok(Some(Objects { t_s, rings, jaws, task }))
 }
 
 fn vector(of: &[f64]) -> Vector3<f64> {
@@ -231,15 +284,16 @@ fn vector(of: &[f64]) -> Vector3<f64> {
 
 /// So many numbers, if they are there.
 fn take_some<const N: usize>(from: &mut &[u8]) -> Result<Option<[f64; N]>, Wrong> {
-    if take_number(from)? == 0 {
-        return Ok(None);
-    }
+    if take_number(from)? == 0 { Ok(None) } else { take_numbers(from).map(Some) }
+}
+
+fn take_numbers<const N: usize>(from: &mut &[u8]) -> Result<[f64; N], Wrong> {
     let mut numbers = [0.0; N];
     for place in &mut numbers {
         let (first, rest) = from.split_first_chunk().ok_or(Wrong::Short)?;
         (*place, *from) = (f64::from_le_bytes(*first), rest);
     }
-    Ok(Some(numbers))
+    Ok(numbers)
 }
 
 /// An event, and the number of its moment, which is below `rows`.
@@ -306,14 +360,23 @@ mod tests {
         (bundles, ticks, events)
     }
 
-    /// Two rings of which one is lost, and one pair of jaws.
+    /// Two rings of which one is lost, one pair of jaws, two marks, and a loop on a wire.
     fn objects(t_s: f64) -> Objects {
         let turn = UnitQuaternion::from_euler_angles(t_s, 0.2, -t_s);
         let ring = Isometry3::from_parts(Translation3::new(t_s, 0.5, -0.25), turn);
         let force_n = Vector3::new(1.0, t_s, 3.0);
         let jaws =
             Jaws { opening_rad: 0.5, opens_n: t_s, force_n, torque_nm: -force_n, touched: [true, false, true, false] };
-        Objects { t_s, rings: vec![Some(ring), None], jaws: [Some(jaws), None] }
+        let mark = |x, is_true| Mark { at_m: Vector3::new(x, t_s, 0.5), is_true };
+        let task = Standing {
+            share: t_s,
+            marked: 2,
+            dropped: 3,
+            loops: [WireLoop { touches: false, on_wire: true }, WireLoop { touches: true, on_wire: false }],
+            marks: vec![mark(0.25, true), mark(-0.5, false)],
+            ..Standing::default()
+        };
+        Objects { t_s, rings: vec![Some(ring), None], jaws: [Some(jaws), None], task: Some(task) }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, fmt};
 
-use nima_score::{Criterion, Feedback, MEASURES, Side, TaskFile};
+use nima_score::{Criterion, Definition, Feedback, MEASURES, Side, TaskFile};
 use serde::{Deserialize, Serialize};
 
 use crate::{Condition, ExclusionRule, Label, Questionnaire, telling};
@@ -169,10 +169,13 @@ pub(crate) fn is_measure(key: &str) -> bool {
 
 /// The keys of all measures, in the order in which they are shown.
 pub(crate) fn measure_keys() -> impl Iterator<Item = String> {
-    MEASURES.iter().flat_map(|definition| {
-        let of = |side: Side| format!("{}_{}", definition.id, side.name());
-        if definition.per_hand { Side::ALL.map(of).to_vec() } else { vec![definition.id.to_owned()] }
-    })
+    MEASURES.iter().flat_map(|definition| keys_of(definition, &Side::ALL))
+}
+
+/// The keys of a measure: one for each of these hands, if it is measured for each.
+pub fn keys_of(definition: &Definition, hands: &[Side]) -> Vec<String> {
+    let of = |side: &Side| format!("{}_{}", definition.id, side.name());
+    if definition.per_hand { hands.iter().map(of).collect() } else { vec![definition.id.to_owned()] }
 }
 
 impl StudyFile {

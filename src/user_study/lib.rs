@@ -66,7 +66,7 @@ pub use condition::Condition;
 pub use entry::{Ending, Entry, Event, Measures, Phase, TrialId};
 pub use error::StudyError;
 pub use exclusion::{Comparison, Excludes, Exclusion, ExclusionRule};
-pub use file::{Breaks, Interrupted, Mistakes, NotReached, Practice, Questionnaires, StudyFile};
+pub use file::{Breaks, Interrupted, Mistakes, NotReached, Practice, Questionnaires, StudyFile, keys_of};
 pub use label::Label;
 pub use learning::Learning;
 pub use plan::{Participant, Plan, Practising, Told};

@@ -128,6 +128,11 @@ impl World {
         world
     }
 
+    /// Where the tip is, m.
+    pub(super) const fn tip_m(&self) -> Vector3<f64> {
+        self.tip_m
+    }
+
     /// Where the instrument is. Its wrist holds the jaws upright.
     pub(super) fn instrument(&self) -> Instrument {
         Instrument {

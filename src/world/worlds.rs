@@ -3,6 +3,7 @@
 //! The tissue of two worlds is the same: contact is local to a tip, so two tips can share it as long as they do not
 //! touch each other. Objects that move are shared by both instruments, and then these touch each other too.
 
+use nalgebra::Vector3;
 use nima_machine::rig::{Inputs, Outputs, Rig, SIDES, Side};
 
 use super::{World, carrying, threading};
@@ -59,6 +60,11 @@ impl Worlds {
             })
         });
         (Self { arms, playing, period_s, outputs: [Outputs::SAFE; SIDES] }, watched)
+    }
+
+    /// Where the tips are, m; those that the scene does not have are nowhere.
+    pub fn tips_m(&self) -> [Option<Vector3<f64>>; SIDES] {
+        self.arms.each_ref().map(|world| world.as_ref().map(World::tip_m))
     }
 
     /// Both instruments among the same objects, period by period.

@@ -91,6 +91,17 @@ fn a_ring_that_snaps_out_of_the_jaws_is_no_fault() {
     assert!(snaps.iter().any(|(_, sizes_n)| fast(sizes_n)), "a ring snaps: {snaps:?}");
 }
 
+/// The left hand holds a ring still and trembles; the right one closes its jaws on it and pulls, after 5.5 s and 7.4 s.
+#[test]
+fn a_hand_that_stands_while_the_other_one_pulls_at_its_ring_is_no_fault() {
+    for (seed, seconds) in [(6, 6.0), (2, 8.0)] {
+        let ran = run("rings", (Mode::Matched, 1.0, 0.3), seed, seconds);
+        assert_eq!(ran.fault, None, "after {} s", ran.seconds);
+        let felt_n = ran.samples[Side::Left.index()].iter().map(|(force_n, _)| force_n.norm()).fold(0.0, f64::max);
+        assert!(felt_n > 1.0, "it pulls: {felt_n} N");
+    }
+}
+
 #[test]
 #[ignore = "figures"]
 fn figures_of_leaps() {

@@ -3,8 +3,8 @@
 use nalgebra::{Isometry3, Translation3};
 use nima_machine::rig::{SIDES, Side};
 use nima_score::Happening;
-use nima_session::objects::{Jaws, ObjectSource, Objects};
-use nima_world::{Moment, Plan, Watched};
+use nima_session::objects::{Jaws, Mark, ObjectSource, Objects, Standing, WireLoop};
+use nima_world::{LoopSeen, MARKS_MAX, Moment, Plan, Training, Watched};
 
 /// A simulation tells its recording of its objects.
 #[derive(Debug)]
@@ -33,7 +33,7 @@ impl ObjectSource for OfSimulation {
 
 /// What a simulation tells of a moment; which instruments have jaws is known.
 pub(crate) fn objects(moment: &Moment, has_jaws: [bool; SIDES]) -> Objects {
-    let Moment { t_s, rings, opening_rad, loads, training: _ } = moment;
+    let Moment { t_s, rings, opening_rad, loads, training } = moment;
     let known = rings.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
     let rings = rings
         .iter()
@@ -50,5 +50,25 @@ pub(crate) fn objects(moment: &Moment, has_jaws: [bool; SIDES]) -> Objects {
             touched: [touching.ring, touching.peg, touching.board, touching.other_instrument],
         });
     }
-    Objects { t_s: *t_s, rings: rings.collect(), jaws }
+    Objects { t_s: *t_s, rings: rings.collect(), jaws, task: Some(standing(training)) }
+}
+
+/// How far a task has come, as a session has it.
+fn standing(training: &Training) -> Standing {
+    let Training { ended, marks, marked, found, loops, touches, share, passed, placed, dropped } = *training;
+    let seen = |LoopSeen { touches, on_wire }| WireLoop { touches, on_wire };
+    let mark = |nima_world::Mark { at_m, is_true }| Mark { at_m, is_true };
+    let marks = marks.into_iter().flatten().map(mark).collect();
+    Standing { ended, share, marked, found, touches, passed, placed, dropped, loops: loops.map(seen), marks }
+}
+
+/// The same as the screen has it.
+pub(crate) fn training(standing: &Standing) -> Training {
+    let Standing { ended, share, marked, found, touches, passed, placed, dropped, loops, ref marks } = *standing;
+    let mut all = [None; MARKS_MAX];
+    for (place, Mark { at_m, is_true }) in all.iter_mut().zip(marks) {
+        *place = Some(nima_world::Mark { at_m: *at_m, is_true: *is_true });
+    }
+    let loops = loops.map(|WireLoop { touches, on_wire }| LoopSeen { touches, on_wire });
+    Training { ended, marks: all, marked, found, loops, touches, share, passed, placed, dropped }
 }

@@ -26,7 +26,8 @@ use crate::{
     objects::{self, kind},
     recorder::JOURNAL_TOPIC,
     topics::{
-        HAPPENING_LINE, HAPPENINGS_TOPIC, LOG_TOPIC, MARK_LINE, RINGS_TOPIC, TIMES, TIMING_TOPIC, columns::Columns,
+        HAPPENING_LINE, HAPPENINGS_TOPIC, LOG_TOPIC, MARK_LINE, MARKS_TOPIC, RINGS_TOPIC, TASK_TOPIC, TIMES,
+        TIMING_TOPIC, columns::Columns,
     },
 };
 use arm::Arm;
@@ -226,7 +227,9 @@ impl<'a> Reading<'a> {
 
     fn all(&mut self, figures: &mut Figures) {
         let topics: Vec<&str> = self.reader.channels().iter().map(|channel| channel.topic.as_str()).collect();
-        let skipped = ["frames", "arrows", "right/poses", "left/poses", RINGS_TOPIC, "right/jaws", "left/jaws"];
+        let drawn = ["frames", "arrows", RINGS_TOPIC, MARKS_TOPIC];
+        let skipped = drawn.into_iter().chain(["right/poses", "left/poses", "right/jaws", "left/jaws", TASK_TOPIC]);
+        let skipped: Vec<&str> = skipped.collect();
         let topics: Vec<&str> = topics.into_iter().filter(|topic| !skipped.contains(topic)).collect();
         for message in self.reader.messages(&topics, 0..u64::MAX) {
             match message {

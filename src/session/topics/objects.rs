@@ -1,4 +1,5 @@
-//! The channels of objects: rings as frames, jaws as named numbers, happenings as JSON and as lines of the log.
+//! The channels of objects: rings and marks as frames, jaws and the state of the task as named numbers, happenings as JSON and as lines of
+//! the log.
 
 use std::collections::VecDeque;
 
@@ -19,7 +20,7 @@ use super::{
     scene::{WORLD, quaternion, vector},
 };
 use crate::{
-    objects::{Jaws, ObjectSource, Objects, SCHEMA, SCHEMA_NAME, encode},
+    objects::{Jaws, Mark, ObjectSource, Objects, SCHEMA, SCHEMA_NAME, Standing, WireLoop, encode},
     outlet::{Channel, Outlet},
 };
 
@@ -44,6 +45,32 @@ pub(crate) const JAWS: [&str; 12] = [
     "touches.board",
     "touches.instrument",
 ];
+/// Topic of the places that were marked.
+pub(crate) const MARKS_TOPIC: &str = "marks";
+/// Topic of the state of the task, and its numbers; what is true is 1.
+pub(crate) const TASK_TOPIC: &str = "task";
+/// See [`TASK_TOPIC`].
+pub(crate) const TASK: [&str; 12] = [
+    "task.ended",
+    "task.share",
+    "task.marked",
+    "task.found",
+    "task.wire_touches",
+    "task.passed",
+    "task.placed",
+    "task.dropped",
+    "right.loop.touches",
+    "right.loop.on_wire",
+    "left.loop.touches",
+    "left.loop.on_wire",
+];
+/// A state that does not change is written again after this time, s: less than what is shown may be old.
+const AGAIN_S: f64 = 0.1;
+/// Frames of marks are this and their number, from 0: over a lump, and over none.
+const MARK: &str = "mark.";
+const FALSE_MARK: &str = "false_mark.";
+/// Most marks that a message is read for.
+const MARKS_MAX: usize = 64;
 /// Frames of rings are this and their number, from 0.
 const RING: &str = "ring.";
 /// Most rings that a message is read for.
@@ -57,6 +84,10 @@ pub(crate) struct OfObjects {
     happenings: VecDeque<Happening>,
     rings: Option<Channel>,
     jaws: [Option<Plot>; SIDES],
+    marks: Option<Channel>,
+    task: Option<Plot>,
+    /// The state of the task as it was last written, and when, s.
+    standing: Option<(f64, Standing)>,
     told: Channel,
 }
 
@@ -69,6 +100,9 @@ impl OfObjects {
             happenings: VecDeque::new(),
             rings: None,
             jaws: [None, None],
+            marks: None,
+            task: None,
+            standing: None,
             told,
         })
     }
@@ -115,12 +149,40 @@ impl OfObjects {
             plot.values.extend(numbers(jaws));
             plot.write(out, time_ns, false)?;
         }
+        objects.task.as_ref().map_or(Ok(()), |standing| self.stands(out, time_ns, objects.t_s, standing))
+    }
+
+    /// Writes the state of the task, if it has changed, and now and then.
+    fn stands(&mut self, out: &mut Outlet, time_ns: u64, t_s: f64, standing: &Standing) -> Result<(), WriteError> {
+        let is_due = |(at_s, written): &(f64, Standing)| written != standing || t_s - at_s >= AGAIN_S - 1e-6;
+        if !self.standing.as_ref().is_none_or(is_due) {
+            return Ok(());
+        }
+        let plot = match &mut self.task {
+            Some(plot) => plot,
+            none => none.insert(Plot::new(out, TASK_TOPIC, &TASK)?),
+        };
+        plot.values.extend(standing_numbers(standing));
+        plot.write(out, time_ns, false)?;
+        // Marks that were forgotten are told as none.
+        if self.marks.is_some() || !standing.marks.is_empty() {
+            let channel = match self.marks {
+                Some(channel) => channel,
+                None => *self.marks.insert(marks_channel(out)?),
+            };
+            out.message(channel, time_ns, &marks(time_ns, &standing.marks).encode_to_vec())?;
+        }
+        self.standing = Some((t_s, standing.clone()));
         Ok(())
     }
 }
 
 pub(crate) fn happenings_channel(out: &mut Outlet) -> Result<Channel, WriteError> {
     out.channel(HAPPENINGS_TOPIC, json_encoding(SCHEMA_NAME, SCHEMA))
+}
+
+pub(crate) fn marks_channel(out: &mut Outlet) -> Result<Channel, WriteError> {
+    out.channel(MARKS_TOPIC, foxglove::encoding::<FrameTransforms>())
 }
 
 pub(crate) fn rings_channel(out: &mut Outlet) -> Result<Channel, WriteError> {
@@ -141,6 +203,34 @@ pub(crate) fn rings(time_ns: u64, rings: &[Option<Isometry3<f64>>]) -> FrameTran
         })
     };
     FrameTransforms { transforms: rings.iter().enumerate().filter_map(frame).collect() }
+}
+
+/// The frames of these marks.
+pub(crate) fn marks(time_ns: u64, marks: &[Mark]) -> FrameTransforms {
+    let timestamp = Some(Timestamp::of_ns(time_ns));
+    let frame = |(number, mark): (usize, &Mark)| FrameTransform {
+        timestamp,
+        parent_frame_id: WORLD.to_owned(),
+        child_frame_id: format!("{}{number}", if mark.is_true { MARK } else { FALSE_MARK }),
+        translation: Some(vector(&mark.at_m)),
+        rotation: Some(quaternion(&UnitQuaternion::identity())),
+    };
+    FrameTransforms { transforms: marks.iter().enumerate().map(frame).collect() }
+}
+
+/// The marks of a message; other frames are left out.
+pub(crate) fn marks_of(message: &[u8]) -> Vec<Mark> {
+    let frames = FrameTransforms::decode(message).unwrap_or_default().transforms;
+    let mark = |FrameTransform { child_frame_id, translation, .. }: FrameTransform| {
+        let (number, is_true) = match child_frame_id.strip_prefix(FALSE_MARK) {
+            Some(number) => (number, false),
+            None => (child_frame_id.strip_prefix(MARK)?, true),
+        };
+        number.parse::<usize>().ok().filter(|number| *number < MARKS_MAX)?;
+        let at = translation?;
+        Some(Mark { at_m: Vector3::new(at.x, at.y, at.z), is_true })
+    };
+    frames.into_iter().filter_map(mark).take(MARKS_MAX).collect()
 }
 
 /// The rings of a message; those of other frames are left out.
@@ -186,9 +276,60 @@ pub(crate) fn jaws_of(numbers: &[f64]) -> Option<Jaws> {
     })
 }
 
+fn standing_numbers(standing: &Standing) -> [f64; TASK.len()] {
+    let Standing { ended, share, marked, found, touches, passed, placed, dropped, loops, marks: _ } = standing;
+    let is = |is: bool| f64::from(u8::from(is));
+    let [marked, found, touches] = [marked, found, touches].map(|count| f64::from(*count));
+    let [passed, placed, dropped] = [passed, placed, dropped].map(|count| f64::from(*count));
+    let [right, left] = Side::ALL.map(|side| loops[side.index()]).map(|one| [is(one.touches), is(one.on_wire)]);
+    [is(*ended), *share, marked, found, touches, passed, placed, dropped, right[0], right[1], left[0], left[1]]
+}
+
+/// The state of a task of its numbers, in the order of [`TASK`]; its marks stand elsewhere.
+pub(crate) fn standing_of(numbers: &[f64]) -> Option<Standing> {
+    let numbers: &[f64; TASK.len()] = numbers.try_into().ok()?;
+    let [ended, share, counts @ .., right, right_on, left, left_on] = *numbers;
+    let [marked, found, touches, passed, placed, dropped] = counts.map(|count| count as u32);
+    let mut loops = [WireLoop::default(); SIDES];
+    for (side, [touches, on_wire]) in Side::ALL.into_iter().zip([[right, right_on], [left, left_on]]) {
+        loops[side.index()] = WireLoop { touches: touches > 0.5, on_wire: on_wire > 0.5 };
+    }
+    let (ended, marks) = (ended > 0.5, Vec::new());
+    Some(Standing { ended, share, marked, found, touches, passed, placed, dropped, loops, marks })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn marks_and_the_state_of_the_task_come_back_to_the_bit() {
+        let mark = |x: f64, is_true| Mark { at_m: Vector3::new(x, -0.25, 0.003), is_true };
+        let all = [mark(0.1, true), mark(0.2, false), mark(0.3, true)];
+        assert_eq!(marks_of(&marks(5, &all).encode_to_vec()), all);
+        let mut loops = [WireLoop::default(); SIDES];
+        loops[Side::Left.index()] = WireLoop { touches: true, on_wire: true };
+        let standing = Standing {
+            ended: true,
+            share: 0.37,
+            marked: 4,
+            found: 2,
+            touches: 7,
+            passed: 1,
+            placed: 3,
+            dropped: 5,
+            loops,
+            marks: Vec::new(),
+        };
+        assert_eq!(standing_of(&standing_numbers(&standing)), Some(standing));
+        assert_eq!((standing_of(&[1.0]), marks_of(b"something else")), (None, vec![]));
+        let foreign = ["ring.0", "mark.x", "mark.64", "false_mark."].map(|name| FrameTransform {
+            child_frame_id: name.to_owned(),
+            translation: Some(foxglove::Vector3::default()),
+            ..FrameTransform::default()
+        });
+        assert_eq!(marks_of(&FrameTransforms { transforms: foreign.to_vec() }.encode_to_vec()), vec![]);
+    }
 
     #[test]
     fn rings_and_jaws_come_back_to_the_bit() {

@@ -26,6 +26,7 @@ use nima_world::{Training, scene::Scene};
 
 use crate::{
     line::{LineDoor, LineReport},
+    objects::training,
     words::link_trouble,
 };
 
@@ -291,6 +292,19 @@ impl Live {
         self.marks_s.push_back(t_s);
         if self.marks_s.len() > MARKS {
             self.marks_s.pop_front();
+        }
+    }
+
+    /// Shows these objects of the scene, with how far the task has come; none where they are not known.
+    pub fn show_objects(&mut self, objects: Option<Objects>) {
+        self.training = objects.as_ref().and_then(|objects| objects.task.as_ref()).map(training);
+        self.objects = objects;
+    }
+
+    /// The same, if there is something newer.
+    pub fn show_newer_objects(&mut self, objects: Option<Objects>) {
+        if objects.is_some() {
+            self.show_objects(objects);
         }
     }
 

@@ -22,6 +22,7 @@ mod keys;
 pub mod live;
 mod menu;
 pub mod monitor;
+mod opener;
 pub mod outbox;
 pub(crate) mod overview;
 pub mod panels;

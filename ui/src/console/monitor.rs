@@ -144,7 +144,7 @@ impl Monitor {
                     let Some(live) = &mut self.live else { continue };
                     for Moment { events, ticks, objects } in moments {
                         live.replay(events.iter(), &ticks);
-                        live.objects = objects.or_else(|| live.objects.take());
+                        live.show_newer_objects(objects);
                     }
                     (self.trouble, self.heard) = (None, Instant::now());
                 }

@@ -28,7 +28,7 @@ use crate::{
     },
 };
 
-const PAGE: &str = "report.html";
+pub(crate) const PAGE: &str = "report.html";
 const TRIALS: &str = "trials.csv";
 const QUESTIONNAIRES: &str = "questionnaires.csv";
 /// Scores of questionnaires that are compared; the single scales of the NASA-TLX are in the table alone.

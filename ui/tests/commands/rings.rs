@@ -1,4 +1,4 @@
-//! Rings on pegs, recorded: what the run counted is counted again from its session.
+//! Training tasks, recorded: what the run counted is counted again from its session.
 
 use std::path::Path;
 
@@ -82,6 +82,38 @@ fn the_score_of_a_session_is_that_of_its_run() {
     }
     let reader = Reader::open(Path::new(&whole)).unwrap();
     assert!(objects::are_shown(&reader) && reader.notes().is_empty());
+}
+
+#[test]
+fn the_scores_of_lumps_and_of_the_wire_are_those_of_their_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let lumps = include_str!("../../../config/scenes/find_lumps.toml")
+        .replace("size_m = [0.12, 0.09]", "size_m = [0.06, 0.05]")
+        .replace("count = 5", "count = 1");
+    let wire = include_str!("../../../config/scenes/wire.toml").to_owned();
+    let tasks = [("lumps", lumps, "40", "lumps_found"), ("wire", wire, "14", "wire_touches")];
+    for (name, scene, seconds, key) in tasks {
+        let at = |end: &str| folder.path().join(format!("{name}{end}")).display().to_string();
+        let [file, whole, shared] = [".toml", ".mcap", "_shared.mcap"].map(at);
+        std::fs::write(&file, scene.replace("[hand]", "[hand]\npace = 3.0")).unwrap();
+        let run = record(&file, seconds, &whole);
+        assert!(run[key].as_f64().is_some_and(|count| count >= 1.0) && run["completion_time_s"].is_f64(), "{run}");
+        same(&run, &json(&["score", &whole, "--json"]));
+        assert_eq!(json(&["replay", &whole, "--json"])["differs"], Value::Null);
+        done(&["export", &whole, "--out", &shared, "--anonymous"]);
+        same(&run, &json(&["score", &shared, "--json"]));
+        let [of_whole, of_shared] = [&whole, &shared].map(|path| {
+            let reader = Reader::open(Path::new(path)).unwrap();
+            let (begin_ns, end_ns) = reader.statistics().times_ns;
+            objects::at(&reader, begin_ns, end_ns).unwrap().unwrap().task.unwrap()
+        });
+        assert_eq!(of_whole, of_shared);
+        assert!(of_whole.ended, "{of_whole:?}");
+        match name {
+            "lumps" => assert_eq!((of_whole.found, of_whole.marks.len() as u32), (1, of_whole.marked)),
+            _ => assert_eq!(Some(f64::from(of_whole.touches)), run[key].as_f64()),
+        }
+    }
 }
 
 fn without_names(score: &serde_json::Map<String, Value>) -> Value {

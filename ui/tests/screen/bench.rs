@@ -129,3 +129,12 @@ pub(crate) fn write_into<A>(window: &mut Harness<'_, A>, label: &str, text: &str
     window.get_by_role_and_label(role, label).type_text(text);
     window.run_steps(2);
 }
+
+/// Types into a field in place of what stands there.
+pub(crate) fn write_over<A>(window: &mut Harness<'_, A>, label: &str, text: &str) {
+    window.get_by_role_and_label(Role::TextInput, label).focus();
+    window.step();
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.get_by_role_and_label(Role::TextInput, label).type_text(text);
+    window.run_steps(2);
+}

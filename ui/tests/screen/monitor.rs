@@ -8,7 +8,7 @@ use nalgebra::Isometry3;
 use nima_console::console::monitor::{Heard, Monitor, Options, Teller};
 use nima_machine::{messages::Command, rig::SIDES, runtime};
 use nima_session::{
-    objects::{Jaws, Objects},
+    objects::{Jaws, Objects, Standing},
     watched::{Moment, MomentWriter, read},
 };
 use nima_tests::plan;
@@ -50,6 +50,7 @@ fn rings_and_jaws_of_a_rig_elsewhere_are_shown() {
     let mut objects =
         Objects { t_s: 0.1, rings: vec![Some(Isometry3::translation(0.01, 0.02, 0.03)), None], ..Objects::default() };
     objects.jaws[0] = Some(Jaws { opening_rad: 0.5, ..Jaws::default() });
+    objects.task = Some(Standing { passed: 3, placed: 2, ..Standing::default() });
     writer.objects(&objects);
     runtime::run_virtual(plan.simulated().unwrap(), 0.2, |tick| {
         let mut ticks = [None; SIDES];
@@ -60,6 +61,7 @@ fn rings_and_jaws_of_a_rig_elsewhere_are_shown() {
     teller.tell(Heard::Shows(read(&writer.take()).unwrap()));
     window.run_steps(3);
     assert_eq!(window.state().live().unwrap().objects.as_ref(), Some(&objects));
+    reads(&mut window, "Rings: passed 3, placed 2, dropped 0");
     // The next bundle tells nothing new of them.
     teller.tell(Heard::Shows(sent(&plan).drain(..20).collect()));
     window.run_steps(3);

@@ -7,7 +7,7 @@ use std::{
 };
 
 use eframe::App as _;
-use egui::{Key, accesskit::Role};
+use egui::{Key, Pos2, Shape, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
 use nima_console::console::{Options, settings::Kept};
 use nima_machine::messages::LoopState;
@@ -16,10 +16,12 @@ use nima_tests::{
     plan,
     studies::{BLIND, study_file},
 };
-use nima_user_study::{Ending, Study, StudyFile};
+use nima_user_study::{Comparison, Ending, Excludes, Study, StudyFile};
 use nima_world::scene::Scene;
 
-use crate::bench::{Console, can_press, pick, press, read, shown_at, shows, texts, until, wait, write_into};
+use crate::bench::{
+    Console, can_press, pick, press, read, shown_at, shows, texts, until, wait, write_into, write_over,
+};
 
 pub(crate) const SIZE: [f32; 2] = [1600.0, 1000.0];
 /// How much faster than real time a trial goes.
@@ -129,6 +131,118 @@ fn from_a_ready_study_to_the_end_of_its_first_trial_by_clicks() {
     assert!(shows(&window, "No trial was completed yet"), "{:?}", texts(&window));
     pick(&mut window, "Close the study");
     wait(&mut window, "what ran before", |window| window.state().running().scene == "peg_transfer");
+}
+
+/// Opens a list and chooses in it.
+fn choose(window: &mut Console, list: &str, what: &str) {
+    let click = |window: &mut Console| {
+        window.get_by_role_and_label(Role::ComboBox, list).click_accesskit();
+        window.run_steps(2);
+    };
+    click(window);
+    pick(window, what);
+    // Without a pointer nothing closes it.
+    if can_press(window, what) {
+        click(window);
+    }
+}
+
+fn tick(window: &mut Console, name: &str) {
+    window.get_by_role_and_label(Role::CheckBox, name).click_accesskit();
+    window.run_steps(2);
+}
+
+/// The middles of the circles around tips.
+fn circles(window: &Console) -> Vec<Pos2> {
+    fn add(shape: &Shape, found: &mut Vec<Pos2>) {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| add(shape, found)),
+            Shape::Circle(circle) if (circle.radius - 11.0).abs() < 0.1 => found.push(circle.center),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    window.output().shapes.iter().for_each(|clipped| add(&clipped.shape, &mut found));
+    found
+}
+
+/// Whether a circle is in the undimmed part of the round picture.
+fn is_in_picture(window: &Console, at: Pos2) -> bool {
+    let rect = window.get_by_role_and_label(Role::Canvas, "Operating field").rect();
+    let clear = 0.57 * rect.height().min(rect.width());
+    rect.shrink(11.0).contains(at) && (at - rect.center()).length() + 11.0 < clear
+}
+
+#[test]
+fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_from_the_first_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = console(folder.path(), Options::default());
+    until(&mut window, "any tick", |_| true);
+    window.key_press(Key::F8);
+    window.run_steps(2);
+    pick(&mut window, "New study");
+    write_over(&mut window, "Name", "Two rings");
+    choose(&mut window, "Scene", "Loop along a wire");
+    assert!(!shows(&window, "drops \u{d7}"), "no trial there has drops");
+    choose(&mut window, "Scene", "Rings on pegs");
+    tick(&mut window, "Only some of its rings");
+    set(&mut window, "Rings", 2.0);
+    set(&mut window, "A trial is over after", 0.0);
+    for name in
+        ["Practice before the first trial", "Breaks between trials", "Record every trial (about 36 MB a minute)"]
+    {
+        tick(&mut window, name);
+    }
+    set(&mut window, "Participants", 6.0);
+    set(&mut window, "Trials of each condition", 1.0);
+    choose(&mut window, "Primary measure", "idle_time_s: How long both hands rested");
+    choose(&mut window, "Add a measure", "drops: How often a ring was dropped");
+    choose(&mut window, "Add a measure", "drops: How often a ring was dropped");
+    let rules = window.query_all_by_label_contains(": leaves out").count();
+    for number in (1..=rules).rev() {
+        pick(&mut window, &format!("Rule {number}: Remove"));
+    }
+    read(&mut window, "No rule");
+    pick(&mut window, "Add a rule");
+    choose(&mut window, "Rule 1: Measure", "trial_time_s: How long the trial lasted");
+    choose(&mut window, "Rule 1: is", "below");
+    choose(&mut window, "Rule 1: leaves out", "the participant");
+    set(&mut window, "Rule 1: from so many times on", 2.0);
+    pick(&mut window, "Make the study");
+    for mistake in ["time_limit_s = 0", "drops is there twice", "exclusion 1: limit is missing"] {
+        assert!(shows(&window, mistake), "{mistake}: {:?}", texts(&window));
+    }
+    set(&mut window, "A trial is over after", 30.0);
+    set(&mut window, "Rule 1: Limit", 5.0);
+    window.query_all_by_label_contains("drops \u{d7}").last().unwrap().click_accesskit();
+    window.run_steps(2);
+    pick(&mut window, "Make the study");
+
+    let place = folder.path().join("studies/two-rings");
+    let study = Study::read(&place).unwrap();
+    let plan = study.plan();
+    assert_eq!(plan.primary, "idle_time_s");
+    assert_eq!(plan.secondary.iter().filter(|key| *key == "drops").count(), 1, "{:?}", plan.secondary);
+    assert!(plan.practice.is_none() && !plan.record, "{plan:?}");
+    let [rule] = plan.exclusion.as_slice() else { panic!("{:?}", plan.exclusion) };
+    assert_eq!((rule.measure.as_str(), rule.limit, rule.times), ("trial_time_s", Some(5.0), 2));
+    assert_eq!((rule.is, rule.exclude), (Comparison::Below, Excludes::Participant));
+    let scene = Scene::parse(&place, study.scene()).unwrap();
+    assert_eq!(scene.objects.unwrap().rings.len(), 2);
+    assert!((scene.task.unwrap().time_limit_s - 30.0).abs() < 1e-9);
+
+    pick(&mut window, "Begin the trial");
+    wait(&mut window, "a trial", |window| window.state().in_trial());
+    for _ in 0..3 {
+        let found = circles(&window);
+        assert_eq!(found.len(), 2, "one around each tip, in the first picture and in those after it");
+        assert!(found.iter().all(|at| is_in_picture(&window, *at)), "{found:?}");
+        until(&mut window, "idle", |tick| tick.state == LoopState::Idle);
+    }
+    press(&mut window, "Engage");
+    until(&mut window, "engaged", |tick| tick.state == LoopState::Engaged);
+    assert!(shows(&window, "Trial 1 of 3, condition "), "{:?}", texts(&window));
+    assert!(circles(&window).iter().all(|at| is_in_picture(&window, *at)));
 }
 
 #[test]

@@ -2,7 +2,9 @@
 //!
 //! From the moment that a free tip begins to feel something, the work of the force along the tip's way is compared with what it would
 //! be were the force along the motion all the time. A force that drives the tip into what it touches has the wrong sign, or the
-//! wrong frame. Only the first touch is judged: later another arm or a breathing patient may drive the tip.
+//! wrong frame. Only the first touch is judged: later another arm or a breathing patient may drive the tip. And only one that the tip makes:
+//! what comes to a tip that stands does not resist it. A hand that holds still trembles by a tenth of a millimetre, and whether that goes
+//! with a force or against it is chance.
 
 use nalgebra::Vector3;
 
@@ -18,12 +20,20 @@ const ALONG: f64 = 0.7;
 const WITHIN_S: f64 = 0.3;
 /// Time constant against noise, s.
 const SMOOTHING_S: f64 = 0.002;
+/// The tip made a touch if it went so far before, m, in about this time, s: faster than 5 mm/s. Tremor of 0.15 mm an axis goes to and fro by
+/// half of that.
+const MADE_M: f64 = 0.5e-3;
+const BEFORE_S: f64 = 0.1;
 
 /// The memory of one touch.
 #[derive(Clone, Copy, Debug)]
 pub struct Opposed {
     period_s: f64,
     share: f64,
+    /// What remains of [`went_m`](Self::went_m) from one tick to the next.
+    remains: f64,
+    /// How far the tip went lately, from where to where, m.
+    went_m: Vector3<f64>,
     force_n: Vector3<f64>,
     free_s: f64,
     touch: Option<Touch>,
@@ -41,20 +51,23 @@ impl Opposed {
     /// Nothing touched, for a loop of this period (s).
     pub fn new(period_s: f64) -> Self {
         let share = -libm::expm1(-period_s / SMOOTHING_S);
-        Self { period_s, share, force_n: Vector3::zeros(), free_s: 0.0, touch: None }
+        let remains = libm::exp(-period_s / BEFORE_S);
+        let [went_m, force_n] = [Vector3::zeros(); 2];
+        Self { period_s, share, remains, went_m, force_n, free_s: 0.0, touch: None }
     }
 
     /// Takes the force (N) and the way of the tip since the last tick (m); `least_n`: a force below it is none; `led`: the tip is
     /// commanded. Says whether a touch drives the tip into what it touches.
     pub fn look(&mut self, force_n: &Vector3<f64>, least_n: f64, way_m: &Vector3<f64>, led: bool) -> bool {
         self.force_n += (force_n - self.force_n) * self.share;
+        self.went_m = self.went_m * self.remains + way_m;
         let felt_n = self.force_n.norm();
         if felt_n < least_n || !led {
             self.free_s = if led { self.free_s + self.period_s } else { 0.0 };
             self.touch = None;
             return false;
         }
-        if self.free_s >= FREE_S {
+        if self.free_s >= FREE_S && self.went_m.norm() >= MADE_M {
             self.touch = Some(Touch::default());
         }
         self.free_s = 0.0;

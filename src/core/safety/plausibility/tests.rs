@@ -187,6 +187,34 @@ fn a_force_along_the_way_into_a_contact_is_told_and_a_puncture_is_not() {
 }
 
 #[test]
+fn the_sign_is_judged_of_a_touch_that_the_tip_makes_and_not_of_one_that_comes_to_it() {
+    // The tip holds still, trembles, and is pulled by 1.3 N from some moment on: another hand takes what it holds.
+    let pulled = |from: u32, goes_m_s: f64| {
+        Bench::new().run(900, move |k, seen| {
+            let t_s = f64::from(k) * 1e-3;
+            let tremor_m = 0.00012 * (std::f64::consts::TAU * 8.5 * t_s).sin();
+            let at_m = Vector3::new(tremor_m + goes_m_s * t_s, 0.0, 0.05);
+            (seen.tip_m, seen.command_m, seen.hand_m) = (at_m, Some(at_m), at_m);
+            seen.force_n.x += 1.3 * (f64::from(k.saturating_sub(from)) / 15.0).min(1.0);
+        })
+    };
+    for from in (300..420).step_by(6) {
+        assert_eq!(pulled(from, 0.0), None, "from {from} ms on");
+        assert!(
+            matches!(pulled(from, 0.02), Some((_, Implausible::ForceAlong))),
+            "from {from} ms on, while it moves along"
+        );
+    }
+    // A wrong sign at a slow touch.
+    let told = Bench::new().run(900, |k, seen| {
+        let at_m = Vector3::new(0.0, 0.0, 0.004 - 1e-5 * f64::from(k));
+        (seen.tip_m, seen.command_m, seen.hand_m) = (at_m, Some(at_m), at_m);
+        seen.force_n.z -= 400.0 * (-at_m.z).max(0.0);
+    });
+    assert!(matches!(told, Some((401..=520, Implausible::ForceAlong))), "{told:?}");
+}
+
+#[test]
 fn an_error_of_the_force_below_the_least_one_is_no_touch() {
     // Friction that was taken out too much pushes along the motion.
     let told = |least_n: f64| {

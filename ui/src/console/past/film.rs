@@ -309,7 +309,7 @@ impl<'a> Film<'a> {
         let frames = plots(self.file, &like, t_s, t_s + NEXT_S).unwrap_or_default();
         let frame = frames.into_iter().next();
         let mut live = self.live(t_s);
-        live.objects = self.file.objects(frame.as_ref().map_or(t_s, |frame| frame.t_s));
+        live.show_objects(self.file.objects(frame.as_ref().map_or(t_s, |frame| frame.t_s)));
         live.replay(std::iter::empty(), &frame.map_or(like, |frame| frame.ticks));
         live.settle(0.0);
         live
@@ -348,7 +348,8 @@ impl Chase {
             self.live.replay(std::iter::empty(), &self.like);
         }
         self.live.settle(self.to_s - self.from_s);
-        self.live.objects = file.objects(shown_s(&self.live));
+        let objects = file.objects(shown_s(&self.live));
+        self.live.show_objects(objects);
         let like = std::array::from_fn(|side| self.live.ticks[side].or(self.like[side]));
         (self.live, View { feed: self.feed, like })
     }

@@ -3,7 +3,6 @@
 use std::{
     ops::Range,
     path::{Path, PathBuf},
-    process::{Command, Stdio},
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -16,7 +15,7 @@ use egui::Context;
 use nima_recording::session::Reader;
 use nima_session::{cut, plotted, shelf::keep};
 
-use crate::console::{chain, text};
+use crate::console::{chain, opener, text};
 
 /// Folder of the reports, beside the sessions.
 const REPORTS: &str = "reports";
@@ -72,7 +71,8 @@ impl Job {
             let folder = beside(&session).join(REPORTS).join(session.file_stem().unwrap_or_default());
             match crate::report::write(&[session], &folder) {
                 Ok(page) => {
-                    open(&page);
+                    // Where there is none, the words on the screen say where the file is.
+                    opener::open(&page);
                     text::past::reported(&page)
                 }
                 Err(error) => text::past::not_reported(&format!("{error:#}")),
@@ -120,21 +120,4 @@ fn cut_out(session: &Path, times_s: &Range<f64>, part: &Path, left: &AtomicBool)
     let times_ns = time_ns(times_s.start)..time_ns(times_s.end);
     cut::write(&reader, &name, &times_ns, part, left).map_err(|error| chain(&error))?;
     Ok(())
-}
-
-/// Opens a file with the user's program for it. Where there is none, the words on the screen say where the file is.
-fn open(path: &Path) {
-    let mut command = if cfg!(target_os = "macos") {
-        Command::new("open")
-    } else if cfg!(windows) {
-        let mut command = Command::new("cmd");
-        command.args(["/C", "start", ""]);
-        command
-    } else {
-        Command::new("xdg-open")
-    };
-    command.arg(path).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    if let Ok(mut opener) = command.spawn() {
-        opener.wait().ok();
-    }
 }

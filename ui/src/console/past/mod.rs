@@ -202,7 +202,7 @@ impl Past {
                 let before_s = shown_s(live);
                 for frame in frames {
                     live.replay(frame.events.iter(), &frame.ticks);
-                    live.objects = frame.objects.or_else(|| live.objects.take());
+                    live.show_newer_objects(frame.objects);
                 }
                 self.play.unsettled_s += shown_s(live) - before_s;
                 if self.play.unsettled_s >= SETTLED_S {

@@ -11,7 +11,7 @@ use nima_core::impedance::Mode;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Tick},
-    rig::SIDES,
+    rig::{Act, SIDES, Side},
     runtime::{self, Assembly},
 };
 use nima_recording::session::Reader;
@@ -23,7 +23,7 @@ use nima_session::{
     plotted,
     replay::replay,
 };
-use nima_world::{Plan, scene::Scene};
+use nima_world::{Plan, Training, scene::Scene};
 
 use super::Past;
 use crate::{
@@ -45,9 +45,11 @@ fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Optio
     recorder.finish().unwrap();
 }
 
-/// A session of the scene with rings, and what the screen was told of them.
-fn record_rings(path: &Path, seconds: f64) -> Vec<Objects> {
-    let (mut rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("rings").unwrap());
+/// A session of a scene with a training task, and what the screen was told of it. Before each tick of the right arm, by its number, a
+/// command may be given.
+fn record_task(scene: &str, path: &Path, seconds: f64, command: impl Fn(u64) -> Option<Command>) -> Vec<Objects> {
+    let (mut rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
+    let has_jaws = [scene.objects.is_some(); SIDES];
     rig.mode = Mode::Matched;
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
     let (tap, recorder) = recording::begin(Destination::file(path), &plan, "virtual").unwrap();
@@ -55,9 +57,9 @@ fn record_rings(path: &Path, seconds: f64) -> Vec<Objects> {
     let mut watched = watched.unwrap();
     recorder.watch(OfSimulation::source(&plan, watched.another().unwrap()));
     let mut told = Vec::new();
-    runtime::run_virtual(Assembly { tap: Some(tap), ..assembly }, seconds, |_| {
-        told.extend(watched.moments().map(|moment| objects(&moment, [true; SIDES])));
-        None
+    runtime::run_virtual(Assembly { tap: Some(tap), ..assembly }, seconds, |tick| {
+        told.extend(watched.moments().map(|moment| objects(&moment, has_jaws)));
+        (tick.side == Side::Right).then(|| command(tick.index)).flatten()
     });
     recorder.finish().unwrap();
     told
@@ -188,7 +190,7 @@ fn what_happened_is_marked_along_the_time() {
 fn rings_and_jaws_are_shown_as_they_were_and_move_while_it_is_played() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    let told = record_rings(&path, 6.0);
+    let told = record_task("rings", &path, 6.0, |_| None);
     assert_eq!(told.len(), 600);
     let mut past = open(&path);
     until(&mut past, "read", |past| past.read_share() > 0.999);
@@ -224,6 +226,40 @@ fn rings_and_jaws_are_shown_as_they_were_and_move_while_it_is_played() {
     assert!(openings.iter().any(|rad| *rad > 0.5) && openings.iter().any(|rad| *rad < 0.3), "{openings:?}");
     let grasped = past.overview.notes.iter().find(|note| note.kind == LineKind::Happening);
     assert!(grasped.is_some_and(|note| note.words.contains("grasped by the left instrument")), "{grasped:?}");
+}
+
+#[test]
+fn pins_and_the_loop_on_the_wire_are_shown_as_they_were() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lumps.mcap");
+    let act = |tick: u64, at: u64, act| (tick == at).then_some(Command::Task(Side::Right, act));
+    let told = record_task("find_lumps", &path, 3.0, |tick| {
+        let marks = act(tick, 900, Act::Mark).or_else(|| act(tick, 1800, Act::Mark));
+        marks.or_else(|| act(tick, 2400, Act::End))
+    });
+    let shown_of = |path: &Path, told: &[Objects], times_s: &[f64]| -> Vec<Training> {
+        let mut past = open(path);
+        until(&mut past, "read", |past| past.read_share() > 0.999);
+        let shown = times_s.iter().map(|t_s| {
+            settled(&mut past, *t_s);
+            let live = past.live.as_ref().unwrap();
+            let expected = told.iter().rfind(|objects| objects.t_s < past.shown_s() + 1e-7).unwrap();
+            assert_eq!(live.objects.as_ref().unwrap().task, expected.task, "at {t_s} s");
+            live.training.unwrap()
+        });
+        shown.collect()
+    };
+    let shown = shown_of(&path, &told, &[0.5, 1.5, 2.2, 2.9]);
+    let marks = |training: &Training| training.marks.iter().flatten().count();
+    assert_eq!(shown.iter().map(marks).collect::<Vec<_>>(), [0, 1, 2, 2]);
+    assert_eq!(shown.iter().map(|training| training.ended).collect::<Vec<_>>(), [false, false, false, true]);
+    let path = folder.path().join("wire.mcap");
+    let told = record_task("wire", &path, 8.0, |_| None);
+    let touches_s = told.iter().find(|objects| objects.task.as_ref().is_some_and(|task| task.loops[0].touches));
+    let touches_s = touches_s.unwrap().t_s;
+    let shown = shown_of(&path, &told, &[0.2, touches_s + 1e-4, 7.9]);
+    assert!(!shown[0].loops[0].touches && shown[1].loops[0].touches && shown[1].loops[0].on_wire, "{shown:?}");
+    assert!(shown[2].share > 0.1 && shown[2].touches >= 1, "{shown:?}");
 }
 
 fn stretch(from: &Path, to: &Path, seconds: Range<f64>) {

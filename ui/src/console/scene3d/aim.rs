@@ -1,4 +1,4 @@
-//! Marks the instrument that is led: a circle around its tip, and a line straight down to what is below, because a picture without depth does
+//! Marks the instruments while one is led: a pale circle around the tip of the other one; around the tip of the one that is led a green one, and a line straight down to what is below, because a picture without depth does
 //! not tell over which place it is. Under a ring that the jaws hold is the outline of its hole: a peg that is within it goes through.
 
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke};
@@ -10,8 +10,10 @@ use super::{Camera, training};
 /// The mark: on no other thing in the view.
 const LED: Color32 = Color32::from_rgb(0x9c, 0xe8, 0x7a);
 const DOWN: Color32 = Color32::from_rgb(0x7d, 0xb0, 0x68);
+/// The circle around the tip that is not led.
+const RESTS: Color32 = Color32::from_rgb(0xd6, 0xde, 0xe6);
 /// Radius of the circle around the tip, points; with a second one while the jaws hold a ring.
-const CIRCLE: f32 = 11.0;
+pub(super) const CIRCLE: f32 = 11.0;
 const SECOND: f32 = 16.0;
 /// Radius of the mark below, m.
 const FOOT_M: f32 = 0.001;
@@ -23,6 +25,13 @@ pub(super) struct Aim<'a> {
     pub(super) tip_m: Vector3<f32>,
     /// The middle of the ring that the jaws hold.
     pub(super) ring_m: Option<Vector3<f32>>,
+}
+
+/// Marks the tip of the other instrument, which is held where it was left.
+pub(super) fn paint_other(painter: &Painter, rect: Rect, camera: &Camera, tip_m: &Vector3<f32>) {
+    if let Some(tip) = camera.project(tip_m, rect) {
+        painter.circle_stroke(tip, CIRCLE, Stroke::new(1.5, RESTS));
+    }
 }
 
 /// Height of what is below the instruments, m.

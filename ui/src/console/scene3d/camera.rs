@@ -8,6 +8,9 @@ use nima_world::scene::Scene;
 const FIELD_OF_VIEW: f32 = 0.62;
 /// The same for the endoscope, which has a wide angle.
 const ENDOSCOPE_FIELD: f32 = 0.92;
+/// How far the endoscope is from tissue, and from a board with rings or a wire: from there the whole board and the hands above it are in the picture, m.
+const NEAR_TISSUE_M: f32 = 0.128;
+const NEAR_BOARD_M: f32 = 0.168;
 const DISTANCE_M: std::ops::RangeInclusive<f32> = 0.06..=0.9;
 /// Range of pitch: from nearly level with the surface to nearly straight down, rad.
 const PITCH: std::ops::RangeInclusive<f32> = 0.03..=1.5;
@@ -49,9 +52,14 @@ impl Camera {
 
     /// Camera of the endoscope: between two instruments, or beside a single one.
     pub fn endoscope(scene: &Scene) -> Self {
-        let yaw = if scene.left.is_some() || scene.wire.is_some() { 0.0 } else { -0.55 };
+        if scene.objects.is_some() || scene.wire.is_some() {
+            // Rings change hands high above the board, where also the hands begin.
+            let target_m = Vector3::new(0.0, 0.0, 0.034);
+            return Self { target_m, distance_m: NEAR_BOARD_M, yaw: 0.0, pitch: 0.62, field_of_view: ENDOSCOPE_FIELD };
+        }
+        let yaw = if scene.left.is_some() { 0.0 } else { -0.55 };
         let target_m = Vector3::new(0.0, 0.0, 0.006);
-        Self { target_m, distance_m: 0.128, yaw, pitch: 0.72, field_of_view: ENDOSCOPE_FIELD }
+        Self { target_m, distance_m: NEAR_TISSUE_M, yaw, pitch: 0.72, field_of_view: ENDOSCOPE_FIELD }
     }
 
     /// Rotates by a drag of this many points.
@@ -137,9 +145,11 @@ impl Camera {
 
 #[cfg(test)]
 mod tests {
-    use egui::pos2;
+    use egui::{pos2, vec2};
+    use nima_world::Worlds;
 
     use super::*;
+    use crate::console::scene3d::{aim, vignette};
 
     fn view() -> Rect {
         Rect::from_min_max(pos2(100.0, 50.0), pos2(900.0, 650.0))
@@ -171,6 +181,36 @@ mod tests {
         let single = Scene::load("peg_transfer").unwrap();
         let camera = Camera::endoscope(&single);
         assert!(single.targets_m.iter().all(|at_m| view().contains(camera.project(&at_m.cast(), view()).unwrap())));
+    }
+
+    #[test]
+    fn the_round_picture_has_the_tips_at_the_start_of_every_task_and_the_pegs() {
+        let views = [[1280.0, 560.0], [1600.0, 840.0], [1920.0, 920.0], [700.0, 700.0]];
+        let views = views.map(|[width, height]| Rect::from_min_size(pos2(0.0, 110.0), vec2(width, height)));
+        let seen = |scene: &Scene, at_m: &Vector3<f64>, view: Rect| {
+            let camera = Camera::endoscope(scene);
+            camera.project(&at_m.cast(), view).is_some_and(|at| vignette::shows(view, at, aim::CIRCLE))
+        };
+        for name in Scene::names() {
+            let scene = Scene::load(name).unwrap();
+            if scene.task.is_none() {
+                continue;
+            }
+            for (at_m, view) in
+                Worlds::new(&scene, 1e3).tips_m().iter().flatten().flat_map(|at_m| views.map(|view| (at_m, view)))
+            {
+                assert!(seen(&scene, at_m, view), "{name}: {at_m} in {view}");
+            }
+            for [x, y] in scene.objects.iter().flat_map(|setting| &setting.pegs.at_m) {
+                let (foot_m, passed_m) = (Vector3::new(*x, *y, 0.0), Vector3::new(0.0, 0.0, 0.08));
+                assert!(
+                    views.iter().all(|view| seen(&scene, &foot_m, *view) && seen(&scene, &passed_m, *view)),
+                    "{foot_m}"
+                );
+            }
+        }
+        let far_m = Vector3::new(0.15, 0.0, 0.1);
+        assert!(!seen(&Scene::load("rings").unwrap(), &far_m, views[0]));
     }
 
     #[test]

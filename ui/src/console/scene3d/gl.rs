@@ -30,8 +30,6 @@ pub struct Frame {
     pub backdrop: [Color32; 2],
     /// Draw with antialiasing.
     pub smooth: bool,
-    /// Only this share of the width is drawn, in the middle: what a round picture covers is not worth its shading.
-    pub share: f32,
 }
 
 /// Bands of the background gradient; neighbouring bands differ by at most 1/255.
@@ -123,8 +121,6 @@ impl Renderer {
             }
             let corner = if target.is_some() { [0, 0] } else { [place.left_px, place.from_bottom_px] };
             clear(gl, corner, size, frame.backdrop);
-            let drawn = (size[0] as f32 * frame.share.clamp(0.0, 1.0)).ceil() as i32;
-            gl.scissor(corner[0] + (size[0] - drawn) / 2, corner[1], drawn, size[1]);
             self.draw(gl, frame);
             if let Some(target) = target {
                 gl.scissor(place.left_px, place.from_bottom_px, size[0], size[1]);

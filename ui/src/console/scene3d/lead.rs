@@ -55,6 +55,11 @@ impl Lead {
         self.is_on().then_some(self.side)
     }
 
+    /// The instrument whose tip is marked: also before the first tick of a participant's trial.
+    pub(super) fn marked(self) -> Option<Side> {
+        (self.is_on() || self.is_held).then_some(self.side)
+    }
+
     /// Ends the leading.
     pub(super) fn let_go(&mut self, outbox: &mut Outbox) {
         for side in Side::ALL {

@@ -20,8 +20,8 @@ use std::sync::Arc;
 use eframe::{egui_glow, glow};
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Ui, pos2, vec2};
 use nalgebra::Vector3;
-use nima_machine::rig::Side;
-use nima_world::scene::Scene;
+use nima_machine::rig::{SIDES, Side};
+use nima_world::{Worlds, scene::Scene};
 
 pub use camera::Camera;
 
@@ -62,6 +62,8 @@ pub struct SceneView {
     camera: Camera,
     /// Name of the scene for which the cameras were set.
     set_for: Option<String>,
+    /// Where the tips are before the first tick.
+    starts_m: [Option<Vector3<f64>>; SIDES],
     lead: Lead,
     renderer: Option<Arc<Renderer>>,
     /// The last drawn scene; if nothing has changed, no new triangles are built, and a software renderer does not draw.
@@ -91,6 +93,7 @@ impl Default for SceneView {
             extras: Extras::default(),
             camera: Camera::default(),
             set_for: None,
+            starts_m: [None; SIDES],
             lead: Lead::default(),
             renderer: None,
             drawn: None,
@@ -151,6 +154,7 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
     if view.set_for.as_ref() != Some(&live.scene.name) {
         view.set_for = Some(live.scene.name.clone());
         view.camera = Camera::of(&live.scene);
+        view.starts_m = Worlds::new(&live.scene, live.rig.rate_hz).tips_m();
     }
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, text::field::OPERATING_FIELD));
@@ -167,14 +171,20 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         view.extras.ui(ui, rect);
     }
     let camera = view.camera(&live.scene);
-    let arms: Vec<Arm> = live.sides().filter_map(|side| arm(live, side, view.arrows)).collect();
+    let arms: Vec<Arm> = live.sides().filter_map(|side| arm(live, side, view)).collect();
     let painter = ui.painter_at(rect);
     let led = view.lead.side();
     let shown = Shown::of(live, led);
     let reach = shown.as_ref().and_then(|shown| shown.reach);
-    if let Some(arm) = arms.iter().find(|arm| Some(arm.side) == led) {
-        let ring_m = shown.as_ref().and_then(Shown::held_m);
-        Aim { scene: &live.scene, tip_m: arm.pose.tip_m, ring_m }.paint(&painter, rect, &camera);
+    if let Some(marked) = view.lead.marked() {
+        for Arm { side, pose: Pose { tip_m, .. }, .. } in &arms {
+            if *side == marked {
+                let ring_m = shown.as_ref().and_then(Shown::held_m);
+                Aim { scene: &live.scene, tip_m: *tip_m, ring_m }.paint(&painter, rect, &camera);
+            } else {
+                aim::paint_other(&painter, rect, &camera, tip_m);
+            }
+        }
     }
     if let Some(callback) = triangles(rect, live, view, &arms, shown) {
         painter.set(ground, callback);
@@ -219,18 +229,18 @@ fn turn(ui: &Ui, live: &Live, view: &mut SceneView, response: &egui::Response, l
     }
 }
 
-/// The objects of one side from its newest tick; at rest above the field before there is one. Its forces only where `arrows` are drawn.
-fn arm(live: &Live, side: Side, arrows: bool) -> Option<Arm> {
+/// The objects of one side from its newest tick; before there is one, where the task begins. Its forces only where arrows are drawn.
+fn arm(live: &Live, side: Side, view: &SceneView) -> Option<Arm> {
     let scene = live.scene.of_side(side)?;
     let finite = |v: Vector3<f64>| v.iter().all(|x| x.is_finite());
-    let above_m = scene.targets_m.first().copied().unwrap_or_default() + Vector3::z() * 0.02;
-    let rest = Pose { tip_m: above_m.cast(), measured_n: Vector3::zeros(), rendered_n: Vector3::zeros() };
+    let start_m = view.starts_m[side.index()].unwrap_or_default();
+    let rest = Pose { tip_m: start_m.cast(), measured_n: Vector3::zeros(), rendered_n: Vector3::zeros() };
     let pose = live.tick_of(side).filter(|tick| finite(tick.tip_m)).map_or(rest, |tick| Pose {
         tip_m: tick.tip_m.cast(),
         measured_n: tick.measured_n.cast(),
         rendered_n: tick.rendered_n.cast(),
     });
-    let pose = if arrows { pose } else { Pose { tip_m: pose.tip_m, ..rest } };
+    let pose = if view.arrows { pose } else { Pose { tip_m: pose.tip_m, ..rest } };
     Some(Arm {
         side,
         trocar_m: scene.trocar_m.cast(),
@@ -258,11 +268,12 @@ fn triangles(
     let (eye_m, right) = (camera.eye_m(), camera.right());
     let style = stage::Style { eye_m: &eye_m, right: &right, fine: smooth, shadows: extras.shadows };
     let is_round = view.look == Look::Endoscope && extras.round;
+    // What a round picture covers is neither drawn nor drawn again.
+    let part = if is_round { vignette::part_of(rect) } else { rect };
     let frame = gl::Frame {
-        share: if is_round { vignette::share_of_width(rect) } else { 1.0 },
         mesh: stage::build(&live.scene, arms, wanted.shown.as_ref(), style),
         dims: if extras.depth { camera.dims() } else { [0.0; 2] },
-        clip_from_workspace: camera.clip_from_workspace(rect.aspect_ratio()),
+        clip_from_workspace: vignette::part_from_whole(part, rect) * camera.clip_from_workspace(rect.aspect_ratio()),
         eye_m,
         shafts_m: arms.iter().map(|arm| [arm.pose.tip_m, arm.trocar_m]).collect(),
         backdrop: [theme::FIELD_FAR, theme::FIELD_NEAR],
@@ -271,7 +282,7 @@ fn triangles(
     let paint = egui_glow::CallbackFn::new(move |info, painter| {
         renderer.paint(painter.gl(), &info.viewport_in_pixels(), &frame);
     });
-    let callback = egui::PaintCallback { rect, callback: Arc::new(paint) };
+    let callback = egui::PaintCallback { rect: part, callback: Arc::new(paint) };
     view.drawn = Some((wanted, callback.clone()));
     Some(callback)
 }

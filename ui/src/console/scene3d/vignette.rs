@@ -1,6 +1,7 @@
 //! The round picture of an endoscope: outside of a disc with a soft rim there is nothing to see.
 
 use egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, pos2};
+use nalgebra::Matrix4;
 
 /// Radius of the disc, in heights of the view: the disc is a little cut off above and below, as on the monitors of an operating room.
 const RADIUS: f32 = 0.60;
@@ -15,16 +16,41 @@ fn radii(rect: Rect) -> [f32; 2] {
     [radius * (1.0 - RIM), radius]
 }
 
-/// Share of the width of a view that the disc takes.
-pub(super) fn share_of_width(rect: Rect) -> f32 {
+/// The part of a view that has the disc in it: beside it nothing is drawn, and nothing changes.
+pub(super) fn part_of(rect: Rect) -> Rect {
     let [_, dark] = radii(rect);
-    (2.0 * dark / rect.width().max(1.0)).clamp(0.0, 1.0)
+    // Whole points, so that its edges are those of pixels.
+    let half = (dark.ceil() + 1.0).min(0.5 * rect.width());
+    let (left, right) = ((rect.center().x - half).floor(), (rect.center().x + half).ceil());
+    Rect::from_x_y_ranges(left.max(rect.left())..=right.min(rect.right()), rect.y_range())
+}
+
+/// From the clip space of a view to that of a part of its width.
+pub(super) fn part_from_whole(part: Rect, whole: Rect) -> Matrix4<f32> {
+    let wider = whole.width() / part.width().max(1.0);
+    let aside = 2.0 * (whole.center().x - part.center().x) / part.width().max(1.0);
+    let mut matrix = Matrix4::identity();
+    (matrix[(0, 0)], matrix[(0, 3)]) = (wider, aside);
+    matrix
+}
+
+/// Whether a place, with so much room around it, is in the undimmed part of the picture.
+#[cfg(test)]
+pub(super) fn shows(rect: Rect, place: Pos2, room: f32) -> bool {
+    let [clear, _] = radii(rect);
+    rect.shrink(room).contains(place) && (place - rect.center()).length() + room <= clear
 }
 
 /// Covers what an endoscope does not show.
 pub(super) fn paint(painter: &Painter, rect: Rect) {
-    let [clear, dark] = radii(rect);
-    let beyond = rect.size().length().max(dark + 1.0);
+    let ([clear, dark], part) = (radii(rect), part_of(rect));
+    for beside in [
+        Rect::from_x_y_ranges(rect.left()..=part.left(), rect.y_range()),
+        Rect::from_x_y_ranges(part.right()..=rect.right(), rect.y_range()),
+    ] {
+        painter.rect_filled(beside, 0.0, Color32::BLACK);
+    }
+    let beyond = part.size().length().max(dark + 1.0);
     let mut mesh = Mesh::default();
     let rings = [(clear, Color32::TRANSPARENT), (dark, Color32::BLACK), (beyond, Color32::BLACK)];
     for side in 0..=SIDES {
@@ -41,12 +67,13 @@ pub(super) fn paint(painter: &Painter, rect: Rect) {
             mesh.add_triangle(a + 1, b, b + 1);
         }
     }
-    painter.add(Shape::mesh(mesh));
+    painter.with_clip_rect(part).add(Shape::mesh(mesh));
 }
 
 #[cfg(test)]
 mod tests {
     use egui::vec2;
+    use nalgebra::Vector4;
 
     use super::*;
 
@@ -56,8 +83,16 @@ mod tests {
             let [clear, dark] = radii(Rect::from_min_size(Pos2::ZERO, size));
             let least = size.x.min(size.y);
             assert!(clear < dark && clear > 0.5 * least && dark < 0.7 * least, "{size:?}: {clear} {dark}");
-            let share = share_of_width(Rect::from_min_size(Pos2::ZERO, size));
-            assert!((share - (2.0 * dark / size.x).min(1.0)).abs() < 1e-6, "{share}");
+            let rect = Rect::from_min_size(pos2(13.0, 7.0), size);
+            let part = part_of(rect);
+            assert!(rect.contains_rect(part) && (part.height() - size.y).abs() < 1e-6, "{part}");
+            let whole = (2.0 * dark).min(size.x);
+            assert!((whole..=whole + 5.0).contains(&part.width()), "{part}");
+            assert!((part.center().x - rect.center().x).abs() <= 0.5, "{part}");
+            let (place, clip) =
+                (rect.center() + vec2(0.2 * size.y, 0.0), Vector4::new(0.4 * size.y / size.x, 0.0, 0.0, 1.0));
+            let x = (part_from_whole(part, rect) * clip).x;
+            assert!((part.center().x + 0.5 * x * part.width() - place.x).abs() < 0.01, "the same place in the window");
         }
     }
 }

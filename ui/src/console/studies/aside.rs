@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     console::{
+        opener,
         start::Looked,
         text, theme,
         widgets::{card, small},
@@ -29,6 +30,8 @@ pub(super) struct Aside {
     why: String,
     told: Option<String>,
     report: Looked<Result<PathBuf, String>>,
+    /// Whether a program opened the page.
+    opened: Looked<bool>,
 }
 
 impl Aside {
@@ -48,6 +51,7 @@ impl Aside {
             if ui.add_enabled(!running, button).clicked() {
                 let (folder, ctx) = (study.folder().to_owned(), ui.ctx().clone());
                 self.report.forget();
+                self.opened.forget();
                 self.report.begin(&ctx, move || {
                     let study = Study::read(&folder).map_err(|error| error.to_string())?;
                     study_report::write(&study, &folder.join(REPORT), false).map_err(|error| format!("{error:#}"))
@@ -58,7 +62,24 @@ impl Aside {
                 Err(why) => text::studies::report_failed(why),
             });
             ui.add(Label::new(small(told.unwrap_or_default())).wrap());
+            let page = self.report.found().and_then(|found| found.as_ref().ok()).cloned();
+            if let Some(page) = page.or_else(|| written_before(study).filter(|_| !running)) {
+                self.open_ui(ui, page);
+            }
         });
+    }
+
+    /// The page in the user's program for it.
+    fn open_ui(&mut self, ui: &mut Ui, page: PathBuf) {
+        let running = self.opened.is_running();
+        let button = Button::new(text::studies::REPORT_OPEN).min_size(vec2(ui.available_width(), 28.0));
+        if ui.add_enabled(!running, button).on_hover_text(page.display().to_string()).clicked() {
+            self.opened.forget();
+            self.opened.begin(ui.ctx(), move || opener::open(&page));
+        }
+        if self.opened.found() == Some(&false) {
+            ui.add(Label::new(small(text::studies::REPORT_NOT_OPENED)).wrap());
+        }
     }
 
     fn unblinding_ui(&mut self, ui: &mut Ui, study: &mut Study) {
@@ -93,6 +114,12 @@ impl Aside {
             self.told = study.unblind(&self.name, &self.why, &utc_now()).err().map(|error| error.to_string());
         }
     }
+}
+
+/// The report that was written last.
+fn written_before(study: &Study) -> Option<PathBuf> {
+    let page = study.folder().join(REPORT).join(study_report::PAGE);
+    page.is_file().then_some(page)
 }
 
 fn about_ui(ui: &mut Ui, study: &Study) {

@@ -1,12 +1,12 @@
 //! How a participant learns: the times of the completed trials in order. Marked as practice or not, never by condition.
 
-use egui::Ui;
+use egui::{Label, Ui};
 use egui_plot::{AxisHints, Line, MarkerShape, Plot, PlotBounds, PlotPoints, Points};
 use nima_user_study::Learning;
 
 use crate::console::{
     text, theme,
-    widgets::{still, weak},
+    widgets::{small, still, weak},
 };
 
 const HEIGHT: f32 = 190.0;
@@ -45,5 +45,6 @@ pub(super) fn curve_ui(ui: &mut Ui, learning: Option<&Learning>) {
             plot.points(marks.radius(4.5).color(theme::now().text).allow_hover(false));
         }
     });
+    ui.add(Label::new(small(text::studies::curve_marks(learning.curve.as_ref()))).wrap());
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described.clone()));
 }

@@ -3,8 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use nima_core::impedance::Mode;
-use nima_score::Criterion;
-use nima_user_study::{Breaks, Condition, NotReached, Practice, StudyFile};
+use nima_score::{Criterion, Definition, MEASURES, Side, TaskFile, TaskKind};
+use nima_user_study::{
+    Breaks, Comparison, Condition, Excludes, ExclusionRule, NotReached, Practice, StudyFile, keys_of,
+};
+use nima_world::scene::Scene;
 
 use super::list::folder_of;
 use crate::{console::text, user_study};
@@ -15,8 +18,15 @@ pub(super) struct Draft {
     /// Name of the ready study.
     pub(super) ready: &'static str,
     pub(super) file: StudyFile,
-    /// Name of what is done.
-    pub(super) task: String,
+    /// The scenes that can be chosen.
+    pub(super) scenes: Vec<Place>,
+    /// What is done, with what this study has of it.
+    pub(super) task: Option<TaskFile>,
+    /// Only so many rings of the scene.
+    pub(super) takes_few: bool,
+    pub(super) rings: u32,
+    /// The measures that a trial in this scene can have.
+    pub(super) measures: Vec<Known>,
     pub(super) practises: bool,
     pub(super) practice: Practice,
     /// Which condition is practised, counted from 0; each in turn without one.
@@ -25,6 +35,52 @@ pub(super) struct Draft {
     pub(super) breaks: Breaks,
     /// Which condition the others are compared with.
     pub(super) reference: Option<usize>,
+}
+
+/// A scene that can be chosen.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    /// Built-in name or file.
+    pub(super) of: String,
+    pub(super) name: String,
+    pub(super) about: String,
+    /// Task of the study in this scene; the scene has one of its own without.
+    task: Option<TaskFile>,
+    kind: TaskKind,
+    two_hands: bool,
+    /// How many rings it has.
+    pub(super) rings: u32,
+}
+
+/// A measure, by its key and in words.
+#[derive(Clone, Debug)]
+pub(super) struct Known {
+    pub(super) key: String,
+    pub(super) words: &'static str,
+    pub(super) unit: &'static str,
+}
+
+impl Place {
+    /// The scene of this name, if it has a task or gets this one.
+    fn of(name: &str, task: Option<TaskFile>) -> Option<Self> {
+        let scene = Scene::load(name).ok()?;
+        let kind = task.as_ref().or(scene.task.as_ref())?.kind;
+        let rings = scene.objects.as_ref().map_or(0, |objects| objects.rings.len() as u32);
+        let (name, of) = (scene.name, name.to_owned());
+        Some(Self { of, name, about: scene.description, task, kind, two_hands: scene.left.is_some(), rings })
+    }
+
+    /// The measures that a trial here can have.
+    fn measures(&self) -> Vec<Known> {
+        let hands: &[Side] = if self.two_hands { &Side::ALL } else { &[Side::Right] };
+        // A simulated scene does not tell what leaves the picture.
+        let fits = |one: &&Definition| one.is_of(self.kind, self.two_hands) && one.id != "out_of_view_share";
+        let known = |definition: &'static Definition| {
+            let of = move |key| Known { key, words: definition.words, unit: definition.unit };
+            keys_of(definition, hands).into_iter().map(of)
+        };
+        MEASURES.iter().filter(fits).flat_map(known).collect()
+    }
 }
 
 /// Two trials in a row within 150 s without a drop out of view, as in the study of the paper.
@@ -42,9 +98,17 @@ impl Draft {
         };
         let practice = file.practice.clone().unwrap_or_else(usual_practice);
         let task = user_study::scene_of(&file).ok().and_then(|scene| scene.task);
+        let own = file.task.is_some().then(|| Place::of(&file.scene, file.task.clone())).flatten();
+        let scenes: Vec<Place> =
+            own.into_iter().chain(Scene::names().filter_map(|name| Place::of(name, None))).collect();
+        let measures = scenes.iter().find(|place| place.of == file.scene).map_or_else(Vec::new, Place::measures);
         Some(Self {
             ready,
-            task: task.map_or_else(String::new, |task| task.name),
+            scenes,
+            task,
+            takes_few: file.rings.is_some(),
+            rings: file.rings.unwrap_or(2),
+            measures,
             practises: file.practice.is_some(),
             under: place(&practice.under),
             practice,
@@ -63,8 +127,47 @@ impl Draft {
             practice: self.practises.then_some(practice),
             breaks: self.rests.then_some(self.breaks),
             reference: name(self.reference),
+            rings: Some(self.rings).filter(|_| self.takes_few),
             ..self.file.clone()
         }
+    }
+
+    /// The scene as it was chosen.
+    pub(super) fn place_of_scene(&self) -> Option<&Place> {
+        self.scenes.iter().find(|place| place.of == self.file.scene)
+    }
+
+    /// Another scene, with its task. Measures that no trial there has are gone, and rules that go by them.
+    pub(super) fn choose(&mut self, at: usize) {
+        let Some(place) = self.scenes.get(at).filter(|place| place.of != self.file.scene).cloned() else { return };
+        self.measures = place.measures();
+        (self.takes_few, self.file.task) = (false, place.task);
+        self.file.scene = place.of;
+        self.task = user_study::scene_of(&self.file()).ok().and_then(|scene| scene.task);
+        let known = |key: &String| self.measures.iter().any(|measure| measure.key == *key);
+        self.file.secondary.retain(known);
+        self.file.exclusion.retain(|rule| known(&rule.measure));
+        if !known(&self.file.primary) {
+            let ends = self.measures.iter().find(|measure| measure.key == "completion_time_s");
+            let first = ends.or(self.measures.first()).map(|measure| measure.key.clone());
+            self.file.primary = first.unwrap_or_default();
+            self.file.secondary.retain(|key| *key != self.file.primary);
+        }
+    }
+
+    /// A trial is over after this time, s.
+    pub(super) fn limit(&mut self, limit_s: f64) {
+        if let Some(task) = &mut self.task {
+            task.time_limit_s = limit_s;
+            self.file.task = Some(task.clone());
+        }
+    }
+
+    /// One rule of exclusion more.
+    pub(super) fn add_rule(&mut self) {
+        let (is, exclude) = (Comparison::Above, Excludes::Trial);
+        let measure = self.file.primary.clone();
+        self.file.exclusion.push(ExclusionRule { measure, is, limit: None, exclude, times: 1 });
     }
 
     /// One condition more, which is not yet different from others.
@@ -150,6 +253,56 @@ mod tests {
         assert!(mistakes(&draft.file()).is_empty());
         (draft.file.participants, draft.file.trials, draft.file.name) = (0, 0, "DFR".to_owned());
         assert_eq!(mistakes(&draft.file()).len(), 3, "{:?}", mistakes(&draft.file()));
+    }
+
+    #[test]
+    fn every_scene_with_a_task_can_be_chosen_and_keeps_the_measures_that_it_has() {
+        let mut draft = Draft::of("paper").unwrap();
+        let names: Vec<String> = draft.scenes.iter().map(|place| place.of.clone()).collect();
+        assert_eq!(names, ["rings", "find_lumps", "wire"]);
+        let has = |draft: &Draft, key: &str| draft.measures.iter().any(|known| known.key == key);
+        assert!(has(&draft, "drops") && has(&draft, "peak_force_n_left") && !has(&draft, "wire_touches"));
+        for (at, (name, own)) in names.into_iter().zip(["drops", "lumps_found", "wire_touches"]).enumerate().rev() {
+            draft.choose(at);
+            assert_eq!(draft.file().scene, name);
+            assert!(has(&draft, own), "{name}");
+            assert_eq!(mistakes(&draft.file()), [""; 0], "{name}");
+            let known = |key: &String| draft.measures.iter().any(|measure| measure.key == *key);
+            assert!(draft.file.secondary.iter().chain([&draft.file.primary]).all(known));
+        }
+        assert!(!draft.file.secondary.contains(&"drops".to_owned()), "the wire had none");
+        draft.limit(45.0);
+        let file = draft.file();
+        let task = file.task.unwrap();
+        assert_eq!((task.kind, task.time_limit_s), (TaskKind::PegTransfer, 45.0));
+        let short = Draft::of("short").unwrap();
+        assert_eq!(short.scenes.len(), 4, "its own scene too");
+        assert!(
+            has(&short, "mean_force_n_right") && !has(&short, "mean_force_n_left") && !has(&short, "completion_time_s")
+        );
+    }
+
+    #[test]
+    fn a_short_study_goes_to_another_scene_and_back() {
+        let mut draft = Draft::of("short").unwrap();
+        let before = draft.file();
+        draft.choose(1);
+        assert_eq!(draft.file().scene, "rings");
+        assert!(draft.file().task.is_none(), "that of the scene");
+        draft.choose(0);
+        assert_eq!((draft.file().scene, draft.file().task), (before.scene, before.task));
+    }
+
+    #[test]
+    fn a_rule_says_what_it_lacks() {
+        let mut draft = Draft::of("paper").unwrap();
+        draft.add_rule();
+        let last = draft.file.exclusion.len() - 1;
+        assert!(mistakes(&draft.file())[0].contains("limit is missing"), "{:?}", mistakes(&draft.file()));
+        draft.file.exclusion[last].limit = Some(2.0);
+        assert!(mistakes(&draft.file()).is_empty());
+        (draft.takes_few, draft.rings) = (true, 9);
+        assert_eq!(mistakes(&draft.file()), ["rings = 9: scene \"Rings on pegs\" has 6"]);
     }
 
     #[test]

@@ -10,6 +10,7 @@ use super::{
     column,
     draft::{Draft, with_mode, without_force},
     field_ui,
+    measures::{exclusion_ui, measures_ui, task_ui},
 };
 use crate::{
     console::{
@@ -52,10 +53,13 @@ impl Form {
             column(ui, "what", vec2(LEFT * room.x - theme::GAP, room.y), |ui| {
                 ready_ui(ui, draft);
                 what_ui(ui, draft);
+                task_ui(ui, draft);
                 practice_ui(ui, draft);
             });
             column(ui, "conditions", vec2((1.0 - LEFT) * room.x, room.y), |ui| {
                 conditions_ui(ui, draft);
+                measures_ui(ui, draft);
+                exclusion_ui(ui, draft);
                 breaks_ui(ui, draft);
                 questionnaires_ui(ui, draft);
             });
@@ -129,7 +133,6 @@ fn what_ui(ui: &mut Ui, draft: &mut Draft) {
     let file = &mut draft.file;
     card(ui, text::studies::WHAT, text::studies::WHAT_HOVER, |ui| {
         field_ui(ui, text::studies::NAME, &mut file.name);
-        ui.add(Label::new(small(text::studies::fixed(&file.scene, &file.primary, &draft.task))).wrap());
         field_ui(ui, text::studies::RIG, &mut file.rig);
         Grid::new("figures").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
             whole_ui(ui, text::studies::PARTICIPANTS, &mut file.participants, 0..=200);
@@ -289,13 +292,13 @@ fn questionnaires_ui(ui: &mut Ui, draft: &mut Draft) {
     });
 }
 
-fn whole_ui(ui: &mut Ui, name: &str, value: &mut u32, range: RangeInclusive<u32>) {
+pub(super) fn whole_ui(ui: &mut Ui, name: &str, value: &mut u32, range: RangeInclusive<u32>) {
     let label = ui.label(weak(name));
     ui.add(DragValue::new(value).range(range).speed(0.1)).labelled_by(label.id);
     ui.end_row();
 }
 
-fn seconds_ui(ui: &mut Ui, name: &str, value_s: &mut f64, range_s: RangeInclusive<f64>) {
+pub(super) fn seconds_ui(ui: &mut Ui, name: &str, value_s: &mut f64, range_s: RangeInclusive<f64>) {
     let label = ui.label(weak(name));
     ui.add(DragValue::new(value_s).range(range_s).speed(1.0).max_decimals(1).suffix(" s")).labelled_by(label.id);
     ui.end_row();

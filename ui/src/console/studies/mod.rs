@@ -10,6 +10,7 @@ mod desk;
 mod draft;
 mod form;
 mod list;
+mod measures;
 mod questions;
 mod rest;
 pub(super) mod trial;

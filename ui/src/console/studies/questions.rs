@@ -199,9 +199,8 @@ impl Sheet {
     }
 
     fn sus_ui(&mut self, ui: &mut Ui) {
-        ui.label(small(text::studies::SUS_ENDS));
         for ((statement, item), number) in SUS_ITEMS.iter().zip(&mut self.items).zip(1..) {
-            numbered_ui(ui, &format!("{number}. {statement}"), item, 5, number);
+            numbered_ui(ui, &format!("{number}. {statement}"), item, 5, number, text::studies::AGREE);
         }
     }
 
@@ -227,13 +226,22 @@ fn tapped(slider: &Response) -> Option<f64> {
 
 /// A question that is answered by a number from 1 on.
 fn scale_ui(ui: &mut Ui, question: &str, answer: &mut Option<u8>, most: u8) {
-    numbered_ui(ui, question, answer, most, 1);
+    numbered_ui(ui, question, answer, most, 1, ["", ""]);
 }
 
-fn numbered_ui(ui: &mut Ui, question: &str, answer: &mut Option<u8>, most: u8, number: usize) {
+/// The same with what its first and its last number mean.
+fn numbered_ui(
+    ui: &mut Ui,
+    question: &str,
+    answer: &mut Option<u8>,
+    most: u8,
+    number: usize,
+    [first, last]: [&str; 2],
+) {
     ui.add_space(4.0);
     ui.add(Label::new(question).wrap());
     ui.horizontal(|ui| {
+        ui.label(small(first));
         for value in 1..=most {
             let on = *answer == Some(value);
             let button = Button::selectable(on, value.to_string()).frame_when_inactive(true);
@@ -244,5 +252,6 @@ fn numbered_ui(ui: &mut Ui, question: &str, answer: &mut Option<u8>, most: u8, n
                 *answer = Some(value);
             }
         }
+        ui.label(small(last));
     });
 }

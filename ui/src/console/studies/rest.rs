@@ -4,7 +4,10 @@ use std::time::{Duration, Instant};
 
 use egui::{Align, Button, Layout, RichText, Ui, vec2};
 
-use crate::console::{text, theme, widgets::next_button};
+use crate::console::{
+    text, theme,
+    widgets::{next_button, small, weak},
+};
 
 /// The clock on the screen goes on so often.
 const AGAIN: Duration = Duration::from_millis(250);
@@ -41,6 +44,8 @@ impl Rest {
             let words =
                 if left_s > 0.0 { text::studies::clock(left_s.ceil()) } else { text::studies::BREAK_OVER.to_owned() };
             ui.label(RichText::new(words).font(theme::strong(46.0)));
+            let least = text::studies::break_least(self.least_s);
+            ui.label(weak(if left_s > 0.0 { least.as_str() } else { text::studies::BREAK_MAY_END }));
             ui.add_space(24.0);
             let end = RichText::new(text::studies::BREAK_END).font(theme::strong(17.0));
             let button = next_button(end, left_s <= 0.0).min_size(vec2(220.0, 48.0));
@@ -51,6 +56,7 @@ impl Rest {
             if ui.add(Button::new(text::studies::BACK).min_size(vec2(220.0, 36.0))).clicked() {
                 done = Some(Done::Back);
             }
+            ui.label(small(text::studies::BREAK_BACK));
         });
         done
     }

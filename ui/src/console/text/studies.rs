@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use nima_user_study::{Done, Label, Phase, Questionnaire, Step, TrialId};
+use nima_score::{LEAST_TRIALS, LearningCurve, Shape};
+use nima_user_study::{Comparison, Done, Excludes, Label, Phase, Questionnaire, Step, TrialId};
 
 pub(in crate::console) const OPEN: &str = "User studies";
 pub(in crate::console) const OPEN_HOVER: &str = "Make a study, or go on with one. F8";
@@ -20,8 +21,7 @@ pub(in crate::console) const NOT_OVER_A_LINE: &str =
     "A study needs arm and handle at this machine, because it sets the delay itself";
 
 pub(in crate::console) const READY: &str = "Begin with a ready study";
-pub(in crate::console) const READY_HOVER: &str =
-    "Scene, task, measures and rules come from it; what is below can be changed";
+pub(in crate::console) const READY_HOVER: &str = "Everything comes from it, and all that is below can be changed";
 pub(in crate::console) const WHAT: &str = "Study";
 pub(in crate::console) const WHAT_HOVER: &str = "Everybody reads the name, so it must not tell what is compared";
 pub(in crate::console) const NAME: &str = "Name";
@@ -47,6 +47,29 @@ pub(in crate::console) const ADD: &str = "Add a condition";
 pub(in crate::console) const NEW_CONDITION: &str = "New condition";
 pub(in crate::console) const REFERENCE: &str = "The others are compared with";
 pub(in crate::console) const FIRST_LABEL: &str = "condition A";
+pub(in crate::console) const TASK: &str = "Task";
+pub(in crate::console) const TASK_HOVER: &str = "What the participant does in each trial";
+pub(in crate::console) const SCENE: &str = "Scene";
+pub(in crate::console) const LIMIT: &str = "A trial is over after";
+pub(in crate::console) const FEW_RINGS: &str = "Only some of its rings";
+pub(in crate::console) const RINGS: &str = "Rings";
+pub(in crate::console) const MEASURES: &str = "Measures";
+pub(in crate::console) const MEASURES_HOVER: &str =
+    "The primary one decides, and is chosen before the first trial; the others are for the report";
+pub(in crate::console) const PRIMARY: &str = "Primary measure";
+pub(in crate::console) const SECONDARY: &str = "Secondary measures";
+pub(in crate::console) const ADD_MEASURE: &str = "Add a measure";
+pub(in crate::console) const EXCLUSION: &str = "Left out of the analysis";
+pub(in crate::console) const EXCLUSION_HOVER: &str =
+    "Rules that are fixed before the first trial; what they leave out stands in the report with its rule";
+pub(in crate::console) const NO_RULES: &str = "No rule: every trial with a result counts";
+pub(in crate::console) const ADD_RULE: &str = "Add a rule";
+pub(in crate::console) const MEASURE: &str = "Measure";
+pub(in crate::console) const IS: &str = "is";
+pub(in crate::console) const LIMIT_OF: &str = "Limit";
+pub(in crate::console) const LEFT_OUT: &str = "leaves out";
+pub(in crate::console) const FROM: &str = "from so many times on";
+pub(in crate::console) const TIMES: &str = " times";
 pub(in crate::console) const PRACTICE: &str = "Practice";
 pub(in crate::console) const PRACTICE_HOVER: &str =
     "Trials before the first one that counts, until the criterion is met";
@@ -112,6 +135,9 @@ pub(in crate::console) const REPORT: &str = "Report";
 pub(in crate::console) const REPORT_HOVER: &str = "The whole analysis as one page; a study that is blind stays blind";
 pub(in crate::console) const REPORT_WRITE: &str = "Write the report";
 pub(in crate::console) const REPORT_WRITING: &str = "Writing the report";
+pub(in crate::console) const REPORT_OPEN: &str = "Open the report";
+pub(in crate::console) const REPORT_NOT_OPENED: &str =
+    "No program of this desktop opens it: open the file report.html in the study's folder yourself";
 pub(in crate::console) const UNBLINDING: &str = "Unblinding";
 pub(in crate::console) const UNBLINDING_HOVER: &str =
     "Shows what each label stands for; name, reason and time are kept in the journal";
@@ -134,12 +160,14 @@ pub(in crate::console) const KEYS_SEARCH: &str = "X marks a place, D ends the tr
 pub(in crate::console) const BREAK: &str = "Break";
 pub(in crate::console) const BREAK_OVER: &str = "The break may end";
 pub(in crate::console) const BREAK_END: &str = "End the break";
+pub(in crate::console) const BREAK_MAY_END: &str = "It may last longer";
+pub(in crate::console) const BREAK_BACK: &str = "Back: the break did not happen, and stays the next step";
 pub(in crate::console) const BREAK_DONE: &str = "The break is over";
 pub(in crate::console) const SUBMIT: &str = "Submit";
 pub(in crate::console) const SUBMITTED: &str = "The answers are kept";
 pub(in crate::console) const RATE: &str = "Click or drag on each line to rate it";
 pub(in crate::console) const PAIRS: &str = "Of each pair, choose what contributed more to the workload";
-pub(in crate::console) const SUS_ENDS: &str = "1 strongly disagree, 5 strongly agree";
+pub(in crate::console) const AGREE: [&str; 2] = ["Strongly disagree", "Strongly agree"];
 pub(in crate::console) const FREE_TEXT: &str = "What do you want to tell us?";
 pub(in crate::console) const FREE_TEXT_HINT: &str = "It may stay empty";
 pub(in crate::console) const NOT_ANSWERED: &str = "not yet";
@@ -155,9 +183,41 @@ pub(in crate::console) fn ready(name: &str) -> [&'static str; 2] {
     }
 }
 
-/// What comes from the ready study.
-pub(in crate::console) fn fixed(scene: &str, primary: &str, task: &str) -> String {
-    format!("Scene: {scene}\nTask: {task}\nPrimary measure: {primary}")
+/// A measure in a list.
+pub(in crate::console) fn measure(key: &str, words: &str) -> String {
+    format!("{key}: {}", words.trim_end_matches('.'))
+}
+
+/// A secondary measure, on the button that leaves it off.
+pub(in crate::console) fn leave_off(key: &str) -> String {
+    format!("{key} \u{00d7}")
+}
+
+/// What it is, and what the button does.
+pub(in crate::console) fn leave_off_hover(meaning: &str) -> String {
+    format!("{meaning} A click leaves it off.")
+}
+
+/// Name of the control of a rule, for those who do not see the table.
+pub(in crate::console) fn of_rule(what: &str, number: usize) -> String {
+    format!("Rule {number}: {what}")
+}
+
+/// How a rule compares.
+pub(in crate::console) const fn comparison(is: Comparison) -> &'static str {
+    match is {
+        Comparison::Above => "above",
+        Comparison::Below => "below",
+        Comparison::Missing => "missing",
+    }
+}
+
+/// What a rule leaves out.
+pub(in crate::console) const fn excludes(what: Excludes) -> &'static str {
+    match what {
+        Excludes::Trial => "the trial",
+        Excludes::Participant => "the participant",
+    }
 }
 
 /// Whether the orders are balanced.
@@ -287,6 +347,11 @@ pub(in crate::console) fn clock(seconds: f64) -> String {
     format!("{}:{:02}", whole / 60, whole % 60)
 }
 
+/// How long a break lasts.
+pub(in crate::console) fn break_least(least_s: f64) -> String {
+    format!("Until it may end; the study asks for {} at least", clock(least_s))
+}
+
 /// Time of a trial, of its limit.
 pub(in crate::console) fn time_of(seconds: f64, limit_s: f64) -> String {
     format!("{} of {}", clock(seconds), clock(limit_s))
@@ -310,6 +375,19 @@ pub(in crate::console) fn statement(number: usize) -> String {
 /// Trials of a learning curve.
 pub(in crate::console) fn curve(participant: &str, practice: usize, trials: usize) -> String {
     format!("Learning of {participant}: {practice} trials of practice, {trials} trials completed")
+}
+
+/// What is drawn of them.
+pub(in crate::console) fn curve_marks(curve: Option<&LearningCurve>) -> String {
+    let marks = "Rings: practice. Discs: trials that count.";
+    match curve {
+        Some(curve) if curve.shape == Shape::Flat => format!("{marks} Line: {:.0} s, no learning", curve.asymptote_s),
+        Some(curve) => {
+            let seen = if curve.plateau_seen { "reached" } else { "not reached yet" };
+            format!("{marks} Line: fitted curve, plateau {:.0} s ({seen})", curve.asymptote_s)
+        }
+        None => format!("{marks} A curve needs {LEAST_TRIALS} completed trials"),
+    }
 }
 
 /// Facts of a study: its rig, who has finished, whether it is blind.

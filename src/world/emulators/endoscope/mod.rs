@@ -9,6 +9,7 @@ mod draw;
 mod serve;
 #[cfg(test)]
 mod tests;
+mod workshop;
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector2, Vector3};
 use nima_core::frames::from_roll_pitch_yaw_deg;
@@ -31,7 +32,7 @@ pub struct Instrument {
 pub type Body = Box<dyn FnMut(f64) -> Vec<Instrument> + Send>;
 
 /// How an emulated endoscope is.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emulated {
     /// TCP port; 0 takes a free one.
     pub port: u16,
@@ -43,12 +44,21 @@ pub struct Emulated {
     pub square_px: usize,
     /// Quality of the JPEGs, 1 to 100.
     pub quality: u8,
+    /// Pictures are made with less claim to a processor than other threads have: beside emulators that serve a loop.
+    pub gives_way: bool,
 }
 
 impl Emulated {
     /// The usual endoscope of a scene, on this port.
     pub fn of(scene: &Scene, port: u16) -> Self {
-        Self { port, rate_hz: 30.0, camera: camera_of(&usual(scene)), square_px: SQUARE_PX, quality: 80 }
+        Self {
+            port,
+            rate_hz: 30.0,
+            camera: camera_of(&usual(scene)),
+            square_px: SQUARE_PX,
+            quality: 80,
+            gives_way: false,
+        }
     }
 
     /// With what it sees.

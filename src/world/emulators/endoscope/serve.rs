@@ -6,9 +6,10 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
-use nima_endoscope::{jpeg, time_code};
-
-use super::{Body, Emulated, draw::Painter};
+use super::{
+    Body, Emulated,
+    workshop::{BOUNDARY, Order, Workshop},
+};
 use crate::{
     emulators::{
         EmulatedFault, Emulator, Peer, Turn,
@@ -21,7 +22,8 @@ use crate::{
 const REQUEST_MOST: usize = 8 << 10;
 /// How late a late picture leaves, s.
 const LATE_S: f64 = 0.4;
-const BOUNDARY: &str = "nima-endoscope";
+/// It is looked so often whether a picture is made, s.
+const LOOK_S: f64 = 1e-3;
 /// What a browser or a player asks for.
 const PATHS: [&str; 4] = ["/", "/stream", "/stream.mjpg", "/?action=stream"];
 
@@ -30,9 +32,11 @@ pub(super) struct Endoscope {
     scene: Scene,
     body: Body,
     /// Made when the first picture is wanted.
-    painter: Option<Painter>,
+    workshop: Option<Workshop>,
     clients: Vec<Client>,
     due_s: f64,
+    /// When it is looked whether a picture is made, s.
+    looks_s: f64,
     /// The last picture as it was sent, which a frozen camera sends again.
     last: Option<Vec<u8>>,
     /// When each late picture leaves, s.
@@ -48,48 +52,45 @@ struct Client {
 impl Endoscope {
     pub(super) fn new(emulated: Emulated, scene: &Scene, body: Body) -> Self {
         let (clients, late) = (Vec::new(), VecDeque::new());
-        Self { emulated, scene: scene.clone(), body, painter: None, clients, due_s: 0.0, last: None, late }
+        Self {
+            emulated,
+            scene: scene.clone(),
+            body,
+            workshop: None,
+            clients,
+            due_s: 0.0,
+            looks_s: 0.0,
+            last: None,
+            late,
+        }
     }
 
     fn is_watched(&self) -> bool {
         self.clients.iter().any(|client| client.watches)
     }
 
-    /// One part of the answer with the picture of this time.
-    fn part(&mut self, now_s: f64, fault: EmulatedFault) -> Vec<u8> {
+    /// Orders the picture of this time.
+    fn order(&mut self, now_s: f64, fault: EmulatedFault) {
         // Before it is looked: whoever reads this time knows that nothing in the picture is older.
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let instruments = (self.body)(now_s);
-        let (camera, scene) = (self.emulated.camera, &self.scene);
-        let painter = self.painter.get_or_insert_with(|| Painter::new(camera, scene));
-        let size_px @ [width, _] = painter.size_px();
-        let rgb = painter.draw(&instruments);
-        let (quality, square_px) = (self.emulated.quality, self.emulated.square_px);
-        if square_px > 0 {
-            time_code::draw(since.as_micros() as u64, square_px, rgb, width);
+        if self.workshop.is_none() {
+            // Without a thread there is no picture; it is tried again for the next one.
+            self.workshop = Workshop::start(self.emulated, &self.scene).ok();
         }
-        let (kind, mut picture) = match fault {
-            EmulatedFault::Black => {
-                rgb.fill(0);
-                ("image/jpeg", jpeg::encode(rgb, size_px, quality))
-            }
-            EmulatedFault::WrongSize => {
-                let (half, half_px) = halved(rgb, size_px);
-                ("image/jpeg", jpeg::encode(&half, half_px, quality))
-            }
-            EmulatedFault::OtherFormat => ("image/png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec()),
-            _ => ("image/jpeg", jpeg::encode(rgb, size_px, quality)),
-        };
-        if fault == EmulatedFault::Torn {
-            picture.truncate(picture.len() * 6 / 10);
+        if let Some(workshop) = &mut self.workshop {
+            workshop.order(Order { since, instruments, fault });
         }
-        let head = format!(
-            "\r\n--{BOUNDARY}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nX-Timestamp: {}.{:06}\r\n\r\n",
-            picture.len(),
-            since.as_secs(),
-            since.subsec_micros()
-        );
-        [head.as_bytes(), &picture].concat()
+    }
+
+    /// Sends a picture, or keeps it for later.
+    fn deliver(&mut self, part: Vec<u8>, turn: &mut Turn<'_>) {
+        if turn.fault == EmulatedFault::Late {
+            self.late.push_back((turn.now_s + LATE_S, part.clone()));
+        } else {
+            self.send(&part, turn);
+        }
+        self.last = Some(part);
     }
 
     fn send(&self, part: &[u8], turn: &mut Turn<'_>) {
@@ -97,14 +98,6 @@ impl Endoscope {
             turn.send(client.peer, part);
         }
     }
-}
-
-/// Every second pixel of every second row.
-fn halved(rgb: &[u8], [width, height]: [usize; 2]) -> (Vec<u8>, [usize; 2]) {
-    let half_px = [width / 2, height / 2];
-    let rows = rgb.chunks_exact(3 * width).step_by(2).take(half_px[1]);
-    let half = rows.flat_map(|row| row.chunks_exact(3).step_by(2).take(half_px[0]).flatten().copied()).collect();
-    (half, half_px)
 }
 
 /// Answer to a whole request, and whether pictures follow.
@@ -164,25 +157,25 @@ impl Emulator for Endoscope {
         while let Some((_, part)) = self.late.pop_front_if(|(leaves_s, _)| *leaves_s <= turn.now_s) {
             self.send(&part, turn);
         }
-        if !self.is_watched() || turn.now_s < self.due_s {
-            return;
+        if let Some(part) = self.workshop.as_mut().and_then(Workshop::made) {
+            self.deliver(part, turn);
         }
-        // What was missed is not caught up.
-        let period_s = self.emulated.rate_hz.recip();
-        self.due_s = (self.due_s + period_s).max(turn.now_s);
-        let frozen = self.last.take().filter(|_| turn.fault == EmulatedFault::Freeze);
-        let part = frozen.unwrap_or_else(|| self.part(turn.now_s, turn.fault));
-        if turn.fault == EmulatedFault::Late {
-            self.late.push_back((turn.now_s + LATE_S, part.clone()));
-        } else {
-            self.send(&part, turn);
+        let is_busy = self.workshop.as_ref().is_some_and(|workshop| workshop.is_busy);
+        if self.is_watched() && turn.now_s >= self.due_s && !is_busy {
+            // What was missed is not caught up.
+            self.due_s = (self.due_s + self.emulated.rate_hz.recip()).max(turn.now_s);
+            match self.last.take().filter(|_| turn.fault == EmulatedFault::Freeze) {
+                Some(frozen) => self.deliver(frozen, turn),
+                None => self.order(turn.now_s, turn.fault),
+            }
         }
-        self.last = Some(part);
+        self.looks_s = turn.now_s + LOOK_S;
     }
 
     fn due_s(&self) -> Option<f64> {
         let late_s = self.late.front().map(|(leaves_s, _)| *leaves_s);
-        let due_s = self.is_watched().then_some(self.due_s);
+        let is_busy = self.workshop.as_ref().is_some_and(|workshop| workshop.is_busy);
+        let due_s = if is_busy { Some(self.looks_s) } else { self.is_watched().then_some(self.due_s) };
         [late_s, due_s].into_iter().flatten().reduce(f64::min).or(Some(f64::INFINITY))
     }
 

@@ -2,13 +2,13 @@
 
 use std::{
     io,
-    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
+    sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError},
     thread::Builder,
     time::{Duration, Instant},
 };
 
 use crate::{
-    Address, Compressed, Picture, Standing, Trouble,
+    Address, Compressed, Picture, Reel, Standing, Trouble,
     jpeg::decode,
     judge::Watch,
     source::{Source, Wanted},
@@ -52,6 +52,8 @@ struct Shared {
     /// The newest picture that is not decoded: a queue of one.
     waiting: Mutex<Option<Compressed>>,
     came: Condvar,
+    /// Where every picture goes too, as it came.
+    reel: OnceLock<Reel>,
 }
 
 #[derive(Debug)]
@@ -106,6 +108,7 @@ impl Feed {
             state: Mutex::new(state),
             waiting: Mutex::default(),
             came: Condvar::new(),
+            reel: OnceLock::new(),
         });
         let feed = Self { shared: Arc::clone(&shared) };
         let wake = Arc::new(wake);
@@ -113,6 +116,11 @@ impl Feed {
         Builder::new().name("endoscope".to_owned()).spawn(move || reads.read(&address, &*wakes))?;
         Builder::new().name("picture".to_owned()).spawn(move || shared.decode(&*wake))?;
         Ok(feed)
+    }
+
+    /// Every picture from now on goes into this reel too. The first one that is given counts.
+    pub fn record_to(&self, reel: Reel) {
+        self.shared.reel.set(reel).ok();
     }
 
     /// How it stands with the picture at this moment, for who does not show it.
@@ -203,6 +211,9 @@ impl Shared {
                         let mut state = locked(&self.state);
                         state.watch.arrived(compressed.arrived, compressed.stamp_s, &compressed.jpeg);
                         (state.trouble, state.opened) = (None, true);
+                    }
+                    if let Some(reel) = self.reel.get() {
+                        reel.put(&compressed);
                     }
                     // What was not decoded yet is old now.
                     *locked(&self.waiting) = Some(compressed);

@@ -2,7 +2,7 @@
 //!
 //! A [`Feed`] takes an [`Address`] (motion JPEG over HTTP, a file, a folder), opens it on threads of its own, opens it again when it is lost,
 //! and has the newest picture ready, with its age, its rate and what is wrong with it ([`Standing`]). Nobody waits for anybody: a picture that
-//! nobody took is replaced by the next one. [`Camera`] is where the endoscope looks and how its lens bends the picture; [`time_code`] and
+//! nobody took is replaced by the next one; a recording gets all of them as they came, over a [`Reel`]. [`Camera`] is where the endoscope looks and how its lens bends the picture; [`time_code`] and
 //! [`jpeg::encode`] are for emulators and tests. Bad input (a picture or an answer that is cut off, too large, of another format) is a
 //! [`Trouble`] with its cure, or a [`Damage`] of one picture. Knows no loop, device or window.
 //!
@@ -26,6 +26,7 @@ mod files;
 mod http;
 pub mod jpeg;
 mod judge;
+mod reel;
 mod source;
 pub mod time_code;
 mod trouble;
@@ -35,5 +36,6 @@ pub use camera::{Camera, Lens};
 pub use feed::{Feed, Look};
 pub use jpeg::{Damage, Picture};
 pub use judge::{FROZEN, LATE, Standing, Wrong};
+pub use reel::{Reel, ReelEnd};
 pub use source::{Compressed, Source};
 pub use trouble::Trouble;

@@ -25,7 +25,7 @@ fn both_tips_are_in_the_picture_where_the_world_has_them() {
     let mut settings = usual(&scene);
     settings.k1 = 0.3;
     let url = format!("http://127.0.0.1:{port}/");
-    let endoscope = Endoscope { url: url.clone(), rotation_deg: 0, mirror: false, camera: Some(settings) };
+    let endoscope = Endoscope { url: url.clone(), camera: Some(settings), ..Endoscope::default() };
     let elsewhere = Endoscope { url: "http://192.0.2.1/".to_owned(), ..endoscope.clone() };
     let told = rig.show(&elsewhere, &devices, &scene).unwrap_err().to_string();
     assert!(told.contains("endoscope") && told.contains("127.0.0.1"), "{told}");

@@ -17,9 +17,28 @@ pub struct Endoscope {
     /// Left and right are exchanged on the screen, before it is turned.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub mirror: bool,
+    /// Whether sessions have its pictures, as they come.
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    pub record: bool,
     /// The camera; without it no forces are drawn into the picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub camera: Option<EndoscopeCamera>,
+}
+
+impl Default for Endoscope {
+    /// Without an address.
+    fn default() -> Self {
+        Self { url: String::new(), rotation_deg: 0, mirror: false, record: true, camera: None }
+    }
+}
+
+const fn yes() -> bool {
+    true
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+const fn is_yes(value: &bool) -> bool {
+    *value
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
@@ -78,7 +97,7 @@ impl Endoscope {
 mod tests {
     use crate::config::RigConfig;
 
-    const WHOLE: &str = "\n[endoscope]\nurl = \"http://127.0.0.1:47150/\"\nrotation_deg = 90\nmirror = true\n\n[endoscope.camera]\n\
+    const WHOLE: &str = "\n[endoscope]\nurl = \"http://127.0.0.1:47150/\"\nrotation_deg = 90\nmirror = true\nrecord = false\n\n[endoscope.camera]\n\
         size_px = [1280, 720]\nfocal_px = 726.6\nk1 = -0.3\nposition_m = [0.0, -0.1, 0.09]\nworld_from_camera_deg = [-131.0, 0.0, 0.0]\n";
 
     fn rig(more: &str) -> Result<RigConfig, String> {
@@ -91,10 +110,17 @@ mod tests {
         assert_eq!(rig("").unwrap().endoscope, None);
         let rig = rig(WHOLE).unwrap();
         let endoscope = rig.endoscope.as_ref().unwrap();
-        assert!(endoscope.mirror && endoscope.rotation_deg == 90 && endoscope.camera.is_some());
+        assert!(!endoscope.record && endoscope.mirror && endoscope.rotation_deg == 90 && endoscope.camera.is_some());
         let again = RigConfig::parse("rig.toml".as_ref(), &toml::to_string(&rig).unwrap()).unwrap();
         assert_eq!(again, rig);
         assert_eq!(rig.anonymous().endoscope, None, "its address tells where it is");
+    }
+
+    #[test]
+    fn its_pictures_are_recorded_unless_the_rig_file_says_otherwise() {
+        let rig = rig("\n[endoscope]\nurl = \"film.mjpeg\"\n").unwrap();
+        assert!(rig.endoscope.as_ref().unwrap().record);
+        assert!(!toml::to_string(&rig).unwrap().contains("record = "));
     }
 
     #[test]

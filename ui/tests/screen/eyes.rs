@@ -29,7 +29,7 @@ fn camera() -> (Serving, Endoscope) {
         vec![Instrument { tip_m: [x_m, 0.0, 0.01].into(), trocar_m: scene.trocar_m }]
     };
     let serving = emulated.with(&Scene::load("bimanual").unwrap(), Box::new(body)).serve().unwrap();
-    let endoscope = Endoscope { url: serving.endpoint.clone(), rotation_deg: 0, mirror: false, camera: Some(camera) };
+    let endoscope = Endoscope { url: serving.endpoint.clone(), camera: Some(camera), ..Endoscope::default() };
     (serving, endoscope)
 }
 
@@ -106,7 +106,7 @@ fn a_key_hides_the_forces() {
 
 #[test]
 fn a_camera_that_is_not_there_is_told_with_a_cure_there_and_among_the_devices() {
-    let endoscope = |url: &str| Endoscope { url: url.to_owned(), rotation_deg: 0, mirror: false, camera: None };
+    let endoscope = |url: &str| Endoscope { url: url.to_owned(), ..Endoscope::default() };
     let mut harness = surgeon(endoscope("http://127.0.0.1:1/"), [1280.0, 720.0]);
     told(&mut harness, "Picture is lost: nobody listens at 127.0.0.1:1");
     assert!(is_painted(&harness, "Correct the port in the rig file"));

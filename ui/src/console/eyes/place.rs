@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     fn place(rotation_deg: u16, mirror: bool) -> Place {
-        let endoscope = Endoscope { url: String::new(), rotation_deg, mirror, camera: None };
+        let endoscope = Endoscope { rotation_deg, mirror, ..Endoscope::default() };
         Place::new(Rect::from_min_size(pos2(100.0, 50.0), vec2(1000.0, 400.0)), [1280, 720], &endoscope)
     }
 

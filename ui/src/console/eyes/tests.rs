@@ -56,7 +56,7 @@ fn forces_are_drawn_where_the_tip_is_seen_through_the_distortion_of_the_lens() {
         let shown = Arc::clone(&tip_m);
         let mut settings = usual(&scene);
         settings.k1 = k1;
-        let endoscope = Endoscope { url: String::new(), rotation_deg: 0, mirror: false, camera: Some(settings) };
+        let endoscope = Endoscope { camera: Some(settings), ..Endoscope::default() };
         let camera = camera_of(&settings);
         let body = move |_: f64| vec![Instrument { tip_m: *shown.lock().unwrap(), trocar_m: scene_trocar() }];
         let serving = Emulated { camera, ..Emulated::of(&scene, 0) }.with(&scene, Box::new(body)).serve().unwrap();

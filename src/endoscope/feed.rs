@@ -8,7 +8,7 @@ use std::{
 };
 
 use crate::{
-    Address, Compressed, Picture, Reel, Standing, Trouble,
+    Address, Compressed, Picture, Reel, Standing, Tone, Trouble,
     jpeg::decode,
     judge::Watch,
     source::{Source, Wanted},
@@ -54,6 +54,8 @@ struct Shared {
     came: Condvar,
     /// Where every picture goes too, as it came.
     reel: OnceLock<Reel>,
+    /// How the pictures are prepared.
+    tone: Mutex<Tone>,
 }
 
 #[derive(Debug)]
@@ -109,6 +111,7 @@ impl Feed {
             waiting: Mutex::default(),
             came: Condvar::new(),
             reel: OnceLock::new(),
+            tone: Mutex::default(),
         });
         let feed = Self { shared: Arc::clone(&shared) };
         let wake = Arc::new(wake);
@@ -121,6 +124,11 @@ impl Feed {
     /// Every picture from now on goes into this reel too. The first one that is given counts.
     pub fn record_to(&self, reel: Reel) {
         self.shared.reel.set(reel).ok();
+    }
+
+    /// Pictures are prepared with this tone from now on, the newest one too.
+    pub fn set_tone(&self, tone: Tone) {
+        *locked(&self.shared.tone) = tone;
     }
 
     /// How it stands with the picture at this moment, for who does not show it.
@@ -234,15 +242,21 @@ impl Shared {
 
     /// Decodes the newest picture again and again.
     fn decode(&self, wake: &dyn Fn()) {
-        while let Some(compressed) = self.next() {
+        let mut last: Option<(Compressed, Tone)> = None;
+        while let Some(compressed) = self.next(last.as_ref()) {
             if !locked(&self.state).wants(Instant::now()) {
                 continue;
             }
-            let decoded = decode(&compressed.jpeg);
+            let mut decoded = decode(&compressed.jpeg);
+            let tone = *locked(&self.tone);
             {
                 let mut state = locked(&self.state);
                 state.decoded = Some(Instant::now());
                 state.watch.decoded(compressed.arrived, decoded.as_ref());
+                if let Ok(picture) = &mut decoded {
+                    // What is wrong with a picture is judged as it came.
+                    tone.apply(picture);
+                }
                 if let Ok(picture) = decoded {
                     state.shown += 1;
                     let (number, arrived) = (state.shown, compressed.arrived);
@@ -251,11 +265,12 @@ impl Shared {
                 }
             }
             wake();
+            last = Some((compressed, tone));
         }
     }
 
-    /// Waits for a picture; `None` if nobody wants one any more.
-    fn next(&self) -> Option<Compressed> {
+    /// Waits for a picture, or for another tone of the last one; `None` if nobody wants one any more.
+    fn next(&self, last: Option<&(Compressed, Tone)>) -> Option<Compressed> {
         let mut waiting = locked(&self.waiting);
         loop {
             if self.wanted.has_ended() {
@@ -263,6 +278,9 @@ impl Shared {
             }
             if let Some(compressed) = waiting.take() {
                 return Some(compressed);
+            }
+            if let Some((compressed, _)) = last.filter(|(_, tone)| *tone != *locked(&self.tone)) {
+                return Some(compressed.clone());
             }
             // A word that was missed costs a nap, not the picture.
             waiting = self.came.wait_timeout(waiting, NAP).unwrap_or_else(PoisonError::into_inner).0;

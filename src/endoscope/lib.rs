@@ -29,6 +29,7 @@ mod judge;
 mod reel;
 mod source;
 pub mod time_code;
+mod tone;
 mod trouble;
 
 pub use address::{Address, AddressError};
@@ -38,4 +39,5 @@ pub use jpeg::{Damage, Picture};
 pub use judge::{FROZEN, LATE, Standing, Wrong};
 pub use reel::{Reel, ReelEnd};
 pub use source::{Compressed, Source};
+pub use tone::Tone;
 pub use trouble::Trouble;

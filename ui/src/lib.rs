@@ -8,6 +8,7 @@ mod emulators;
 pub mod leaving;
 mod line;
 mod objects;
+mod pictures;
 mod recording;
 mod report;
 mod scoring;

@@ -17,6 +17,9 @@ pub struct Endoscope {
     /// Left and right are exchanged on the screen, before it is turned.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub mirror: bool,
+    /// What is cut off at the left, top, right and bottom of the picture as it comes, px.
+    #[serde(default, skip_serializing_if = "is_whole")]
+    pub crop_px: [usize; 4],
     /// Whether sessions have its pictures, as they come.
     #[serde(default = "yes", skip_serializing_if = "is_yes")]
     pub record: bool,
@@ -28,8 +31,12 @@ pub struct Endoscope {
 impl Default for Endoscope {
     /// Without an address.
     fn default() -> Self {
-        Self { url: String::new(), rotation_deg: 0, mirror: false, record: true, camera: None }
+        Self { url: String::new(), rotation_deg: 0, mirror: false, crop_px: [0; 4], record: true, camera: None }
     }
+}
+
+fn is_whole(crop_px: &[usize; 4]) -> bool {
+    *crop_px == [0; 4]
 }
 
 const fn yes() -> bool {
@@ -78,8 +85,19 @@ impl Endoscope {
         let turn = self.rotation_deg;
         let turns = matches!(turn, 0 | 90 | 180 | 270);
         ranges.check("endoscope.rotation_deg", f64::from(turn), turns, "0, 90, 180 or 270")?;
+        let size_px = self.camera.map(|camera| camera.size_px);
+        let [left, top, right, bottom] = self.crop_px.map(|edge| edge as f64);
+        // Without a size, what the largest picture has.
+        let [width, height] = size_px.unwrap_or([4096; 2]).map(|side| side as f64);
+        let leaves = left + right <= 0.9 * width && top + bottom <= 0.9 * height;
+        let most = left.max(top).max(right).max(bottom);
+        ranges.check(
+            "endoscope.crop_px",
+            most,
+            leaves,
+            "[left, top, right, bottom] that leave a tenth of the picture",
+        )?;
         let Some(camera) = &self.camera else { return Ok(()) };
-        let [width, height] = camera.size_px.map(|side| side as f64);
         let sides = |side: f64| (16.0..=4096.0).contains(&side);
         ranges.check("endoscope.camera.size_px", width, sides(width) && sides(height), "16 to 4096 px each")?;
         let focal = camera.focal_px;
@@ -132,6 +150,8 @@ mod tests {
             ("726.6", "nan", "focal_px"),
             ("-0.3", "7.0", "k1 is 7"),
             ("mirror", "mirrors", "mirrors"),
+            ("record = false", "crop_px = [700, 0, 700, 0]", "leave a tenth"),
+            ("record = false", "crop_px = [1, 2, 3]", "invalid length 3"),
         ] {
             let told = rig(&WHOLE.replace(from, to)).unwrap_err();
             assert!(told.contains(word) && !told.contains('\n'), "{to}: {told}");

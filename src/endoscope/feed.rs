@@ -2,13 +2,13 @@
 
 use std::{
     io,
-    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
+    sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError},
     thread::Builder,
     time::{Duration, Instant},
 };
 
 use crate::{
-    Address, Compressed, Format, Picture, Standing, Trouble, h264,
+    Address, Compressed, Format, Picture, Reel, Standing, Tone, Trouble, h264,
     judge::Watch,
     source::{Source, Wanted},
     waiting::Waiting,
@@ -52,6 +52,10 @@ struct Shared {
     /// What is not decoded yet.
     waiting: Mutex<Waiting>,
     came: Condvar,
+    /// Where every picture goes too, as it came.
+    reel: OnceLock<Reel>,
+    /// How the pictures are prepared.
+    tone: Mutex<Tone>,
 }
 
 #[derive(Debug)]
@@ -106,6 +110,8 @@ impl Feed {
             state: Mutex::new(state),
             waiting: Mutex::default(),
             came: Condvar::new(),
+            reel: OnceLock::new(),
+            tone: Mutex::default(),
         });
         let feed = Self { shared: Arc::clone(&shared) };
         let wake = Arc::new(wake);
@@ -113,6 +119,16 @@ impl Feed {
         Builder::new().name("endoscope".to_owned()).spawn(move || reads.read(&address, &*wakes))?;
         Builder::new().name("picture".to_owned()).spawn(move || shared.decode(&*wake))?;
         Ok(feed)
+    }
+
+    /// Every picture from now on goes into this reel too. The first one that is given counts.
+    pub fn record_to(&self, reel: Reel) {
+        self.shared.reel.set(reel).ok();
+    }
+
+    /// Pictures are prepared with this tone from now on, the newest one too.
+    pub fn set_tone(&self, tone: Tone) {
+        *locked(&self.shared.tone) = tone;
     }
 
     /// How it stands with the picture at this moment, for who does not show it.
@@ -205,6 +221,9 @@ impl Shared {
                         state.watch.arrived(&compressed);
                         (state.trouble, state.opened) = (None, true);
                     }
+                    if let Some(reel) = self.reel.get() {
+                        reel.put(&compressed);
+                    }
                     locked(&self.waiting).push(compressed);
                     self.came.notify_one();
                 }
@@ -224,9 +243,10 @@ impl Shared {
     /// Decodes the newest picture again and again.
     fn decode(&self, wake: &dyn Fn()) {
         let mut decoder = h264::Decoder::default();
-        while let Some((compressed, is_newest)) = self.next() {
+        let mut last: Option<(Compressed, Tone)> = None;
+        while let Some((compressed, is_newest)) = self.next(last.as_ref()) {
             let wanted = is_newest && locked(&self.state).wants(Instant::now());
-            let decoded = match compressed.format {
+            let mut decoded = match compressed.format {
                 Format::H264 { is_key } => match decoder.take(&compressed.bytes, is_key, wanted) {
                     Ok(None) => continue,
                     Ok(Some(taken)) => {
@@ -239,10 +259,15 @@ impl Shared {
                 _ if wanted => compressed.decode(),
                 _ => continue,
             };
+            let tone = *locked(&self.tone);
             {
                 let mut state = locked(&self.state);
                 state.decoded = Some(Instant::now());
                 state.watch.decoded(compressed.arrived, decoded.as_ref());
+                if let Ok(picture) = &mut decoded {
+                    // What is wrong with a picture is judged as it came.
+                    tone.apply(picture);
+                }
                 if let Ok(picture) = decoded {
                     state.shown += 1;
                     let (number, arrived) = (state.shown, compressed.arrived);
@@ -251,11 +276,13 @@ impl Shared {
                 }
             }
             wake();
+            // A picture of a stream cannot be decoded again: the next one has the new tone.
+            last = Some((compressed, tone)).filter(|(compressed, _)| compressed.stands_alone());
         }
     }
 
-    /// Waits for a picture, and tells whether it is the newest; `None` if nobody wants one any more.
-    fn next(&self) -> Option<(Compressed, bool)> {
+    /// Waits for a picture, and tells whether it is the newest, or for another tone of the last one; `None` if nobody wants one any more.
+    fn next(&self, last: Option<&(Compressed, Tone)>) -> Option<(Compressed, bool)> {
         let mut waiting = locked(&self.waiting);
         loop {
             if self.wanted.has_ended() {
@@ -263,6 +290,9 @@ impl Shared {
             }
             if let Some(compressed) = waiting.pop() {
                 return Some((compressed, waiting.is_empty()));
+            }
+            if let Some((compressed, _)) = last.filter(|(_, tone)| *tone != *locked(&self.tone)) {
+                return Some((compressed.clone(), true));
             }
             // A word that was missed costs a nap, not the picture.
             waiting = self.came.wait_timeout(waiting, NAP).unwrap_or_else(PoisonError::into_inner).0;

@@ -11,7 +11,7 @@ use zune_jpeg::{
     zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions},
 };
 
-pub use encode::encode;
+pub use encode::{Encoder, encode};
 pub(crate) use split::Splitter;
 
 /// The longest side of a picture, and the most pixels: somewhat more than 4096 x 2160. What is larger is refused before memory is taken for it.

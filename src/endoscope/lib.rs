@@ -2,7 +2,7 @@
 //!
 //! A [`Feed`] takes an [`Address`] (motion JPEG over HTTP, a camera of this computer, a file, a folder), opens it on threads of its own, opens it again when it is lost,
 //! and has the newest picture ready, with its age, its rate and what is wrong with it ([`Standing`]). Nobody waits for anybody: a picture that
-//! nobody took is replaced by the next one. [`Camera`] is where the endoscope looks and how its lens bends the picture; [`Board`] is what it
+//! nobody took is replaced by the next one; a recording gets all JPEGs as they came, over a [`Reel`]. [`Camera`] is where the endoscope looks and how its lens bends the picture; [`Board`] is what it
 //! is calibrated with; [`time_code`], [`jpeg::encode`] and [`board::Portrait`] are for emulators and tests. Bad input (a picture or an answer that is cut off, too large, of another format) is a
 //! [`Trouble`] with its cure, or a [`Damage`] of one picture. Knows no loop, device or window.
 //!
@@ -30,10 +30,12 @@ mod http;
 pub mod jpeg;
 mod judge;
 mod plugged;
+mod reel;
 #[cfg(feature = "h264")]
 mod rtsp;
 mod source;
 pub mod time_code;
+mod tone;
 mod trouble;
 #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
 mod v4l2;
@@ -47,5 +49,7 @@ pub use feed::{Feed, Look};
 pub use jpeg::{Damage, Picture};
 pub use judge::{FROZEN, LATE, Standing, Wrong};
 pub use plugged::{PluggedCamera, plugged_cameras};
+pub use reel::{Reel, ReelEnd};
 pub use source::{Compressed, Format, Source};
+pub use tone::Tone;
 pub use trouble::Trouble;

@@ -9,6 +9,7 @@
 //! | `recorder` | the thread that writes them, and what is plotted, into a session file |
 //! | `layouts` | what a viewer shows of a session at first |
 //! | `objects` | where the rings of a scene are, what its jaws do, and what happens to them |
+//! | `pictures` | the endoscope's pictures, as they came |
 //! | `outlet` | where that goes: into the file, and to those who watch while it happens |
 //! | `file` | the journal in a session file |
 //! | `plotted` | the plots of a session file, tick by tick, and what `nima identify` needs of them |
@@ -35,6 +36,7 @@ pub mod layouts;
 pub mod objects;
 pub mod outlet;
 pub mod outlook;
+pub mod pictures;
 pub mod plotted;
 pub mod recorder;
 pub mod replay;

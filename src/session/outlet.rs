@@ -50,7 +50,7 @@ pub trait Audience: Send + Debug {
     /// A whole file.
     fn attachment(&mut self, _time_ns: u64, _attached: &Attached) {}
 
-    /// A new channel. Its number is the count of those before it.
+    /// A new channel. Its number is the count of those before it. Pictures are in the file alone.
     fn channel(&mut self, topic: &str, encoding: &Encoding);
 
     /// A message of a channel, with the time of its sample (ns since 1970).
@@ -67,11 +67,17 @@ pub trait Audience: Send + Debug {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Channel(usize);
 
-/// A channel, as the file knows it. Audiences know it by its number.
+/// A channel of the file alone: those who watch are not told of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FileChannel(usize);
+
+/// A channel, as the file knows it.
 struct Known {
     topic: String,
     encoding: Encoding,
     of_file: Option<ChannelId>,
+    /// Its number for those who watch; `None` if it is not for them.
+    of_audiences: Option<usize>,
 }
 
 /// The file, if there is one, and the audiences.
@@ -113,16 +119,38 @@ impl Outlet {
         for audience in &mut self.audiences {
             audience.channel(topic, &encoding);
         }
+        let number = self.channels.iter().filter(|known| known.of_audiences.is_some()).count();
+        Ok(Channel(self.add(topic, encoding, Some(number))?))
+    }
+
+    /// A channel of the file alone.
+    pub(crate) fn file_channel(&mut self, topic: &str, encoding: Encoding) -> Result<FileChannel, WriteError> {
+        Ok(FileChannel(self.add(topic, encoding, None)?))
+    }
+
+    fn add(&mut self, topic: &str, encoding: Encoding, of_audiences: Option<usize>) -> Result<usize, WriteError> {
         let of_file = self.file.as_mut().map(|file| file.channel(topic, encoding.clone())).transpose()?;
-        self.channels.push(Known { topic: topic.to_owned(), encoding, of_file });
-        Ok(Channel(self.channels.len() - 1))
+        self.channels.push(Known { topic: topic.to_owned(), encoding, of_file, of_audiences });
+        Ok(self.channels.len() - 1)
     }
 
     pub(crate) fn message(&mut self, channel: Channel, log_time_ns: u64, data: &[u8]) -> Result<(), WriteError> {
-        let Some(Known { of_file, .. }) = self.channels.get(channel.0) else { return Ok(()) };
-        for audience in &mut self.audiences {
-            audience.message(channel.0, log_time_ns, data);
+        if let Some(number) = self.channels.get(channel.0).and_then(|known| known.of_audiences) {
+            for audience in &mut self.audiences {
+                audience.message(number, log_time_ns, data);
+            }
         }
+        self.file_message(FileChannel(channel.0), log_time_ns, data)
+    }
+
+    /// Writes a message into the file alone.
+    pub(crate) fn file_message(
+        &mut self,
+        channel: FileChannel,
+        log_time_ns: u64,
+        data: &[u8],
+    ) -> Result<(), WriteError> {
+        let Some(Known { of_file, .. }) = self.channels.get(channel.0) else { return Ok(()) };
         let (Some(file), Some(id)) = (&mut self.file, of_file) else { return Ok(()) };
         let written = file.message(*id, log_time_ns, data);
         if let Some(rescue) = &mut self.rescue {

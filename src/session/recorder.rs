@@ -4,6 +4,7 @@
 //! readable. The recording goes on in a second place if there is one ([`Recorder::moved`]); else it has ended ([`Recorder::trouble`]). A
 //! disk that is too slow is told by [`Progress`].
 
+mod session_file;
 mod shared;
 mod sync;
 
@@ -13,29 +14,31 @@ use std::{
     path::PathBuf,
     sync::{Arc, atomic::Ordering},
     thread::{Builder, JoinHandle},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use nima_machine::{
-    messages::Event,
-    rig::{SIDES, Side},
-    runtime::{Entry, Next, Operation, Passed, Stepped, TapEnd},
+    rig::Side,
+    runtime::{Entry, Next, Passed, TapEnd},
     teleop::{Calibrations, Origin},
 };
-use nima_recording::session::{Encoding, WriteError};
+use nima_recording::session::WriteError;
 
-use self::shared::Shared;
 pub use self::shared::{Moved, Progress};
 pub(crate) use self::sync::Sync;
+use self::{
+    session_file::{SessionFile, log_time_ns},
+    shared::Shared,
+};
 use crate::{
     journal::{End, JournalError, Start},
     kept::described,
-    layouts::layouts,
     objects::ObjectSource,
-    outlet::{Channel, Destination, Outlet, Trouble},
-    scribe::{Pages, Scribe, Written},
-    topics::{Topics, Words},
+    outlet::{Destination, Outlet, Trouble},
+    pictures::{LoopClock, PictureSource},
+    scribe::{Pages as _, Scribe},
+    topics::Words,
 };
 
 /// Topic of the journal.
@@ -45,8 +48,6 @@ pub const JOURNAL_ENCODING: &str = "nima-journal";
 
 /// How long the thread waits for the loop before it looks whether it is to end.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
-/// After so many blocks of the journal the chunk is closed: 0.4 s at 1 kHz, which is what a kill can cost.
-const BLOCKS_PER_CHUNK: u32 = 2;
 
 /// What is told of a session beside what happened in it.
 #[derive(Clone, Debug)]
@@ -124,12 +125,19 @@ pub enum NoteKind {
     Alarm,
 }
 
+/// What a recording asks beside the loop.
+#[derive(Debug)]
+enum Source {
+    Objects(Box<dyn ObjectSource>),
+    Pictures(Box<dyn PictureSource>),
+}
+
 /// A recording that is going on. Dropping it ends it as [`Recorder::finish`] does.
 #[derive(Debug)]
 pub struct Recorder {
     shared: Arc<Shared>,
     notes: Sender<(f64, Note)>,
-    sources: Sender<Box<dyn ObjectSource>>,
+    sources: Sender<Source>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -158,7 +166,13 @@ impl Recorder {
     /// Records the objects that this source tells of too. To be called before the loop starts, so that nothing is missing.
     pub fn watch(&self, source: Box<dyn ObjectSource>) {
         // A recording that has ended by itself takes no more.
-        self.sources.send(source).ok();
+        self.sources.send(Source::Objects(source)).ok();
+    }
+
+    /// Records the pictures that this source hands over too, from now on.
+    pub fn film(&self, source: Box<dyn PictureSource>) {
+        // A recording that has ended by itself takes no more.
+        self.sources.send(Source::Pictures(source)).ok();
     }
 
     /// Adds a line to the log at this time of the loop (s), or at its last tick if that is earlier.
@@ -245,9 +259,10 @@ struct Session {
     scribe: Scribe,
     file: SessionFile,
     noted: Receiver<(f64, Note)>,
-    sources: Receiver<Box<dyn ObjectSource>>,
+    sources: Receiver<Source>,
     /// The note whose time has not come yet.
     waiting: Option<(f64, Note)>,
+    clock: LoopClock,
 }
 
 impl Session {
@@ -256,7 +271,7 @@ impl Session {
         about: About,
         origin: Origin,
         noted: Receiver<(f64, Note)>,
-        sources: Receiver<Box<dyn ObjectSource>>,
+        sources: Receiver<Source>,
     ) -> Result<Self, RecordError> {
         let sides = origin.calibrations.each_ref().map(Option::is_some);
         let of = |(side, known): (Side, &Option<Calibrations>)| Some((side, described(known.as_ref()?)));
@@ -266,18 +281,28 @@ impl Session {
         let mut file = SessionFile::create(to, about, &known, sides, devices)?;
         file.write(&first)?;
         file.out.flush()?;
-        Ok(Self { scribe, file, noted, sources, waiting: None })
+        Ok(Self { scribe, file, noted, sources, waiting: None, clock: LoopClock::default() })
     }
 
     fn run(&mut self, tap: &TapEnd, shared: &Shared) -> Result<(), RecordError> {
         loop {
             let next = next(tap, shared);
             // What was handed over before the loop has begun is here before its first tick.
-            if let Ok(source) = self.sources.try_recv() {
-                self.file.topics.watch(&mut self.file.out, source)?;
+            while let Ok(source) = self.sources.try_recv() {
+                match source {
+                    Source::Objects(source) => self.file.topics.watch(&mut self.file.out, source)?,
+                    Source::Pictures(source) => self.file.topics.film(source),
+                }
             }
             match next {
-                Next::Entry(entry) => self.scribe.take(entry, tap, &mut self.file)?,
+                Next::Entry(entry) => {
+                    let before = self.scribe.ticks();
+                    self.scribe.take(entry, tap, &mut self.file)?;
+                    if self.scribe.ticks() > before {
+                        self.clock.note(self.scribe.t_s(), Instant::now());
+                        self.pictures(shared)?;
+                    }
+                }
                 // The loop rests: nobody shall wait for what is known.
                 Next::Nothing => {
                     self.notes(f64::INFINITY)?;
@@ -295,6 +320,20 @@ impl Session {
             shared.lost.store(self.scribe.lost(), Ordering::Relaxed);
             shared.bytes.store(self.file.out.bytes(), Ordering::Relaxed);
         }
+    }
+
+    /// Writes the pictures up to the last tick.
+    fn pictures(&mut self, shared: &Shared) -> Result<(), RecordError> {
+        let (clock, started_ns) = (&self.clock, self.file.started_ns);
+        let [written, dropped] = self.file.topics.pictures(
+            &mut self.file.out,
+            self.scribe.t_s(),
+            |taken| clock.at(taken.arrived),
+            |t_s| log_time_ns(started_ns, t_s),
+        )?;
+        shared.pictures.store(written, Ordering::Relaxed);
+        shared.pictures_dropped.store(dropped, Ordering::Relaxed);
+        Ok(())
     }
 
     /// Writes the notes up to this time (s) of the loop, none behind its last tick: the end of the journal is the last message.
@@ -320,82 +359,5 @@ impl Session {
         shared.bytes.store(file.out.bytes(), Ordering::Relaxed);
         file.out.finish()?;
         Ok(())
-    }
-}
-
-/// The file and its channels.
-struct SessionFile {
-    out: Outlet,
-    journal: Channel,
-    topics: Topics,
-    started_ns: u64,
-    blocks: u32,
-}
-
-impl SessionFile {
-    fn create(
-        to: Destination<'_>,
-        about: About,
-        known: &[(Side, BTreeMap<String, String>)],
-        sides: [bool; SIDES],
-        devices: Vec<String>,
-    ) -> Result<Self, RecordError> {
-        let About { program, started_ns, metadata, files, words } = about;
-        let mut out = Outlet::create(to, &program, started_ns)?;
-        for (name, entries) in &metadata {
-            out.metadata(name, entries)?;
-        }
-        for (side, entries) in known {
-            out.metadata(&format!("calibrations {}", side.word()), entries)?;
-        }
-        for attached in files.iter().chain(&layouts(sides)) {
-            out.attachment(started_ns, attached)?;
-        }
-        let encoding = Encoding { message_encoding: JOURNAL_ENCODING.to_owned(), ..Encoding::default() };
-        let journal = out.channel(JOURNAL_TOPIC, encoding)?;
-        let topics = Topics::new(&mut out, sides, words, devices)?;
-        Ok(Self { out, journal, topics, started_ns, blocks: 0 })
-    }
-
-    fn log_time_ns(&self, t_s: f64) -> u64 {
-        log_time_ns(self.started_ns, t_s)
-    }
-}
-
-/// A time of the loop, s, as that of a message of a session that began at `started_ns`.
-fn log_time_ns(started_ns: u64, t_s: f64) -> u64 {
-    started_ns + (t_s.max(0.0) * 1e9).round() as u64
-}
-
-impl Pages for SessionFile {
-    type Error = RecordError;
-
-    fn write(&mut self, Written { t_s, bytes }: &Written) -> Result<(), RecordError> {
-        let time_ns = self.log_time_ns(*t_s);
-        self.out.message(self.journal, time_ns, bytes)?;
-        self.blocks += 1;
-        if self.blocks.is_multiple_of(BLOCKS_PER_CHUNK) {
-            self.out.flush()?;
-        }
-        Ok(())
-    }
-
-    fn tick(&mut self, stepped: &Stepped, events: &[Event]) -> Result<(), RecordError> {
-        let t_s = stepped.timing.now_s;
-        let time_ns = self.log_time_ns(t_s);
-        let started_ns = self.started_ns;
-        // All that the simulation told up to this tick was told before it.
-        self.topics.objects(&mut self.out, t_s, |t_s| log_time_ns(started_ns, t_s))?;
-        self.out.tick(t_s, &stepped.ticks, events);
-        Ok(self.topics.tick(&mut self.out, time_ns, stepped, events)?)
-    }
-
-    fn calibrations(&mut self, number: u64, calibrations: &Calibrations) -> Result<(), RecordError> {
-        Ok(self.out.metadata(&format!("calibrations {number}"), &described(calibrations))?)
-    }
-
-    fn operation(&mut self, operation: &Operation, t_s: f64) -> Result<(), RecordError> {
-        let time_ns = self.log_time_ns(t_s);
-        Ok(self.topics.operation(&mut self.out, time_ns, operation)?)
     }
 }

@@ -3,6 +3,7 @@
 pub(crate) mod columns;
 mod identification;
 mod objects;
+mod pictures;
 pub(crate) mod plot;
 pub(crate) mod redrawn;
 mod scene;
@@ -29,12 +30,14 @@ pub(crate) use timing::{TIMES, TIMING_TOPIC};
 use crate::{
     objects::ObjectSource,
     outlet::{Channel, Outlet},
+    pictures::{PictureSource, Taken},
     recorder::{Note, NoteKind},
 };
 
 use self::{
     identification::Identified,
     objects::{JAWS, OfObjects, TASK},
+    pictures::OfPictures,
     plot::Plot,
     scene::Scene,
     timing::Times,
@@ -73,6 +76,8 @@ pub(crate) struct Topics {
     devices: Vec<String>,
     /// Of a scene that tells of its objects.
     objects: Option<OfObjects>,
+    /// Of an endoscope.
+    pictures: Option<OfPictures>,
 }
 
 #[derive(Debug)]
@@ -145,7 +150,7 @@ impl Topics {
         }
         let times = Times::new(out)?;
         let log = out.channel(LOG_TOPIC, foxglove::encoding::<Log>())?;
-        Ok(Self { sides: of, scene: Scene::new(out)?, times, log, words, devices, objects: None })
+        Ok(Self { sides: of, scene: Scene::new(out)?, times, log, words, devices, objects: None, pictures: None })
     }
 
     /// From now on this source is asked what the objects of the scene do.
@@ -167,6 +172,25 @@ impl Topics {
             out.message(self.log, time_ns, &line(time_ns, Level::Info, HAPPENING_LINE, words))?;
         }
         Ok(())
+    }
+
+    /// From now on this source is asked for the endoscope's pictures.
+    pub(crate) fn film(&mut self, source: Box<dyn PictureSource>) {
+        self.pictures = Some(OfPictures::new(source));
+    }
+
+    /// Writes the pictures that arrived up to this time of the loop, s, and returns how many were written and how many found no room so far.
+    /// `t_s_of` gives the time of a picture, `time_ns` that of a message.
+    pub(crate) fn pictures(
+        &mut self,
+        out: &mut Outlet,
+        t_s: f64,
+        t_s_of: impl Fn(&Taken) -> Option<f64>,
+        time_ns: impl Fn(f64) -> u64,
+    ) -> Result<[u64; 2], WriteError> {
+        let Some(pictures) = &mut self.pictures else { return Ok([0; 2]) };
+        pictures.until(out, t_s, t_s_of, time_ns)?;
+        Ok(pictures.counts())
     }
 
     /// Writes a tick and the events in it.

@@ -1,8 +1,12 @@
-"""Third-party players of motion JPEG against our emulated endoscope: ffmpeg and GStreamer, where they are installed. The time code in the picture is
-read here, from what the player decoded."""
+"""Third-party players of motion JPEG against our emulated endoscope: ffmpeg and GStreamer, where they are installed; and the libraries of MCAP with Pillow
+against a session with its pictures. The time code in the picture is read here, from what the player decoded."""
 
+import io
+import json
+import pathlib
 import shutil
 import subprocess
+import tempfile
 import time
 
 from harness import Emulator, Peer
@@ -75,5 +79,45 @@ def with_gstreamer(nima):
     return peer
 
 
+def in_a_session(nima):
+    """Every recorded picture is decoded, and its time code compared with the time of its message."""
+    from mcap.reader import make_reader
+    from mcap_protobuf.decoder import DecoderFactory
+    from PIL import Image
+
+    peer = Peer("mcap, mcap-protobuf-support, Pillow (pictures in a session)")
+    simulated = pathlib.Path(__file__).parent.parent.parent / "config" / "rigs" / "simulated.toml"
+    with tempfile.TemporaryDirectory() as folder:
+        rig, path = pathlib.Path(folder) / "rig.toml", pathlib.Path(folder) / "session.mcap"
+        with Emulator(nima, "endoscope", "--set", "port=0") as emulator:
+            rig.write_text(simulated.read_text() + f'\n[endoscope]\nurl = "{emulator.endpoint}"\n')
+            ran = subprocess.run(
+                [nima, "run", "--rig", rig, "--seconds", "5", "--record", path, "--json"], capture_output=True, timeout=120
+            )
+        peer.check("it runs", ran.returncode == 0, ran.stderr[-500:])
+        told = json.loads(ran.stdout)["recorded"]
+        late, figures = [], []
+        with open(path, "rb") as file:
+            reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
+            for _, channel, message, picture in reader.iter_decoded_messages(topics=["endoscope/picture"]):
+                peer.check("kind", picture.format == "jpeg" and picture.frame_id == "endoscope", picture.format)
+                stamp = picture.timestamp.seconds * 10**9 + picture.timestamp.nanos
+                peer.check("its stamp is that of the message", stamp == message.log_time, (stamp, message.log_time))
+                image = Image.open(io.BytesIO(picture.data))
+                peer.check("size", image.size == (WIDTH, HEIGHT), image.size)
+                code = time_code(image.convert("L").tobytes())
+                peer.check("the time code is sound", code is not None)
+                late.append(message.log_time * 1e-9 - code * 1e-6)
+            for _, channel, message in reader.iter_messages(topics=["endoscope/figures"]):
+                figures.append(json.loads(message.data))
+    peer.check("there are some", len(late) > 30, len(late))
+    peer.check("as many as the run says", told["pictures"] == len(late) == len(figures), (told, len(late), len(figures)))
+    peer.check("numbered", [one["number"] for one in figures] == list(range(len(figures))))
+    # The clock of a session begins a moment before its loop does, so a picture seems to come that much early; a busy machine makes it late.
+    late.sort()
+    peer.check("at the time of its arrival", -0.5 < late[0] and late[len(late) // 2] < 0.2, (late[0], late[-1]))
+    return peer
+
+
 def run(nima):
-    return [with_ffmpeg(nima), with_gstreamer(nima)]
+    return [with_ffmpeg(nima), with_gstreamer(nima), in_a_session(nima)]

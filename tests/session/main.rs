@@ -10,4 +10,5 @@ mod file;
 mod long;
 mod network;
 mod objects;
+mod pictures;
 mod round_trip;

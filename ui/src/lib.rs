@@ -9,6 +9,7 @@ pub mod leaving;
 mod lens;
 mod line;
 mod objects;
+mod pictures;
 mod recording;
 mod report;
 mod scoring;

@@ -132,3 +132,16 @@ fn a_feed_that_is_dropped_ends_its_threads() {
         thread::sleep(Duration::from_millis(10));
     }
 }
+
+#[test]
+fn another_tone_is_seen_at_once_also_in_a_picture_that_stands_still() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.jpg");
+    std::fs::write(&path, encode(&vec![100; 3 * 32 * 32], [32, 32], 95)).unwrap();
+    let feed = Feed::start(Address::File(path), None, || {}).unwrap();
+    until(&feed, "the picture", |look| value(look).is_some_and(|value| value.abs_diff(100) < 3));
+    feed.set_tone(Tone { brightness: 0.2, ..Tone::default() });
+    until(&feed, "brighter", |look| value(look).is_some_and(|value| value.abs_diff(151) < 3));
+    feed.set_tone(Tone::default());
+    until(&feed, "as it was", |look| value(look).is_some_and(|value| value.abs_diff(100) < 3));
+}

@@ -34,46 +34,153 @@ const SCALES: [f32; 8] = [1.0, 1.387_039_8, 1.306_563, 1.175_875_6, 1.0, 0.785_6
 /// A block of coefficients without one that is not zero: end of block.
 const END_OF_BLOCK: usize = 0x00;
 const SIXTEEN_ZEROS: usize = 0xf0;
+/// Side of the squares that are encoded by themselves, px, and blocks in each: four of brightness, two of colour.
+const SQUARE_PX: usize = 16;
+const BLOCKS: usize = 6;
+/// Code and bits of a coefficient have so many bits at most; above them stands how many.
+const CODE_BITS: u32 = 27;
 
 type Block = [f32; 64];
+type Codes = [(u32, u32); 256];
 
 /// Encodes a picture of three bytes a pixel, row by row, with a quality of 1 to 100.
 ///
 /// # Panics
 /// If the bytes are not those of a picture of this size, or a side is 0 or above 65535.
 pub fn encode(rgb: &[u8], size_px: [usize; 2], quality: u8) -> Vec<u8> {
-    let [width, height] = size_px;
-    assert!(rgb.len() == 3 * width * height && (1..=65_535).contains(&width) && (1..=65_535).contains(&height));
-    let quality = u32::from(quality.clamp(1, 100));
-    let scale = if quality < 50 { 5000 / quality } else { 200 - 2 * quality };
-    let steps = QUANTISATION.map(|step| ((u32::from(step) * scale + 50) / 100).clamp(1, 255) as u8);
-    let mut out = Vec::with_capacity(width * height / 8 + 1024);
-    headers(&mut out, size_px, &steps);
-    let shares = std::array::from_fn(|at| 1.0 / (f32::from(steps[at]) * 8.0 * SCALES[at / 8] * SCALES[at % 8]));
-    let mut writer = Writer {
-        bits: Bits { out, held: 0, count: 0 },
-        shares,
-        dc: codes(&DC_LENGTHS, &DC_VALUES),
-        ac: codes(&AC_LENGTHS, &AC_VALUES),
-    };
-    let mut before = [0; 3];
-    for top in (0..height).step_by(16) {
-        for left in (0..width).step_by(16) {
-            let [y, cb, cr] = colours(rgb, size_px, left, top);
-            for corner in [0, 8, 128, 136] {
-                let mut block = std::array::from_fn(|at| y[corner + 16 * (at / 8) + at % 8]);
-                writer.block(&mut block, &mut before[0]);
+    Encoder::new(size_px, quality).encode(rgb)
+}
+
+/// Encodes pictures one after the other, each whole in itself. What has not changed since the picture before costs little: a camera that
+/// looks at something that stands still, as an emulated one mostly does.
+#[derive(Debug)]
+pub struct Encoder {
+    size_px: [usize; 2],
+    head: Vec<u8>,
+    /// What each coefficient is multiplied by.
+    shares: Block,
+    dc: Codes,
+    ac: Codes,
+    /// The picture before; empty if there was none.
+    before: Vec<u8>,
+    blocks: Vec<Coded>,
+}
+
+/// A block as it is written, but for the code of its mean, which depends on the block before.
+#[derive(Clone, Debug, Default)]
+struct Coded {
+    dc: i32,
+    /// Bits, and above [`CODE_BITS`] how many.
+    ac: Vec<u32>,
+}
+
+impl Encoder {
+    /// For pictures of this size, with a quality of 1 to 100.
+    ///
+    /// # Panics
+    /// If a side is 0 or above 65535.
+    pub fn new(size_px: [usize; 2], quality: u8) -> Self {
+        assert!(size_px.iter().all(|side| (1..=65_535).contains(side)), "no size of a JPEG: {size_px:?}");
+        let quality = u32::from(quality.clamp(1, 100));
+        let scale = if quality < 50 { 5000 / quality } else { 200 - 2 * quality };
+        let steps = QUANTISATION.map(|step| ((u32::from(step) * scale + 50) / 100).clamp(1, 255) as u8);
+        let mut head = Vec::new();
+        headers(&mut head, size_px, &steps);
+        let shares = std::array::from_fn(|at| 1.0 / (f32::from(steps[at]) * 8.0 * SCALES[at / 8] * SCALES[at % 8]));
+        let [columns, rows] = size_px.map(|side| side.div_ceil(SQUARE_PX));
+        Self {
+            size_px,
+            head,
+            shares,
+            dc: codes(&DC_LENGTHS, &DC_VALUES),
+            ac: codes(&AC_LENGTHS, &AC_VALUES),
+            before: Vec::new(),
+            blocks: vec![Coded::default(); BLOCKS * columns * rows],
+        }
+    }
+
+    /// Encodes a picture of three bytes a pixel, row by row.
+    ///
+    /// # Panics
+    /// If the bytes are not those of a picture of this size.
+    pub fn encode(&mut self, rgb: &[u8]) -> Vec<u8> {
+        let [width, height] = self.size_px;
+        assert!(rgb.len() == 3 * width * height, "{} bytes for {:?}", rgb.len(), self.size_px);
+        self.renew(rgb);
+        let mut out = Vec::with_capacity(width * height / 8 + 1024);
+        out.extend_from_slice(&self.head);
+        let mut bits = Bits { out, held: 0, count: 0 };
+        let mut before = [0; 3];
+        for (number, block) in self.blocks.iter().enumerate() {
+            let before = &mut before[(number % BLOCKS).saturating_sub(3)];
+            bits.coded(&self.dc, block.dc - *before);
+            *before = block.dc;
+            for &code in &block.ac {
+                bits.put(code & ((1 << CODE_BITS) - 1), code >> CODE_BITS);
             }
-            for (plane, before) in [cb, cr].iter().zip(&mut before[1..]) {
-                let mut block = std::array::from_fn(|at| {
+        }
+        bits.end()
+    }
+
+    /// Transforms the squares that are not as in the picture before.
+    fn renew(&mut self, rgb: &[u8]) {
+        let [width, height] = self.size_px;
+        let squares =
+            (0..height).step_by(SQUARE_PX).flat_map(|top| (0..width).step_by(SQUARE_PX).map(move |left| [left, top]));
+        for ([left, top], blocks) in squares.zip(self.blocks.chunks_exact_mut(BLOCKS)) {
+            let row = |y: usize| 3 * (width * y + left)..3 * (width * y + (left + SQUARE_PX).min(width));
+            let mut rows = (top..(top + SQUARE_PX).min(height)).map(row);
+            if !self.before.is_empty() && rows.all(|row| self.before[row.clone()] == rgb[row]) {
+                continue;
+            }
+            let [y, cb, cr] = colours(rgb, self.size_px, left, top);
+            for (block, corner) in blocks.iter_mut().zip([0, 8, 128, 136]) {
+                let mut values = std::array::from_fn(|at| y[corner + 16 * (at / 8) + at % 8]);
+                block.code(&mut values, &self.shares, &self.ac);
+            }
+            for (block, plane) in blocks[4..].iter_mut().zip([cb, cr]) {
+                let mut values = std::array::from_fn(|at| {
                     let at = 32 * (at / 8) + 2 * (at % 8);
                     0.25 * (plane[at] + plane[at + 1] + plane[at + 16] + plane[at + 17])
                 });
-                writer.block(&mut block, before);
+                block.code(&mut values, &self.shares, &self.ac);
             }
         }
+        self.before.clear();
+        self.before.extend_from_slice(rgb);
     }
-    writer.bits.end()
+}
+
+impl Coded {
+    fn code(&mut self, values: &mut Block, shares: &Block, codes: &Codes) {
+        transform(values);
+        let level = |at: usize| (values[at] * shares[at]).round() as i32;
+        self.dc = level(0);
+        self.ac.clear();
+        let mut zeros = 0;
+        for &at in &ZIGZAG[1..] {
+            let level = level(at);
+            if level == 0 {
+                zeros += 1;
+                continue;
+            }
+            while zeros > 15 {
+                self.put(codes[SIXTEEN_ZEROS]);
+                zeros -= 16;
+            }
+            let (size, bits) = size_and_bits(level);
+            let (code, length) = codes[zeros << 4 | size as usize];
+            self.put((code << size | bits, length + size));
+            zeros = 0;
+        }
+        if zeros > 0 {
+            self.put(codes[END_OF_BLOCK]);
+        }
+    }
+
+    fn put(&mut self, (bits, count): (u32, u32)) {
+        self.ac.push(count << CODE_BITS | bits);
+    }
 }
 
 /// Brightness and colours of 16 x 16 pixels (BT.601, full range), around 0; beyond the picture its last pixels again.
@@ -111,8 +218,15 @@ fn headers(out: &mut Vec<u8>, [width, height]: [usize; 2], steps: &[u8; 64]) {
     segment(out, 0xda, &[3, 1, 0, 2, 0, 3, 0, 0, 63, 0]);
 }
 
+/// How many bits a level takes, and these.
+const fn size_and_bits(level: i32) -> (u32, u32) {
+    let size = 32 - level.unsigned_abs().leading_zeros();
+    let bits = if level < 0 { level - 1 } else { level }.cast_unsigned();
+    (size, bits & ((1 << size) - 1))
+}
+
 /// Code and length of each value.
-fn codes(lengths: &[u8; 16], values: &[u8]) -> [(u32, u32); 256] {
+fn codes(lengths: &[u8; 16], values: &[u8]) -> Codes {
     let mut codes = [(0, 0); 256];
     let (mut code, mut values) = (0, values.iter());
     for (length, &count) in (1..).zip(lengths) {
@@ -123,41 +237,6 @@ fn codes(lengths: &[u8; 16], values: &[u8]) -> [(u32, u32); 256] {
         code <<= 1;
     }
     codes
-}
-
-struct Writer {
-    bits: Bits,
-    /// What each coefficient is multiplied by.
-    shares: Block,
-    dc: [(u32, u32); 256],
-    ac: [(u32, u32); 256],
-}
-
-impl Writer {
-    fn block(&mut self, block: &mut Block, before: &mut i32) {
-        transform(block);
-        let level = |at: usize| (block[at] * self.shares[at]).round() as i32;
-        let dc = level(0);
-        self.bits.coded(&self.dc, 0, dc - *before);
-        *before = dc;
-        let mut zeros = 0;
-        for &at in &ZIGZAG[1..] {
-            let level = level(at);
-            if level == 0 {
-                zeros += 1;
-                continue;
-            }
-            while zeros > 15 {
-                self.bits.code(&self.ac, SIXTEEN_ZEROS);
-                zeros -= 16;
-            }
-            self.bits.coded(&self.ac, zeros << 4, level);
-            zeros = 0;
-        }
-        if zeros > 0 {
-            self.bits.code(&self.ac, END_OF_BLOCK);
-        }
-    }
 }
 
 struct Bits {
@@ -180,17 +259,11 @@ impl Bits {
         }
     }
 
-    fn code(&mut self, codes: &[(u32, u32); 256], value: usize) {
-        let (code, length) = codes[value];
-        self.put(code, length);
-    }
-
-    /// The code of a level's size, added to `base`, and its bits.
-    fn coded(&mut self, codes: &[(u32, u32); 256], base: usize, level: i32) {
-        let size = 32 - level.unsigned_abs().leading_zeros();
-        self.code(codes, base | size as usize);
-        let bits = if level < 0 { level - 1 } else { level } as u32;
-        self.put(bits & ((1 << size) - 1), size);
+    /// The code of a level's size, and its bits.
+    fn coded(&mut self, codes: &Codes, level: i32) {
+        let (size, bits) = size_and_bits(level);
+        let (code, length) = codes[size as usize];
+        self.put(code << size | bits, length + size);
     }
 
     fn end(mut self) -> Vec<u8> {
@@ -252,6 +325,19 @@ mod tests {
             let rms = f64::sqrt(sum / count);
             assert!(rms < 4.0, "{size_px:?}: {rms}");
         }
+    }
+
+    #[test]
+    fn a_picture_is_the_same_whatever_came_before() {
+        let size_px = [330, 70];
+        let mut encoder = Encoder::new(size_px, 80);
+        let mut rgb = pattern(size_px);
+        for at in [0, 5, 3 * 330 * 35 + 900, 3 * 330 * 70 - 1, 3 * 330 * 69 + 1] {
+            assert!(encoder.encode(&rgb) == encode(&rgb, size_px, 80), "before {at} changed");
+            rgb[at] = rgb[at].wrapping_add(120);
+        }
+        assert!(encoder.encode(&rgb) == encode(&rgb, size_px, 80));
+        assert!(encoder.encode(&rgb) == encode(&rgb, size_px, 80), "nothing changed");
     }
 
     #[test]

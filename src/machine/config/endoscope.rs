@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{ConfigError, Ranges};
 
 /// Where the picture comes from, and where the endoscope looks.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Endoscope {
     /// Motion JPEG over HTTP (`http://HOST:PORT/PATH`), H.264 over RTSP (`rtsp://HOST/PATH`), a camera of this computer (`/dev/video0`), or the
@@ -18,6 +18,12 @@ pub struct Endoscope {
     /// Left and right are exchanged on the screen, before it is turned.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub mirror: bool,
+    /// What is cut off at the left, top, right and bottom of the picture as it comes, px.
+    #[serde(default, skip_serializing_if = "is_whole")]
+    pub crop_px: [usize; 4],
+    /// Whether sessions have its pictures, as they come.
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    pub record: bool,
     /// The picture has two halves side by side, of a left and a right lens: what is shown of it at first. Without it, it is of one lens.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub view: Option<StereoView>,
@@ -37,6 +43,35 @@ pub enum StereoView {
     Left,
     Right,
     Both,
+}
+
+impl Default for Endoscope {
+    /// Without an address.
+    fn default() -> Self {
+        Self {
+            url: String::new(),
+            rotation_deg: 0,
+            mirror: false,
+            crop_px: [0; 4],
+            record: true,
+            view: None,
+            baseline_m: None,
+            camera: None,
+        }
+    }
+}
+
+fn is_whole(crop_px: &[usize; 4]) -> bool {
+    *crop_px == [0; 4]
+}
+
+const fn yes() -> bool {
+    true
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+const fn is_yes(value: &bool) -> bool {
+    *value
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
@@ -99,6 +134,18 @@ impl Endoscope {
         let turn = self.rotation_deg;
         let turns = matches!(turn, 0 | 90 | 180 | 270);
         ranges.check("endoscope.rotation_deg", f64::from(turn), turns, "0, 90, 180 or 270")?;
+        let size_px = self.camera.map(|camera| camera.size_px);
+        let [left, top, right, bottom] = self.crop_px.map(|edge| edge as f64);
+        // Without a size, what the largest picture has.
+        let [width, height] = size_px.unwrap_or([4096; 2]).map(|side| side as f64);
+        let leaves = left + right <= 0.9 * width && top + bottom <= 0.9 * height;
+        let most = left.max(top).max(right).max(bottom);
+        ranges.check(
+            "endoscope.crop_px",
+            most,
+            leaves,
+            "[left, top, right, bottom] that leave a tenth of the picture",
+        )?;
         if let Some(baseline_m) = self.baseline_m {
             let place = "endoscope.baseline_m";
             ranges.check(place, baseline_m, (0.000_5..=0.05).contains(&baseline_m), "0.0005 to 0.05 m")?;
@@ -147,7 +194,7 @@ impl EndoscopeCamera {
 mod tests {
     use crate::config::RigConfig;
 
-    const WHOLE: &str = "\n[endoscope]\nurl = \"http://127.0.0.1:47150/\"\nrotation_deg = 90\nmirror = true\nview = \"both\"\nbaseline_m = 0.004\n\n[endoscope.camera]\n\
+    const WHOLE: &str = "\n[endoscope]\nurl = \"http://127.0.0.1:47150/\"\nrotation_deg = 90\nmirror = true\nrecord = false\nview = \"both\"\nbaseline_m = 0.004\n\n[endoscope.camera]\n\
         size_px = [1280, 720]\nfocal_px = 726.6\nk1 = -0.3\nposition_m = [0.0, -0.1, 0.09]\nworld_from_camera_deg = [-131.0, 0.0, 0.0]\n";
 
     fn rig(more: &str) -> Result<RigConfig, String> {
@@ -160,11 +207,18 @@ mod tests {
         assert_eq!(rig("").unwrap().endoscope, None);
         let rig = rig(WHOLE).unwrap();
         let endoscope = rig.endoscope.as_ref().unwrap();
-        assert!(endoscope.mirror && endoscope.rotation_deg == 90 && endoscope.camera.is_some());
+        assert!(!endoscope.record && endoscope.mirror && endoscope.rotation_deg == 90 && endoscope.camera.is_some());
         assert_eq!((endoscope.view, endoscope.baseline_m), (Some(super::StereoView::Both), Some(0.004)));
         let again = RigConfig::parse("rig.toml".as_ref(), &toml::to_string(&rig).unwrap()).unwrap();
         assert_eq!(again, rig);
         assert_eq!(rig.anonymous().endoscope, None, "its address tells where it is");
+    }
+
+    #[test]
+    fn its_pictures_are_recorded_unless_the_rig_file_says_otherwise() {
+        let rig = rig("\n[endoscope]\nurl = \"film.mjpeg\"\n").unwrap();
+        assert!(rig.endoscope.as_ref().unwrap().record);
+        assert!(!toml::to_string(&rig).unwrap().contains("record = "));
     }
 
     #[test]
@@ -183,6 +237,8 @@ mod tests {
             ("\"both\"", "\"middle\"", "middle"),
             ("0.004", "4.0", "baseline_m is 4"),
             ("view = \"both\"\n", "", "endoscope.view"),
+            ("record = false", "crop_px = [700, 0, 700, 0]", "leave a tenth"),
+            ("record = false", "crop_px = [1, 2, 3]", "invalid length 3"),
         ] {
             let told = rig(&WHOLE.replace(from, to)).unwrap_err();
             assert!(told.contains(word) && !told.contains('\n'), "{to}: {told}");

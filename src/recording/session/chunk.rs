@@ -6,11 +6,12 @@ use lz4_flex::frame::{BlockMode, BlockSize, FrameEncoder, FrameInfo};
 
 use super::format::{self, HEAD, Put as _, kind, record};
 
-/// The name of the compression in the file.
+/// The name of the compression in the file, and of none.
 pub(super) const LZ4: &str = "lz4";
+const PLAIN: &str = "";
 
-#[derive(Default)]
 pub(super) struct Chunk {
+    compression: &'static str,
     /// The records.
     raw: Vec<u8>,
     /// Time and place of each message, by the number of its channel.
@@ -22,6 +23,7 @@ pub(super) struct Chunk {
 /// A chunk as it stands in the file, with its message indexes behind it.
 pub(super) struct Closed {
     pub(super) bytes: Vec<u8>,
+    compression: &'static str,
     /// Bytes of the chunk's own record.
     chunk: usize,
     /// Channel, where its index begins in `bytes`, messages.
@@ -33,6 +35,19 @@ pub(super) struct Closed {
 }
 
 impl Chunk {
+    pub(super) const fn compressed() -> Self {
+        Self::of(LZ4)
+    }
+
+    /// For what is compressed already.
+    pub(super) const fn plain() -> Self {
+        Self::of(PLAIN)
+    }
+
+    const fn of(compression: &'static str) -> Self {
+        Self { compression, raw: Vec::new(), index: Vec::new(), times_ns: None, messages: 0 }
+    }
+
     /// A schema or a channel.
     pub(super) fn put_record(&mut self, record: &[u8]) {
         self.raw.extend_from_slice(record);
@@ -69,10 +84,15 @@ impl Chunk {
         bytes.u64(last);
         bytes.u64(self.raw.len() as u64);
         bytes.u32(crc32fast::hash(&self.raw));
-        bytes.text(LZ4);
+        bytes.text(self.compression);
         bytes.u64(0);
         let begin = bytes.len();
-        let mut bytes = self.compress(bytes)?;
+        let mut bytes = if self.compression.is_empty() {
+            bytes.extend_from_slice(&self.raw);
+            bytes
+        } else {
+            self.compress(bytes)?
+        };
         let chunk = bytes.len();
         let compressed = (chunk - begin) as u64;
         bytes[begin - 8..begin].copy_from_slice(&compressed.to_le_bytes());
@@ -89,7 +109,8 @@ impl Chunk {
         let uncompressed = self.raw.len() as u64;
         self.raw.clear();
         let (times_ns, messages) = (self.times_ns.take(), std::mem::take(&mut self.messages));
-        Ok(Closed { bytes, chunk, indexes, compressed, uncompressed, times_ns, messages })
+        let compression = self.compression;
+        Ok(Closed { bytes, compression, chunk, indexes, compressed, uncompressed, times_ns, messages })
     }
 
     /// In the smallest blocks, linked, which make the file 0.1 % larger than those of 1 MB: whoever reads it takes buffers of three blocks for
@@ -118,7 +139,7 @@ impl Closed {
                 out.u64(at + begin as u64);
             }
             out.u64((self.bytes.len() - self.chunk) as u64);
-            out.text(LZ4);
+            out.text(self.compression);
             out.u64(self.compressed);
             out.u64(self.uncompressed);
         });

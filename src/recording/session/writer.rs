@@ -20,6 +20,9 @@ use super::{
 pub const CHUNK_NS: u64 = 500_000_000;
 /// And when its records take so many bytes before compression.
 pub const CHUNK_BYTES: usize = 8 << 20;
+/// Kinds of messages that stand in chunks of their own, without compression: they are compressed already, and who reads numbers need not read past
+/// them.
+const PICTURES: [&str; 2] = ["foxglove.CompressedImage", "foxglove.CompressedVideo"];
 /// Most bytes of a message, an attachment or the records of a kind of metadata: lengths have 32 bit.
 const RECORD_MAX: u64 = 1 << 31;
 
@@ -40,7 +43,8 @@ pub struct Encoding {
     pub message_encoding: String,
 }
 
-/// Writes a session file (MCAP, chunks compressed with LZ4). Owned by one thread, which waits for the disk.
+/// Writes a session file (MCAP, chunks compressed with LZ4; pictures in chunks of their own, as they came). Owned by one thread, which waits for the
+/// disk.
 ///
 /// The file is valid at every moment: whatever stops the process, `kill -9` or a full disk, every reader of MCAP opens it
 /// unrepaired. Missing is at most what was not in a closed chunk yet, so a thread that hears nothing for a while calls
@@ -72,9 +76,8 @@ pub struct Writer {
     summary: Summary,
     /// The summary in the file lacks more than can be appended.
     summary_changed: bool,
-    chunk: Chunk,
-    /// A closed chunk that could not be written yet.
-    waiting: Option<Closed>,
+    numbers: Lane,
+    pictures: Lane,
     /// By number.
     channels: Vec<OfChannel>,
     schemas: Vec<Encoding>,
@@ -84,6 +87,32 @@ struct OfChannel {
     topic: String,
     encoding: Encoding,
     sequence: u32,
+}
+
+/// Chunks of one kind.
+struct Lane {
+    chunk: Chunk,
+    /// A closed chunk that could not be written yet.
+    waiting: Option<Closed>,
+}
+
+impl Lane {
+    const fn new(chunk: Chunk) -> Self {
+        Self { chunk, waiting: None }
+    }
+
+    /// Whether it must be written before it takes a message of this length and time.
+    fn is_due(&self, length: usize, time_ns: u64) -> bool {
+        let full = self.chunk.len() + length > CHUNK_BYTES && self.chunk.len() > 0;
+        self.waiting.is_some() || full || self.chunk.span_ns(time_ns) >= CHUNK_NS
+    }
+
+    fn close(&mut self) -> io::Result<()> {
+        if self.waiting.is_none() && self.chunk.len() > 0 {
+            self.waiting = Some(self.chunk.close()?);
+        }
+        Ok(())
+    }
 }
 
 impl Writer {
@@ -103,8 +132,8 @@ impl Writer {
             layout,
             summary,
             summary_changed: false,
-            chunk: Chunk::default(),
-            waiting: None,
+            numbers: Lane::new(Chunk::compressed()),
+            pictures: Lane::new(Chunk::plain()),
             channels: Vec::new(),
             schemas: Vec::new(),
         })
@@ -139,8 +168,9 @@ impl Writer {
             self.summary.statistics.schemas += 1;
         }
         // In the chunk too, for who reads from the beginning.
+        let lane = if is_picture(&encoding) { &mut self.pictures } else { &mut self.numbers };
         for (record, in_summary) in [(schema, &mut self.summary.schemas), (channel, &mut self.summary.channels)] {
-            self.chunk.put_record(&record);
+            lane.chunk.put_record(&record);
             in_summary.extend_from_slice(&record);
         }
         self.summary.statistics.channels += 1;
@@ -159,12 +189,15 @@ impl Writer {
         if usize::from(channel.0) >= self.channels.len() {
             return Err(WriteError::Channel { path: self.path.clone(), number: channel.0 });
         }
-        let full = self.chunk.len() + data.len() > CHUNK_BYTES && self.chunk.len() > 0;
-        if self.waiting.is_some() || full || self.chunk.span_ns(log_time_ns) >= CHUNK_NS {
+        let picture = is_picture(&self.channels[usize::from(channel.0)].encoding);
+        let lane = if picture { &self.pictures } else { &self.numbers };
+        // Both, so that what is lost at most when the process is killed is that of the same time.
+        if lane.is_due(data.len(), log_time_ns) {
             self.flush()?;
         }
+        let lane = if picture { &mut self.pictures } else { &mut self.numbers };
         let of_channel = &mut self.channels[usize::from(channel.0)];
-        self.chunk.put_message(channel.0, of_channel.sequence, log_time_ns, data);
+        lane.chunk.put_message(channel.0, of_channel.sequence, log_time_ns, data);
         of_channel.sequence = of_channel.sequence.wrapping_add(1);
         Ok(())
     }
@@ -220,23 +253,23 @@ impl Writer {
         self.renew_summary()
     }
 
-    /// Closes the chunk now and writes it.
+    /// Closes the chunks now and writes them.
     ///
     /// # Errors
-    /// What the system says; the chunk is kept, and written by the next call that succeeds.
+    /// What the system says; the chunks are kept, and written by the next call that succeeds.
     pub fn flush(&mut self) -> Result<(), WriteError> {
-        if self.waiting.is_none() && self.chunk.len() > 0 {
-            self.waiting = Some(self.chunk.close().map_err(|error| WriteError::write(&self.path, &error))?);
-        }
-        let chunk = match self.waiting.take() {
-            Some(chunk) => chunk,
-            None if self.summary_changed => return self.renew_summary(),
-            None => return Ok(()),
-        };
+        self.write_chunk(|writer| &mut writer.numbers)?;
+        self.write_chunk(|writer| &mut writer.pictures)?;
+        if self.summary_changed { self.renew_summary() } else { Ok(()) }
+    }
+
+    fn write_chunk(&mut self, lane: fn(&mut Self) -> &mut Lane) -> Result<(), WriteError> {
+        lane(self).close().map_err(|error| WriteError::write(&self.path, &error))?;
+        let Some(chunk) = lane(self).waiting.take() else { return Ok(()) };
         let at = match self.place(&chunk) {
             Ok(at) => at,
             Err(error) => {
-                self.waiting = Some(chunk);
+                lane(self).waiting = Some(chunk);
                 return Err(error);
             }
         };
@@ -270,7 +303,7 @@ impl Writer {
         self.summary.statistics.chunks
     }
 
-    /// Closes the chunk, writes the last summary with its checksum, cuts off the free room and waits for the disk.
+    /// Closes the chunks, writes the last summary with its checksum, cuts off the free room and waits for the disk.
     ///
     /// # Errors
     /// What the system says; the file is as readable as before.
@@ -338,6 +371,10 @@ impl Writer {
 /// I/O errors of the file.
 pub fn is_being_written(path: &Path) -> io::Result<bool> {
     at::is_locked(&File::open(path)?)
+}
+
+fn is_picture(encoding: &Encoding) -> bool {
+    PICTURES.contains(&encoding.schema.as_str())
 }
 
 fn same_schema(one: &Encoding, other: &Encoding) -> bool {

@@ -29,6 +29,10 @@ pub struct Progress {
     pub lost: u64,
     /// Bytes in the file.
     pub bytes: u64,
+    /// Pictures of the endoscope that were written, ...
+    pub pictures: u64,
+    /// ... and those that were dropped, because this thread came too late.
+    pub pictures_dropped: u64,
     /// How long the disk has not answered; after two seconds the loop drops entries.
     pub waits: Duration,
 }
@@ -41,6 +45,8 @@ pub(super) struct Shared {
     pub(super) ticks: AtomicU64,
     pub(super) lost: AtomicU64,
     pub(super) bytes: AtomicU64,
+    pub(super) pictures: AtomicU64,
+    pub(super) pictures_dropped: AtomicU64,
     pub(super) ends: AtomicBool,
     pub(super) moved: OnceLock<Moved>,
     pub(super) trouble: OnceLock<RecordError>,
@@ -54,6 +60,8 @@ impl Shared {
             ticks: AtomicU64::default(),
             lost: AtomicU64::default(),
             bytes: AtomicU64::default(),
+            pictures: AtomicU64::default(),
+            pictures_dropped: AtomicU64::default(),
             ends: AtomicBool::default(),
             moved: OnceLock::new(),
             trouble: OnceLock::new(),
@@ -66,11 +74,11 @@ impl Shared {
     }
 
     pub(super) fn progress(&self) -> Progress {
-        let Self { ticks, lost, bytes, looked_ms, .. } = self;
-        let [ticks, lost, bytes, looked_ms] =
-            [ticks, lost, bytes, looked_ms].map(|count| count.load(Ordering::Relaxed));
+        let Self { ticks, lost, bytes, pictures, pictures_dropped, looked_ms, .. } = self;
+        let [ticks, lost, bytes, pictures, pictures_dropped, looked_ms] =
+            [ticks, lost, bytes, pictures, pictures_dropped, looked_ms].map(|count| count.load(Ordering::Relaxed));
         let waits = Duration::from_millis(self.ms().saturating_sub(looked_ms));
-        Progress { ticks, lost, bytes, waits }
+        Progress { ticks, lost, bytes, pictures, pictures_dropped, waits }
     }
 
     fn ms(&self) -> u64 {

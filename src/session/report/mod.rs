@@ -2,6 +2,7 @@
 
 mod arm;
 mod force;
+mod pictures;
 #[cfg(test)]
 mod tests;
 mod trace;
@@ -18,12 +19,14 @@ use serde::Serialize;
 
 pub use arm::{ArmFigures, DEGREE_COLUMNS, FORCES, GateShare, Identified, NetworkFigures, STATES, Span};
 pub use force::ForceFigures;
+pub use pictures::PicturesFigures;
 pub use trace::{BUCKETS, Trace};
 
 use crate::{
     cut,
     journal::{Outline, outline},
     objects::{self, kind},
+    pictures::{PICTURE_FIGURES_TOPIC, PICTURE_TOPIC},
     recorder::JOURNAL_TOPIC,
     topics::{
         HAPPENING_LINE, HAPPENINGS_TOPIC, LOG_TOPIC, MARK_LINE, MARKS_TOPIC, RINGS_TOPIC, TASK_TOPIC, TIMES,
@@ -76,6 +79,8 @@ pub struct Figures {
     pub marks: Vec<Mark>,
     /// How often each kind of thing happened to the objects of the scene, as [`kind`] names it. `None` if nobody told of objects.
     pub happenings: Option<BTreeMap<String, u64>>,
+    /// The endoscope's pictures in the file. `None` if there are none.
+    pub pictures: Option<PicturesFigures>,
     /// The timing of the loop, where the file has it.
     pub timing: Option<Times>,
 }
@@ -185,6 +190,7 @@ enum Kind {
     Log,
     Journal,
     Happening,
+    Picture,
 }
 
 struct Channel {
@@ -210,6 +216,7 @@ impl<'a> Reading<'a> {
             (LOG_TOPIC.to_owned(), Kind::Log),
             (JOURNAL_TOPIC.to_owned(), Kind::Journal),
             (HAPPENINGS_TOPIC.to_owned(), Kind::Happening),
+            (PICTURE_FIGURES_TOPIC.to_owned(), Kind::Picture),
         ];
         for (arm, &side) in sides.iter().enumerate() {
             kinds.push((topic(side, "forces"), Kind::Forces(arm)));
@@ -227,7 +234,7 @@ impl<'a> Reading<'a> {
 
     fn all(&mut self, figures: &mut Figures) {
         let topics: Vec<&str> = self.reader.channels().iter().map(|channel| channel.topic.as_str()).collect();
-        let drawn = ["frames", "arrows", RINGS_TOPIC, MARKS_TOPIC];
+        let drawn = ["frames", "arrows", RINGS_TOPIC, MARKS_TOPIC, PICTURE_TOPIC];
         let skipped = drawn.into_iter().chain(["right/poses", "left/poses", "right/jaws", "left/jaws", TASK_TOPIC]);
         let skipped: Vec<&str> = skipped.collect();
         let topics: Vec<&str> = topics.into_iter().filter(|topic| !skipped.contains(topic)).collect();
@@ -261,6 +268,7 @@ impl<'a> Reading<'a> {
                 }
                 return;
             }
+            Kind::Picture => return figures.pictures.get_or_insert_default().take(t_s, data),
             _ => {}
         }
         let Some(values) = channel.columns.as_mut().and_then(|columns| columns.read(data)) else { return };
@@ -269,7 +277,7 @@ impl<'a> Reading<'a> {
             Kind::Forces(arm) => self.arms[arm].1.forces(t_s, values),
             Kind::Gates(arm) => self.arms[arm].1.gates(t_s, values),
             Kind::Identification(arm) => self.arms[arm].1.identified(values),
-            Kind::Journal | Kind::Log | Kind::Happening => {}
+            Kind::Journal | Kind::Log | Kind::Happening | Kind::Picture => {}
         }
     }
 }

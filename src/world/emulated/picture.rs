@@ -30,7 +30,7 @@ impl EmulatedRig {
             .zip(&self.sides)
             .filter_map(|(side, shared)| Some((devices.arm(side)?.rcm.trocar_m, shared.clone()?)))
             .collect();
-        let mut emulated = Emulated::of(scene, port);
+        let mut emulated = Emulated { gives_way: true, ..Emulated::of(scene, port) };
         if let Some(camera) = &endoscope.camera {
             emulated.camera = camera_of(camera);
         }

@@ -267,7 +267,7 @@ impl ConsoleApp {
         let rig = self.in_force.with_checked(rig);
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
         let started = match (&mut self.studies.trial, self.simulated_speed) {
-            (Some(trial), speed) => trial.start(&plan, speed),
+            (Some(trial), speed) => trial.start(&plan, speed, self.sessions.reel()),
             (None, Some(speed)) => nima_world::start_watched(&plan, speed).map_err(|error| error.to_string()),
             (None, None) => start_recorded(&plan, &mut self.sessions, line).map_err(|error| error.to_string()),
         };
@@ -365,7 +365,9 @@ impl eframe::App for ConsoleApp {
         // Screenshots for the documents are antialiased, however long that takes.
         self.live.rough_edges = self.photographer.is_none() && (self.live.rough_edges || slow);
         self.panels.scene.smooth = !self.live.rough_edges;
-        self.panels.eyes.serve(self.live.rig.endoscope.as_ref(), &ctx);
+        self.sessions.reel().rest(!self.settings.now.records_picture);
+        self.panels.eyes.show_as(self.settings.now.picture);
+        self.panels.eyes.serve(self.live.rig.endoscope.as_ref(), self.sessions.reel(), &ctx);
         self.panels.devices.picture = self.panels.eyes.told();
         menu::apply(&ctx, &mut self.settings.now);
         if keys::stop_pressed(&ctx) {
@@ -379,6 +381,9 @@ impl eframe::App for ConsoleApp {
             self.live.mark();
         }
         self.layout(ui);
+        if !self.start.is_open {
+            self.start.rest();
+        }
         self.settings.save();
         if self.past.is_some() {
             self.outbox.only_stop();

@@ -1,14 +1,14 @@
 //! The View menu: appearance of the console, saved between sessions.
 
 use crate::console::text;
-use egui::{Button, Context, Ui, vec2};
+use egui::{Button, Context, DragValue, Slider, Ui, vec2};
 
 use super::{
     alarms::strip::Alarms,
     desk::{Layout, Panel},
     help::Help,
     roles::Role,
-    settings::{SCALES, Settings},
+    settings::{CROP_MOST_PERCENT, PictureSettings, SCALES, Settings},
 };
 
 /// Size that every view needs, in points; a larger scale than the window has space for is not used.
@@ -49,6 +49,8 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, ala
         }
         sound_ui(ui, settings, alarms);
         ui.add_space(6.0);
+        picture_ui(ui, settings);
+        ui.add_space(6.0);
         ui.horizontal(|ui| {
             if ui.add(Button::new(text::menu::ALARMS).min_size(vec2(96.0, 30.0))).clicked() {
                 alarms.list = true;
@@ -74,6 +76,32 @@ fn sound_ui(ui: &mut Ui, settings: &mut Settings, alarms: &mut Alarms) {
     if let Some(trouble) = alarms.sound.trouble() {
         ui.add(egui::Label::new(super::widgets::small(trouble)).wrap());
     }
+}
+
+/// How the endoscope's picture is shown, and whether it is recorded.
+fn picture_ui(ui: &mut Ui, settings: &mut Settings) {
+    ui.label(text::menu::PICTURE);
+    let picture = &mut settings.picture;
+    ui.add(Slider::new(&mut picture.brightness_percent, -50..=50).text(text::menu::BRIGHTNESS).suffix(" %"));
+    ui.add(
+        Slider::new(&mut picture.contrast_percent, 25..=400).logarithmic(true).text(text::menu::CONTRAST).suffix(" %"),
+    );
+    ui.add(Slider::new(&mut picture.gamma_percent, 25..=400).logarithmic(true).text(text::menu::GAMMA).suffix(" %"));
+    ui.horizontal(|ui| {
+        ui.label(text::menu::CROP).on_hover_text(text::menu::CROP_HOVER);
+        for (percent, edge) in picture.crop_percent.iter_mut().zip(text::menu::EDGES) {
+            let value = DragValue::new(percent).range(0..=CROP_MOST_PERCENT).suffix(" %");
+            let response = ui.add(value).on_hover_text(edge);
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, edge));
+        }
+    });
+    ui.checkbox(&mut picture.forces_of_now, text::menu::FORCES_OF_NOW).on_hover_text(text::menu::FORCES_OF_NOW_HOVER);
+    let plain = PictureSettings { forces_of_now: picture.forces_of_now, ..PictureSettings::default() };
+    if ui.add_enabled(*picture != plain, Button::new(text::menu::PICTURE_PLAIN).min_size(vec2(300.0, 26.0))).clicked() {
+        *picture = plain;
+    }
+    let records = ui.checkbox(&mut settings.records_picture, text::menu::RECORDS_PICTURE);
+    records.on_hover_text(text::menu::RECORDS_PICTURE_HOVER);
 }
 
 /// Switches for the panels on the desk.

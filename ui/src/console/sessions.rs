@@ -9,6 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use nima_endoscope::Reel;
 use nima_machine::{messages::Scheduling, runtime::Tap};
 use nima_recording::store::utc_now;
 use nima_session::{
@@ -25,7 +26,7 @@ use super::{
     chain, text,
 };
 use crate::{
-    recording,
+    pictures, recording,
     watching::{self, Servers},
     words,
 };
@@ -54,6 +55,8 @@ pub(crate) struct Sessions {
     full_in: Option<Duration>,
     /// Loops that begin now are not recorded.
     rests: bool,
+    /// Where the endoscope's pictures come from.
+    reel: Reel,
 }
 
 /// The session that is being recorded.
@@ -87,6 +90,8 @@ pub(crate) struct Shown {
     pub(crate) bytes: u64,
     /// Entries that were lost, because the disk was slower than the loop.
     pub(crate) lost: u64,
+    /// Pictures of the endoscope in it.
+    pub(crate) pictures: u64,
     /// Marks in it.
     pub(crate) marks: usize,
     /// Where others can watch, and how many do.
@@ -99,7 +104,8 @@ impl Sessions {
     pub(crate) fn of_user(data_folder: Option<&Path>, second: Option<&Path>, servers: Servers) -> Self {
         let shelf = data_folder.map(|folder| Shelf::new(folder.join("sessions"), MOST_BYTES));
         let second = second.map(|folder| Shelf::new(folder, MOST_BYTES));
-        Self { shelf, second, servers, now: None, trouble: None, looked: None, full_in: None, rests: false }
+        let (now, trouble, looked, full_in) = (None, None, None, None);
+        Self { shelf, second, servers, now, trouble, looked, full_in, rests: false, reel: Reel::default() }
     }
 
     /// Begins to record a loop of this plan; the tap is for it. `None` if nothing is recorded.
@@ -115,6 +121,7 @@ impl Sessions {
             let audiences = self.servers.audiences();
             let to = Destination { file: Some(&path), second: second.as_deref(), audiences };
             let (tap, recorder) = recording::begin(to, plan, "real").map_err(|error| chain(&error))?;
+            pictures::film(&recorder, &plan.rig, &self.reel);
             let began = Instant::now();
             let outlook = Outlook::new(&path, recorder.progress().bytes, began);
             Ok((tap, Now { recorder, path, began, outlook, kept: false, told: Told::default() }))
@@ -138,6 +145,11 @@ impl Sessions {
                 None
             }
         }
+    }
+
+    /// Where the endoscope's pictures are to be put for the recording.
+    pub(crate) const fn reel(&self) -> &Reel {
+        &self.reel
     }
 
     /// Whether loops that begin from now on are left out.
@@ -215,8 +227,16 @@ impl Sessions {
         let progress = recorder.map(Recorder::progress).unwrap_or_default();
         let slow = || (progress.waits > SLOW).then(|| text::sessions::slow(progress.waits));
         let lost = || (progress.lost > 0).then(|| text::sessions::lost(progress.lost));
+        let pictures =
+            || (progress.pictures_dropped > 0).then(|| text::sessions::pictures_lost(progress.pictures_dropped));
         let full = || self.full_in.filter(|time| *time < WARN_BEFORE).map(words::disk_full_in);
-        ended.or_else(slow).or_else(lost).or_else(moved).or_else(|| self.trouble.clone()).or_else(full)
+        ended
+            .or_else(slow)
+            .or_else(lost)
+            .or_else(pictures)
+            .or_else(moved)
+            .or_else(|| self.trouble.clone())
+            .or_else(full)
     }
 
     /// The session that is being recorded; `None` if none is.
@@ -229,6 +249,7 @@ impl Sessions {
             path: now.recorder.moved().map_or(&now.path, |moved| &moved.to).clone(),
             bytes: progress.bytes,
             lost: progress.lost,
+            pictures: progress.pictures,
             marks: now.told.marks,
             watched: self.servers.shown(),
         })

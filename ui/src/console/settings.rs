@@ -8,6 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use nima_endoscope::Tone;
 use nima_files::{PASSAGE, shortened, write_atomically};
 use nima_recording::store::Store;
 use serde::{Deserialize, Serialize};
@@ -21,6 +22,7 @@ const SET_ASIDE: &str = "console.corrupted.json";
 /// The settings.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
+#[expect(clippy::struct_excessive_bools, reason = "switches of a menu")]
 pub struct Settings {
     /// The user's role.
     pub role: Role,
@@ -30,6 +32,10 @@ pub struct Settings {
     pub sound: bool,
     /// Whether the light palette is used.
     pub light: bool,
+    /// Whether sessions have the endoscope's pictures.
+    pub records_picture: bool,
+    /// How the endoscope's picture is shown.
+    pub picture: PictureSettings,
     /// Whether the tour was finished or skipped.
     pub toured: bool,
     /// Scale of the user interface, percent; [`SCALES`].
@@ -39,6 +45,46 @@ pub struct Settings {
     /// Folders of user studies outside of the user's data.
     pub studies: Vec<PathBuf>,
 }
+
+/// How the endoscope's picture is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PictureSettings {
+    /// Added to every value, percent of white.
+    pub brightness_percent: i16,
+    /// Distance of every value from middle grey.
+    pub contrast_percent: u16,
+    /// Above 100 lifts what is dark.
+    pub gamma_percent: u16,
+    /// Cut off at the left, top, right and bottom of the picture as it comes.
+    pub crop_percent: [u8; 4],
+    /// Forces are drawn where the tips are now, not where they were when the picture was made.
+    pub forces_of_now: bool,
+}
+
+impl Default for PictureSettings {
+    fn default() -> Self {
+        let (contrast_percent, gamma_percent) = (100, 100);
+        Self { brightness_percent: 0, contrast_percent, gamma_percent, crop_percent: [0; 4], forces_of_now: false }
+    }
+}
+
+impl PictureSettings {
+    /// Its brightness, contrast and gamma.
+    pub(super) fn tone(&self) -> Tone {
+        let share = |percent: u16| f64::from(percent) / 100.0;
+        let brightness = f64::from(self.brightness_percent) / 100.0;
+        Tone { brightness, contrast: share(self.contrast_percent), gamma: share(self.gamma_percent) }.limited()
+    }
+
+    /// What is cut off at the left, top, right and bottom, as shares.
+    pub(super) fn crop(&self) -> [f32; 4] {
+        self.crop_percent.map(|percent| f32::from(percent.min(CROP_MOST_PERCENT)) / 100.0)
+    }
+}
+
+/// Most that is cut off at an edge, percent.
+pub const CROP_MOST_PERCENT: u8 = 40;
 
 /// Smallest and largest scale, percent.
 pub const SCALES: std::ops::RangeInclusive<u16> = 100..=200;
@@ -50,6 +96,8 @@ impl Default for Settings {
             layout: Layout::default(),
             sound: false,
             light: false,
+            records_picture: true,
+            picture: PictureSettings::default(),
             toured: false,
             scale_percent: 100,
             recent: Vec::new(),

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use nima_session::{
     anonymous::ANONYMOUS,
-    report::{ArmFigures, Figures, Mark},
+    report::{ArmFigures, Figures, Mark, PicturesFigures},
 };
 
 use super::{
@@ -50,6 +50,9 @@ pub(super) fn summary(session: &Figures) -> String {
     }
     rows.push(vec!["end".to_owned(), end(session).to_owned()]);
     rows.push(vec!["holes in the journal".to_owned(), holes(session)]);
+    if let Some(pictures) = &session.pictures {
+        rows.push(vec!["endoscope's pictures".to_owned(), of_pictures(pictures)]);
+    }
     let faults = of_level(session, "error").count();
     rows.push(vec!["faults".to_owned(), faults.to_string()]);
     let marked: Vec<_> = of_level(session, "mark").take(20).map(|mark| time(mark.t_s)).collect();
@@ -92,6 +95,14 @@ fn holes(session: &Figures) -> String {
     let told = session.holes.iter().map(|hole| format!("{} entries before {}", hole.lost, time(hole.until_s)));
     let told: Vec<_> = told.collect();
     if told.is_empty() { "none".to_owned() } else { told.join("; ") }
+}
+
+fn of_pictures(pictures: &PicturesFigures) -> String {
+    let PicturesFigures { count, bytes, dropped, longest_gap_s, .. } = pictures;
+    let rate = pictures.rate_hz().map_or_else(String::new, |rate_hz| format!(", {rate_hz:.1} a second"));
+    let missing = if *dropped == 0 { "none is missing".to_owned() } else { format!("{dropped} are missing") };
+    let megabytes = *bytes as f64 * 1e-6;
+    format!("{count}{rate}, {megabytes:.1} MB; {missing}; longest gap {longest_gap_s:.2} s")
 }
 
 fn of_level<'a>(session: &'a Figures, level: &'a str) -> impl Iterator<Item = &'a Mark> {

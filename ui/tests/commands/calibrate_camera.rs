@@ -84,7 +84,7 @@ fn what_cannot_be_used_is_told_in_one_line() {
         (vec!["/nowhere"], "cannot read the pictures in /nowhere"),
         (vec![rig], "cannot read the pictures"),
         (vec!["http://127.0.0.1:1/"], "nobody listens"),
-        (vec!["rtsp://127.0.0.1/"], "not an address"),
+        (vec!["ftp://127.0.0.1/"], "not an address"),
     ] {
         let output = nima(&[&["calibrate", "camera"], &arguments[..]].concat());
         let told = one_line(&output);

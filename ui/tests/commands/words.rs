@@ -12,7 +12,7 @@ fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            if path.file_name().unwrap() != "text" {
+            if !["text", "tests"].contains(&path.file_name().unwrap().to_str().unwrap()) {
                 sources(&path, files);
             }
         } else if path.extension().is_some_and(|extension| extension == "rs") && path.file_name().unwrap() != "tests.rs"

@@ -1,6 +1,8 @@
 //! The endoscope's picture in the surgeon's view, from an emulated camera over TCP, and each of its faults in words.
 
-use egui::{Key, Shape};
+use egui::{
+    Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Rect, Shape, TouchPhase, pos2, vec2,
+};
 use egui_kittest::kittest::Queryable as _;
 use nima_console::console::desk::{Layout, Panel};
 use nima_machine::{
@@ -20,7 +22,7 @@ use nima_world::{
 use crate::bench::{Console, TIMEOUT, comes, press, shown, until};
 
 /// Small pictures, so that a busy machine keeps up.
-fn camera() -> (Serving, Endoscope) {
+pub(crate) fn camera() -> (Serving, Endoscope) {
     lenses(None)
 }
 
@@ -233,4 +235,115 @@ fn without_an_endoscope_the_field_is_drawn_as_ever() {
     harness.step();
     assert!(harness.query_by_label_contains("Endoscope's picture").is_none());
     harness.get_by_label("Operating field");
+}
+
+/// Where the picture is, also beyond the view, and the part of it that is shown.
+fn picture(harness: &Console) -> Option<(Rect, Rect)> {
+    harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
+        Shape::Mesh(mesh)
+            if matches!(mesh.texture_id, egui::TextureId::Managed(id) if id > 0) && mesh.vertices.len() == 4 =>
+        {
+            let rect = |of: fn(&egui::epaint::Vertex) -> Pos2| {
+                Rect::from_points(&mesh.vertices.iter().map(of).collect::<Vec<_>>())
+            };
+            Some((rect(|vertex| vertex.pos), rect(|vertex| vertex.uv)))
+        }
+        _ => None,
+    })
+}
+
+fn place(harness: &Console) -> Rect {
+    picture(harness).unwrap().0
+}
+
+/// Turns the wheel over a place until the picture rests.
+fn wheel(harness: &mut Console, at: Pos2, turned: f32) {
+    harness.event(Event::PointerMoved(at));
+    harness.step();
+    let (unit, phase, modifiers) = (MouseWheelUnit::Point, TouchPhase::Move, Modifiers::NONE);
+    harness.event(Event::MouseWheel {
+        unit,
+        delta: vec2(0.0, turned),
+        phase,
+        source: MouseWheelSource::Unknown,
+        modifiers,
+    });
+    harness.run_steps(60);
+}
+
+fn button(harness: &mut Console, pos: Pos2, pressed: bool) {
+    harness.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE });
+    harness.step();
+}
+
+fn double_click(harness: &mut Console, at: Pos2) {
+    harness.event(Event::PointerMoved(at));
+    harness.step();
+    for _ in 0..2 {
+        button(harness, at, true);
+        button(harness, at, false);
+    }
+    harness.run_steps(2);
+}
+
+#[test]
+fn the_wheel_zooms_a_drag_moves_and_a_double_click_shows_all() {
+    let (_serving, endoscope) = camera();
+    let mut harness = surgeon(endoscope, [1280.0, 720.0]);
+    told(&mut harness, "Endoscope's picture: live");
+    assert!(comes(&mut harness, TIMEOUT, has_picture));
+    let whole = place(&harness);
+    let at = whole.center() + vec2(60.0, 40.0);
+    wheel(&mut harness, at, 250.0);
+    let zoomed = place(&harness);
+    let by = zoomed.width() / whole.width();
+    assert!((by - 2.0).abs() < 0.1, "{whole:?} {zoomed:?}");
+    let share = |rect: Rect| (at - rect.min) / rect.size();
+    assert!((share(whole).y - share(zoomed).y).abs() < 0.01, "what is under the pointer stays there");
+    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "Zoom 2.0")));
+
+    button(&mut harness, at, true);
+    for step in 1..=5 {
+        harness.event(Event::PointerMoved(at + vec2(0.0, 10.0 * step as f32)));
+        harness.step();
+    }
+    button(&mut harness, at + vec2(0.0, 50.0), false);
+    let moved = place(&harness).min.y - zoomed.min.y;
+    assert!((moved - 50.0).abs() < 12.0, "moved by {moved}");
+
+    // Away from the tips, which are told at the edge.
+    wheel(&mut harness, whole.left_bottom() + vec2(4.0, -4.0), 800.0);
+    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "Right tip")), "the tip is still to be found");
+    assert!(place(&harness).width() < 8.1 * whole.width());
+
+    double_click(&mut harness, at);
+    assert!((place(&harness).width() - whole.width()).abs() < 1.0);
+    assert!(!is_painted(&harness, "Zoom") && !is_painted(&harness, "Right tip"));
+}
+
+#[test]
+fn edges_are_cut_off_by_the_rig_file_and_on_the_screen() {
+    let (_serving, endoscope) = camera();
+    let mut harness = surgeon(Endoscope { crop_px: [64, 0, 64, 0], ..endoscope }, [1280.0, 720.0]);
+    told(&mut harness, "Endoscope's picture: live");
+    assert!(comes(&mut harness, TIMEOUT, has_picture));
+    let (by_file, part) = picture(&harness).unwrap();
+    assert_eq!(part, Rect::from_min_max(pos2(0.1, 0.0), pos2(0.9, 1.0)));
+    harness.state_mut().settings_mut().picture.crop_percent = [0, 20, 25, 0];
+    harness.run_steps(2);
+    let (on_screen, part) = picture(&harness).unwrap();
+    assert_eq!(part, Rect::from_min_max(pos2(0.1, 0.2), pos2(0.75, 1.0)));
+    // What is left is as large as it can be, and not distorted.
+    assert!((on_screen.height() - by_file.height()).abs() < 1.0);
+    let proportions = on_screen.width() / on_screen.height();
+    assert!((proportions - 640.0 * 0.65 / (360.0 * 0.8)).abs() < 0.01, "{proportions}");
+}
+
+#[test]
+fn forces_of_now_are_called_so() {
+    let (_serving, endoscope) = camera();
+    let mut harness = surgeon(endoscope, [1280.0, 720.0]);
+    told(&mut harness, "Endoscope's picture: live");
+    harness.state_mut().settings_mut().picture.forces_of_now = true;
+    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "Forces of now, ahead of the picture")));
 }

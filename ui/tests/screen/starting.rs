@@ -7,7 +7,10 @@ use egui_kittest::{Harness, kittest::Queryable as _};
 use nima_console::console::{ConsoleApp, settings::Kept, start::Choice};
 use nima_machine::messages::LoopState;
 
-use crate::bench::{console_of, pick, press, until, wait};
+use crate::{
+    bench::{console_of, pick, press, read, until, wait, write_into},
+    eyes::camera,
+};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
@@ -107,4 +110,49 @@ fn a_stop_on_the_start_page_stops() {
     harness.key_press(Key::F2);
     harness.run_steps(2);
     assert!(harness.query_by_label("1. Choose a rig").is_none(), "a view's key leaves the page");
+}
+
+const ADDRESS: &str = "Address of the endoscope";
+const WRITE: &str = "Write this address into the rig";
+
+/// Types another address in place of the one that is there.
+fn type_address(harness: &mut Harness<'_, ConsoleApp>, address: &str) {
+    harness.get_by_role_and_label(Role::TextInput, ADDRESS).focus();
+    harness.step();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
+    harness.step();
+    write_into(harness, ADDRESS, address);
+}
+
+#[test]
+fn an_endoscope_is_tried_while_its_address_is_typed_and_written_without_editing_a_file() {
+    let (serving, _) = camera();
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    press(&mut harness, "Rig");
+    harness.get_by_label_contains("None: the surgeon's view draws the field");
+    for (address, cause, cure) in [
+        ("http://127.0.0.1:1/", "nobody listens at 127.0.0.1:1", "Correct the port"),
+        ("/no/such/film.mjpeg", "not there", "Put the file there"),
+        ("ftp://127.0.0.1/", "No picture:", "Give http://HOST:PORT/PATH"),
+    ] {
+        type_address(&mut harness, address);
+        read(&mut harness, cause);
+        read(&mut harness, cure);
+    }
+    type_address(&mut harness, &serving.endpoint);
+    read(&mut harness, "Sends 640 x 360 pixels");
+    pick(&mut harness, WRITE);
+    let path = folder.path().join("rigs/simulated-2.toml");
+    read(&mut harness, "simulated-2.toml. Start it to use the address.");
+    assert!(std::fs::read_to_string(&path).unwrap().contains(&serving.endpoint));
+    pick(&mut harness, "Start");
+    until_runs(&mut harness, path.to_str().unwrap(), "peg_transfer");
+    assert_eq!(harness.state().rig().endoscope.as_ref().unwrap().url, serving.endpoint);
+    // Of the rig that runs, the picture is not opened a second time.
+    press(&mut harness, "Rig");
+    read(&mut harness, "live");
+    type_address(&mut harness, " ");
+    pick(&mut harness, "Take the endoscope out of the rig");
+    assert!(!std::fs::read_to_string(&path).unwrap().contains("endoscope"));
 }

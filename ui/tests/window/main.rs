@@ -1,6 +1,7 @@
 //! The real window on an X server without a screen.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod code_to_pixel;
 mod console;
 mod first_day;
 mod past;

@@ -1,7 +1,9 @@
 //! A real X server without a screen, for tests of the real window.
 
 use std::{
+    ffi::OsStr,
     io::{BufRead as _, BufReader},
+    path::Path,
     process::{Child, Command, Stdio},
     thread,
     time::{Duration, Instant},
@@ -16,6 +18,11 @@ pub(crate) struct Xvfb {
 impl Xvfb {
     /// `None`, said aloud, where the tools are not installed - unless the environment demands them.
     pub(crate) fn start() -> Option<Self> {
+        Self::of("1600x1000", None)
+    }
+
+    /// With a screen of this size (`1600x1000`), whose memory is a file in this folder.
+    pub(crate) fn of(size: &str, memory: Option<&Path>) -> Option<Self> {
         let found = ["Xvfb", "xdotool", "import"].into_iter().all(which);
         if !found {
             assert!(std::env::var_os("NIMA_REQUIRE_WINDOW").is_none(), "Xvfb, xdotool or ImageMagick is not installed");
@@ -24,7 +31,8 @@ impl Xvfb {
         }
         // Without -noreset it begins anew when a window closes, and the next one may come in between.
         let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "1600x1000x24", "-nolisten", "tcp", "-noreset"])
+            .args(["-displayfd", "1", "-screen", "0", &format!("{size}x24"), "-nolisten", "tcp", "-noreset"])
+            .args(memory.into_iter().flat_map(|folder| [OsStr::new("-fbdir"), folder.as_os_str()]))
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()

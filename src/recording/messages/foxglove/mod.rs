@@ -1,4 +1,4 @@
-//! Messages that Foxglove knows by name, as Protocol Buffers: frames, text, arrows.
+//! Messages that Foxglove knows by name, as Protocol Buffers: frames, text, arrows, pictures.
 //!
 //! The structs are written by hand from the published field numbers; [`encoding`] makes the description that goes with them into
 //! the file, of which a reader without knowledge of Foxglove decodes them.
@@ -230,6 +230,26 @@ pub struct SceneUpdate {
     pub entities: Vec<SceneEntity>,
 }
 
+/// A picture as a camera compressed it.
+#[derive(Clone, PartialEq, Eq, Message)]
+pub struct CompressedImage {
+    /// When.
+    #[prost(message, optional, tag = "1")]
+    pub timestamp: Option<Timestamp>,
+    /// Its bytes.
+    #[prost(bytes = "vec", tag = "2")]
+    pub data: Vec<u8>,
+    /// Their format: `jpeg`.
+    #[prost(string, tag = "3")]
+    pub format: String,
+    /// In which frame: x to the right of the picture, y down, z away from the lens.
+    #[prost(string, tag = "4")]
+    pub frame_id: String,
+}
+
+impl Described for CompressedImage {
+    const NAME: &'static str = "CompressedImage";
+}
 impl Described for FrameTransforms {
     const NAME: &'static str = "FrameTransforms";
 }

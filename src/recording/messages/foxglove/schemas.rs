@@ -64,6 +64,10 @@ pub(super) const SCHEMAS: &[Schema] = &[
         ],
     ),
     plain("FrameTransforms", &[many("transforms", 1, Message("FrameTransform"))]),
+    plain(
+        "CompressedImage",
+        &[one("timestamp", 1, STAMP), one("data", 2, Bytes), one("format", 3, Text), one("frame_id", 4, Text)],
+    ),
     Schema {
         name: "Log",
         fields: &[

@@ -5,6 +5,7 @@ mod files;
 mod full_disk;
 mod killed;
 mod peer;
+mod pictures;
 mod torn;
 
 use std::collections::BTreeMap;

@@ -14,6 +14,7 @@ mod serve;
 mod shot;
 #[cfg(test)]
 mod tests;
+mod workshop;
 
 use std::path::PathBuf;
 
@@ -23,6 +24,7 @@ use nima_core::frames::from_roll_pitch_yaw_deg;
 use nima_endoscope::{Bend, Board, Camera, Lens};
 use nima_machine::config::EndoscopeCamera;
 
+use self::shot::{Seen, Subject};
 use super::Emulator;
 use crate::scene::Scene;
 
@@ -55,25 +57,36 @@ pub struct Emulated {
     pub quality: u8,
     /// Where pictures are also written, one after the other: H.264 if it ends so, else JPEGs.
     pub pipe: Option<PathBuf>,
+    /// Pictures are made with less claim to a processor than other threads have: beside emulators that serve a loop.
+    pub gives_way: bool,
 }
 
 impl Emulated {
     /// The usual endoscope of a scene, on this port.
     pub fn of(scene: &Scene, port: u16) -> Self {
-        let camera = camera_of(&usual(scene));
-        Self { port, rate_hz: 30.0, camera, baseline_m: None, square_px: SQUARE_PX, quality: 80, pipe: None }
+        Self {
+            port,
+            rate_hz: 30.0,
+            camera: camera_of(&usual(scene)),
+            baseline_m: None,
+            square_px: SQUARE_PX,
+            quality: 80,
+            pipe: None,
+            gives_way: false,
+        }
     }
 
     /// With what it sees.
-    pub fn with(self, scene: &Scene, body: Body) -> Box<dyn Emulator> {
-        let shown = shot::Shown::Scene(Box::new(scene.clone()), body, Vec::new());
-        Box::new(serve::Endoscope::new(self, shown))
+    pub fn with(self, scene: &Scene, mut body: Body) -> Box<dyn Emulator> {
+        let seen = Box::new(move |now_s: f64| Seen::Instruments(body(now_s)));
+        Box::new(serve::Endoscope::new(self, Subject::Scene(Box::new(scene.clone())), seen))
     }
 
     /// With a board for the calibration before its one lens, and without a time code, which would cover it.
-    pub fn with_board(self, board: Board, hands: Hands) -> Box<dyn Emulator> {
-        let shown = shot::Shown::Board(board, hands, None);
-        Box::new(serve::Endoscope::new(Self { square_px: 0, baseline_m: None, ..self }, shown))
+    pub fn with_board(self, board: Board, mut hands: Hands) -> Box<dyn Emulator> {
+        let seen = Box::new(move |now_s: f64| Seen::Board(hands(now_s)));
+        let emulated = Self { square_px: 0, baseline_m: None, ..self };
+        Box::new(serve::Endoscope::new(emulated, Subject::Board(board), seen))
     }
 }
 

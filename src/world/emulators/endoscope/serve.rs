@@ -1,17 +1,19 @@
 //! Serves the pictures: one answer that never ends for everyone who asks, as parts over HTTP or as packets over RTSP.
 
-use std::{collections::VecDeque, io};
-
-use nima_endoscope::{
-    h264::{self, Encoder},
-    jpeg,
+use std::{
+    collections::VecDeque,
+    io,
+    time::{SystemTime, UNIX_EPOCH},
 };
+
+use nima_endoscope::h264;
 
 use super::{
     Emulated,
     pipe::Pipe,
     rtsp::{self, Reply},
-    shot::{Shot, Shown, Studio},
+    shot::{Seen, Subject},
+    workshop::{BOUNDARY, Order, Sent, Workshop},
 };
 use crate::emulators::{
     EmulatedFault, Emulator, Peer, Turn,
@@ -22,20 +24,24 @@ use crate::emulators::{
 const REQUEST_MOST: usize = 8 << 10;
 /// How late a late picture leaves, s.
 const LATE_S: f64 = 0.4;
-const BOUNDARY: &str = "nima-endoscope";
+/// It is looked so often whether a picture is made, s.
+const LOOK_S: f64 = 1e-3;
 /// What a browser or a player asks for.
 const PATHS: [&str; 4] = ["/", "/stream", "/stream.mjpg", "/?action=stream"];
 
 pub(super) struct Endoscope {
     emulated: Emulated,
-    studio: Studio,
-    /// For all who watch over RTSP; made when the first one does.
-    encoder: Option<Encoder>,
+    /// How what is before the lens is at a time.
+    seen: Box<dyn FnMut(f64) -> Seen + Send>,
+    subject: Option<Subject>,
+    /// Made when the first picture is wanted.
+    workshop: Option<Workshop>,
     /// The next picture is one with which a player can begin.
     wants_key: bool,
-    pipe: Option<Pipe>,
     clients: Vec<Client>,
     due_s: f64,
+    /// When it is looked whether a picture is made, s.
+    looks_s: f64,
     /// When each late picture leaves, s.
     late: VecDeque<(f64, Sent)>,
 }
@@ -53,14 +59,6 @@ enum Watches {
     Packets(rtsp::Session),
 }
 
-/// A picture on its way, as those who watch want it.
-#[derive(Default)]
-struct Sent {
-    part: Vec<u8>,
-    unit: Vec<u8>,
-    since: std::time::Duration,
-}
-
 impl Client {
     fn wants_unit(&self) -> bool {
         matches!(&self.watches, Watches::Packets(session) if session.plays)
@@ -68,57 +66,59 @@ impl Client {
 }
 
 impl Endoscope {
-    pub(super) fn new(emulated: Emulated, shown: Shown) -> Self {
-        let studio = Studio::new(emulated.clone(), shown);
-        let (clients, late) = (Vec::new(), VecDeque::new());
-        Self { emulated, studio, encoder: None, wants_key: true, pipe: None, clients, due_s: 0.0, late }
+    pub(super) fn new(emulated: Emulated, subject: Subject, seen: Box<dyn FnMut(f64) -> Seen + Send>) -> Self {
+        Self {
+            emulated,
+            seen,
+            subject: Some(subject),
+            workshop: None,
+            wants_key: true,
+            clients: Vec::new(),
+            due_s: 0.0,
+            looks_s: 0.0,
+            late: VecDeque::new(),
+        }
     }
 
     fn is_watched(&self) -> bool {
         let watches = |client: &Client| client.wants_unit() || matches!(client.watches, Watches::Parts);
-        self.pipe.is_some() || self.clients.iter().any(watches)
+        self.emulated.pipe.is_some() || self.clients.iter().any(watches)
     }
 
-    /// The picture of this time.
-    fn take(&mut self, now_s: f64, fault: EmulatedFault) -> Sent {
-        let is_frozen = fault == EmulatedFault::Freeze;
-        let shot = if is_frozen { self.studio.again(now_s) } else { self.studio.take(now_s, fault) };
-        if let Some(pipe) = &self.pipe {
-            pipe.send(&shot, fault);
+    fn is_busy(&self) -> bool {
+        self.workshop.as_ref().is_some_and(|workshop| workshop.is_busy)
+    }
+
+    /// Orders the picture of this time.
+    fn order(&mut self, now_s: f64, fault: EmulatedFault) {
+        // Before it is looked: whoever reads this time knows that nothing in the picture is older.
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let seen = (self.seen)(now_s);
+        if let Some(subject) = self.subject.take() {
+            let Emulated { pipe, rate_hz, quality, .. } = &self.emulated;
+            // Whether it can be written was tried when it was asked for.
+            let pipe = pipe.clone().and_then(|path| Pipe::start(path, *rate_hz, *quality).ok());
+            // Without a thread there is no picture, and the client tells that nothing comes.
+            self.workshop = Workshop::start(self.emulated.clone(), subject, pipe).ok();
         }
-        let mut sent = Sent { since: shot.since, ..Sent::default() };
-        if self.clients.iter().any(|client| matches!(client.watches, Watches::Parts)) {
-            sent.part = part(&shot, self.emulated.quality, fault);
+        let parts = self.clients.iter().any(|client| matches!(client.watches, Watches::Parts));
+        let units = self.clients.iter().any(Client::wants_unit);
+        let key = self.wants_key;
+        if let Some(workshop) = &mut self.workshop {
+            workshop.order(Order { since, seen, fault, parts, units, key });
+            self.wants_key &= !units;
         }
-        // An encoder never makes the same bytes of the same picture: a stream that hangs has no more pictures.
-        if !is_frozen && self.clients.iter().any(Client::wants_unit) {
-            let encoder = match self.encoder.take() {
-                Some(encoder) => Ok(encoder),
-                None => Encoder::new(self.emulated.rate_hz),
-            };
-            let unit = encoder.and_then(|mut encoder| {
-                let unit = encoder.encode(shot.rgb, shot.size_px, self.wants_key);
-                self.encoder = Some(encoder);
-                unit
-            });
-            // A picture that the library does not take is not sent: the client tells that nothing comes.
-            sent.unit = unit.unwrap_or_default();
-            self.wants_key = false;
-            if fault == EmulatedFault::Torn {
-                sent.unit.truncate(sent.unit.len() * 6 / 10);
-            }
-        }
-        sent
     }
 
     fn send(&mut self, sent: &Sent, turn: &mut Turn<'_>) {
         for client in &mut self.clients {
             match &mut client.watches {
-                Watches::Parts => turn.send(client.peer, &sent.part),
-                Watches::Packets(session) if session.plays => {
+                // Who came while it was made waits for the next one.
+                Watches::Parts if !sent.part.is_empty() => turn.send(client.peer, &sent.part),
+                Watches::Packets(session) if session.plays && !sent.unit.is_empty() => {
                     turn.send(client.peer, &session.packets(&sent.unit, sent.since));
                 }
-                Watches::Nothing | Watches::Packets(_) => {}
+                Watches::Nothing | Watches::Parts | Watches::Packets(_) => {}
             }
         }
     }
@@ -136,25 +136,6 @@ impl Endoscope {
             }
         }
     }
-}
-
-/// One part of the answer over HTTP.
-fn part(shot: &Shot<'_>, quality: u8, fault: EmulatedFault) -> Vec<u8> {
-    let (kind, mut picture) = if fault == EmulatedFault::OtherFormat {
-        ("image/png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec())
-    } else {
-        ("image/jpeg", jpeg::encode(shot.rgb, shot.size_px, quality))
-    };
-    if fault == EmulatedFault::Torn {
-        picture.truncate(picture.len() * 6 / 10);
-    }
-    let head = format!(
-        "\r\n--{BOUNDARY}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nX-Timestamp: {}.{:06}\r\n\r\n",
-        picture.len(),
-        shot.since.as_secs(),
-        shot.since.subsec_micros()
-    );
-    [head.as_bytes(), &picture].concat()
 }
 
 /// Answer to a whole request, and whether pictures follow.
@@ -194,12 +175,6 @@ impl Emulator for Endoscope {
 
     fn endpoint(&self, places: &[String]) -> String {
         format!("http://{}/", places[0])
-    }
-
-    fn begin(&mut self) {
-        let Some(path) = self.emulated.pipe.clone() else { return };
-        // Whether it can be written was tried when it was asked for.
-        self.pipe = Pipe::start(path, self.emulated.rate_hz, self.emulated.quality).ok();
     }
 
     fn meet(&mut self, peer: Peer, _: &mut Turn<'_>) {
@@ -245,23 +220,24 @@ impl Emulator for Endoscope {
             turn.hang_up();
             self.lose(Peer::Everyone);
         }
-        if !self.is_watched() || turn.now_s < self.due_s {
-            return;
+        if let Some(sent) = self.workshop.as_mut().and_then(Workshop::made) {
+            if turn.fault == EmulatedFault::Late {
+                self.late.push_back((turn.now_s + LATE_S, sent));
+            } else {
+                self.send(&sent, turn);
+            }
         }
-        // What was missed is not caught up.
-        let period_s = self.emulated.rate_hz.recip();
-        self.due_s = (self.due_s + period_s).max(turn.now_s);
-        let sent = self.take(turn.now_s, turn.fault);
-        if turn.fault == EmulatedFault::Late {
-            self.late.push_back((turn.now_s + LATE_S, sent));
-        } else {
-            self.send(&sent, turn);
+        if self.is_watched() && turn.now_s >= self.due_s && !self.is_busy() {
+            // What was missed is not caught up.
+            self.due_s = (self.due_s + self.emulated.rate_hz.recip()).max(turn.now_s);
+            self.order(turn.now_s, turn.fault);
         }
+        self.looks_s = turn.now_s + LOOK_S;
     }
 
     fn due_s(&self) -> Option<f64> {
         let late_s = self.late.front().map(|(leaves_s, _)| *leaves_s);
-        let due_s = self.is_watched().then_some(self.due_s);
+        let due_s = if self.is_busy() { Some(self.looks_s) } else { self.is_watched().then_some(self.due_s) };
         [late_s, due_s].into_iter().flatten().reduce(f64::min).or(Some(f64::INFINITY))
     }
 

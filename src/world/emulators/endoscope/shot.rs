@@ -1,102 +1,101 @@
 //! Takes pictures of the scene: through one lens, or through two whose pictures lie side by side.
 
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
+use nalgebra::Isometry3;
 use nima_endoscope::{Board, time_code};
 
-use super::{
-    Body, Emulated,
-    board::{Drawn, Hands},
-    draw::Painter,
-};
+use super::{Emulated, Instrument, board::Drawn, draw::Painter};
 use crate::{emulators::EmulatedFault, scene::Scene};
+
+/// What is before the lens.
+pub(super) enum Subject {
+    Scene(Box<Scene>),
+    /// For the calibration of one lens.
+    Board(Board),
+}
+
+/// How it is at some time.
+pub(super) enum Seen {
+    Instruments(Vec<Instrument>),
+    /// The board's place before the lens.
+    Board(Isometry3<f64>),
+}
+
+/// What draws it.
+enum Easel {
+    /// One for each lens.
+    Scene(Vec<Painter>),
+    Board(Box<Drawn>),
+}
 
 pub(super) struct Studio {
     emulated: Emulated,
-    shown: Shown,
+    easel: Easel,
     rgb: Vec<u8>,
     size_px: [usize; 2],
-}
-
-/// What is before the lens; how it is drawn is made when the first picture is wanted.
-pub(super) enum Shown {
-    /// A scene with its instruments, drawn for each lens.
-    Scene(Box<Scene>, Body, Vec<Painter>),
-    /// A board for the calibration of one lens.
-    Board(Board, Hands, Option<Drawn>),
-}
-
-impl Shown {
-    /// The picture at a time, and its size.
-    fn draw(&mut self, emulated: &Emulated, now_s: f64, rgb: &mut Vec<u8>) -> [usize; 2] {
-        let camera = emulated.camera;
-        let [width, height] = camera.lens.size_px;
-        match self {
-            Self::Scene(scene, body, painters) => {
-                let instruments = body(now_s);
-                if painters.is_empty() {
-                    let second = emulated.baseline_m.map(|baseline_m| camera.beside(baseline_m));
-                    let lenses = [Some(camera), second].into_iter().flatten();
-                    *painters = lenses.map(|camera| Painter::new(camera, scene)).collect();
-                }
-                let size_px = [width * painters.len(), height];
-                rgb.resize(3 * size_px[0] * height, 0);
-                for (number, painter) in painters.iter_mut().enumerate() {
-                    let rows = painter.draw(&instruments).chunks_exact(3 * width);
-                    for (whole, row) in rgb.chunks_exact_mut(3 * size_px[0]).zip(rows) {
-                        whole[3 * width * number..][..3 * width].copy_from_slice(row);
-                    }
-                }
-                size_px
-            }
-            Self::Board(board, hands, drawn) => {
-                let camera_from_board = hands(now_s);
-                let drawn = drawn.get_or_insert_with(|| Drawn::new(*board, &camera.lens));
-                rgb.clear();
-                rgb.extend_from_slice(drawn.draw(&camera_from_board));
-                [width, height]
-            }
-        }
-    }
 }
 
 /// A picture of three bytes a pixel.
 pub(super) struct Shot<'a> {
     pub(super) rgb: &'a [u8],
     pub(super) size_px: [usize; 2],
-    /// When it was taken, since 1970.
-    pub(super) since: Duration,
 }
 
 impl Studio {
-    pub(super) fn new(emulated: Emulated, shown: Shown) -> Self {
-        Self { emulated, shown, rgb: Vec::new(), size_px: [0; 2] }
+    /// Takes some tenths of a second.
+    pub(super) fn new(emulated: Emulated, subject: &Subject) -> Self {
+        let camera = emulated.camera;
+        let easel = match subject {
+            Subject::Scene(scene) => {
+                let second = emulated.baseline_m.map(|baseline_m| camera.beside(baseline_m));
+                let lenses = [Some(camera), second].into_iter().flatten();
+                Easel::Scene(lenses.map(|camera| Painter::new(camera, scene)).collect())
+            }
+            Subject::Board(board) => Easel::Board(Box::new(Drawn::new(*board, &camera.lens))),
+        };
+        Self { emulated, easel, rgb: Vec::new(), size_px: [0; 2] }
     }
 
-    /// The last picture again, as a camera that hangs sends it; the picture of this time if there was none.
-    pub(super) fn again(&mut self, now_s: f64) -> Shot<'_> {
-        if self.rgb.is_empty() {
-            return self.take(now_s, EmulatedFault::None);
+    /// The picture of what was seen then (since 1970), black or half as large where that is the fault; of a camera that hangs the last one again,
+    /// if there was one.
+    pub(super) fn take(&mut self, since: Duration, seen: &Seen, fault: EmulatedFault) -> Shot<'_> {
+        if fault == EmulatedFault::Freeze && !self.rgb.is_empty() {
+            return Shot { rgb: &self.rgb, size_px: self.size_px };
         }
-        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        Shot { rgb: &self.rgb, size_px: self.size_px, since }
-    }
-
-    /// The picture of this time, black or half as large where that is the fault.
-    pub(super) fn take(&mut self, now_s: f64, fault: EmulatedFault) -> Shot<'_> {
-        // Before it is looked: whoever reads this time knows that nothing in the picture is older.
-        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let size_px = self.shown.draw(&self.emulated, now_s, &mut self.rgb);
+        self.draw(seen);
         if self.emulated.square_px > 0 {
-            time_code::draw(since.as_micros() as u64, self.emulated.square_px, &mut self.rgb, size_px[0]);
+            time_code::draw(since.as_micros() as u64, self.emulated.square_px, &mut self.rgb, self.size_px[0]);
         }
-        self.size_px = size_px;
         match fault {
             EmulatedFault::Black => self.rgb.fill(0),
-            EmulatedFault::WrongSize => (self.rgb, self.size_px) = halved(&self.rgb, size_px),
+            EmulatedFault::WrongSize => (self.rgb, self.size_px) = halved(&self.rgb, self.size_px),
             _ => {}
         }
-        Shot { rgb: &self.rgb, size_px: self.size_px, since }
+        Shot { rgb: &self.rgb, size_px: self.size_px }
+    }
+
+    fn draw(&mut self, seen: &Seen) {
+        let [width, height] = self.emulated.camera.lens.size_px;
+        match (&mut self.easel, seen) {
+            (Easel::Scene(painters), Seen::Instruments(instruments)) => {
+                self.size_px = [width * painters.len(), height];
+                self.rgb.resize(3 * self.size_px[0] * height, 0);
+                for (number, painter) in painters.iter_mut().enumerate() {
+                    let rows = painter.draw(instruments).chunks_exact(3 * width);
+                    for (whole, row) in self.rgb.chunks_exact_mut(3 * self.size_px[0]).zip(rows) {
+                        whole[3 * width * number..][..3 * width].copy_from_slice(row);
+                    }
+                }
+            }
+            (Easel::Board(drawn), Seen::Board(camera_from_board)) => {
+                self.size_px = [width, height];
+                self.rgb.clear();
+                self.rgb.extend_from_slice(drawn.draw(camera_from_board));
+            }
+            // Made as pairs where the emulator is made.
+            (Easel::Scene(_), Seen::Board(_)) | (Easel::Board(_), Seen::Instruments(_)) => {}
+        }
     }
 }
 

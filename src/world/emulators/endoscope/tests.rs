@@ -177,10 +177,9 @@ fn two_lenses_see_a_tip_where_each_camera_says() {
     let emulated = Emulated { camera, baseline_m, square_px: 0, ..Emulated::of(&scene(), 0) };
     let trocar_m = scene().trocar_m;
     let tip_m = Vector3::new(0.01, 0.005, 0.01);
-    let body = Box::new(move |_: f64| vec![Instrument { tip_m, trocar_m }]);
-    let shown = shot::Shown::Scene(Box::new(scene()), body, Vec::new());
-    let mut studio = shot::Studio::new(emulated, shown);
-    let shot = studio.take(0.0, EmulatedFault::None);
+    let seen = shot::Seen::Instruments(vec![Instrument { tip_m, trocar_m }]);
+    let mut studio = shot::Studio::new(emulated, &shot::Subject::Scene(Box::new(scene())));
+    let shot = studio.take(Duration::ZERO, &seen, EmulatedFault::None);
     assert_eq!(shot.size_px, [1280, 360]);
     for (number, camera) in [camera, camera.beside(BASELINE_M)].into_iter().enumerate() {
         let rows = shot.rgb.chunks_exact(3 * 1280).map(|row| &row[3 * 640 * number..][..3 * 640]);

@@ -17,7 +17,7 @@ use nima_session::{
 use nima_world::Plan;
 use serde::Serialize;
 
-use crate::{recording::begin, words::disk_full_in};
+use crate::{pictures::Filming, recording::begin, words::disk_full_in};
 
 /// A recording, if one was asked for. Without a file there are only those who watch.
 #[derive(Default)]
@@ -26,9 +26,11 @@ pub(super) struct Recording {
     outlook: Option<Outlook>,
     /// When the run ends, if that is known.
     ends: Option<Instant>,
-    /// What was told already: that it is over, goes on elsewhere, waits for the disk, has lost entries, and that the disk will be full
-    /// within a day and within an hour.
-    told: [bool; 6],
+    /// Reads the endoscope's pictures for it.
+    filming: Option<Filming>,
+    /// What was told already: that it is over, goes on elsewhere, waits for the disk, has lost entries, that the disk will be full
+    /// within a day and within an hour, that pictures are missing, and that there are none.
+    told: [bool; 8],
 }
 
 /// A second warning of a full disk.
@@ -46,6 +48,16 @@ pub(super) struct Recorded {
     ticks: u64,
     lost: u64,
     bytes: u64,
+    /// Pictures of the endoscope, and those that are missing.
+    #[serde(skip_serializing_if = "is_none")]
+    pictures: u64,
+    #[serde(skip_serializing_if = "is_none")]
+    pictures_dropped: u64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+const fn is_none(count: &u64) -> bool {
+    *count == 0
 }
 
 impl Recording {
@@ -64,7 +76,9 @@ impl Recording {
         let now = Instant::now();
         let outlook = file.as_deref().map(|file| Outlook::new(file, recorder.progress().bytes, now));
         let ends = seconds.and_then(|seconds| now.checked_add(Duration::from_secs_f64(seconds)));
-        Ok((Some(tap), Self { recorder: Some((recorder, file)), outlook, ends, told: [false; 6] }))
+        // On the virtual clock pictures would belong to no moment.
+        let filming = file.as_ref().filter(|_| !is_virtual).and_then(|_| Filming::start(&recorder, &plan.rig));
+        Ok((Some(tap), Self { recorder: Some((recorder, file)), outlook, ends, filming, told: [false; 8] }))
     }
 
     /// Records what this source tells of the objects of the scene too; to be called before the loop starts.
@@ -87,6 +101,8 @@ impl Recording {
         let moved = |Moved { why, to }: &Moved| format!("the recording goes on in {}: {why}", to.display());
         let slow = || format!("the disk has not answered for {:.1} s: the run goes on", progress.waits.as_secs_f64());
         let lost = || "the disk is slower than the loop: parts of the recording are lost, the run goes on".to_owned();
+        let missing = || "the disk is slower than the endoscope: pictures are missing, the run goes on".to_owned();
+        let no_picture = self.filming.as_ref().and_then(Filming::trouble);
         let now = Instant::now();
         let place = recorder.moved().map(|moved| &moved.to).or(file.as_ref()).filter(|_| over.is_none());
         let full_in = place.zip(self.outlook.as_mut());
@@ -104,6 +120,8 @@ impl Recording {
             (progress.lost > 0).then(lost),
             full(WARN_AGAIN..WARN_BEFORE),
             full(Duration::ZERO..WARN_AGAIN),
+            (progress.pictures_dropped > 0).then(missing),
+            no_picture.map(|why| format!("the endoscope's picture is not recorded now, the run goes on: {why}")),
         ];
         let is_new = |(words, told): (Option<String>, &mut bool)| {
             let words = words.filter(|_| !*told)?;
@@ -118,22 +136,27 @@ impl Recording {
         let Some((mut recorder, file)) = self.recorder else { return Ok(None) };
         recorder.end();
         let goes_on_in = recorder.moved().map(|moved| moved.to.clone());
-        let Progress { ticks, lost, bytes, .. } =
+        let Progress { ticks, lost, bytes, pictures, pictures_dropped, .. } =
             recorder.finish().context("the recording has ended before the run")?;
-        Ok(file.map(|file| Recorded { file, goes_on_in, ticks, lost, bytes }))
+        Ok(file.map(|file| Recorded { file, goes_on_in, ticks, lost, bytes, pictures, pictures_dropped }))
     }
 }
 
 impl Recorded {
     /// In words, for a terminal; begins with a line break.
     pub(super) fn in_words(&self) -> String {
-        let Self { file, goes_on_in, ticks, lost, bytes } = self;
+        let Self { file, goes_on_in, ticks, lost, bytes, pictures, pictures_dropped } = self;
         let hole = match lost {
             0 => String::new(),
             _ => format!(", {lost} entries lost: it can be replayed up to the first of them"),
         };
         let megabytes = *bytes as f64 * 1e-6;
         let moved = goes_on_in.as_ref().map_or_else(String::new, |second| format!(" and {}", second.display()));
-        format!("\nrecorded {ticks} ticks into {}{moved}, {megabytes:.1} MB{hole}", file.display())
+        let of_endoscope = match (pictures, pictures_dropped) {
+            (0, 0) => String::new(),
+            (_, 0) => format!(" and {pictures} pictures"),
+            _ => format!(" and {pictures} pictures ({pictures_dropped} more are missing: the disk was too slow)"),
+        };
+        format!("\nrecorded {ticks} ticks{of_endoscope} into {}{moved}, {megabytes:.1} MB{hole}", file.display())
     }
 }

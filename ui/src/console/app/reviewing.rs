@@ -124,6 +124,7 @@ impl ConsoleApp {
             };
             live.rough_edges = self.live.rough_edges;
             past.panels.scene.smooth = smooth;
+            past.panels.eyes.show_as(self.settings.now.picture);
             // What the views wish for the machine is left undone.
             role_ui(ui, &mut self.settings.now, live, &mut past.panels, &past.in_force, &mut past.outbox);
             past.outbox.forget();

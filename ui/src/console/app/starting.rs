@@ -112,6 +112,7 @@ impl ConsoleApp {
             running: &self.running,
             recent: &self.settings.now.recent,
             is_starting: self.starting.is_some(),
+            picture: self.panels.eyes.told(),
         };
         let chosen = self.start.ui(ui, &now);
         if std::mem::take(&mut self.start.wants_studies) {

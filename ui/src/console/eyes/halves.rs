@@ -4,7 +4,7 @@ use egui::{Rect, pos2};
 use nima_endoscope::Camera;
 use nima_machine::config::{Endoscope, StereoView};
 
-use super::place::Place;
+use super::{aim::Aim, place::Place};
 use crate::console::text;
 
 /// What one lens sees.
@@ -15,6 +15,16 @@ pub(super) struct Half {
     pub(super) camera: Option<Camera>,
     /// What is drawn for this half stays in it.
     pub(super) within: Rect,
+}
+
+/// What the operator chose to see of a picture.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Shown {
+    /// `None` for a picture of one lens.
+    pub(super) view: Option<StereoView>,
+    /// Cut off at the left, top, right and bottom, as shares; of two lenses, of each half.
+    pub(super) crop: [f32; 4],
+    pub(super) aim: Aim,
 }
 
 /// The view after this one.
@@ -31,16 +41,17 @@ pub(super) fn whole_px([width, height]: [usize; 2], endoscope: &Endoscope) -> [u
     if endoscope.view.is_some() { [2 * width, height] } else { [width, height] }
 }
 
-/// What is shown of a picture, and where; `view` is `None` for a picture of one lens.
+/// What is shown of a picture, and where.
 pub(super) fn halves(
     area: Rect,
     size_px: [usize; 2],
     endoscope: &Endoscope,
-    view: Option<StereoView>,
+    Shown { view, crop, aim }: Shown,
     camera: Option<&Camera>,
 ) -> Vec<Half> {
     let Some(view) = view else {
-        return vec![Half { place: Place::new(area, size_px, endoscope), camera: camera.copied(), within: area }];
+        let place = Place::new(area, size_px, endoscope, crop, aim);
+        return vec![Half { place, camera: camera.copied(), within: area }];
     };
     let half_px = [size_px[0] / 2, size_px[1]];
     let middle = area.center().x;
@@ -50,11 +61,11 @@ pub(super) fn halves(
     ];
     let of_right = || camera.zip(endoscope.baseline_m).map(|(camera, baseline_m)| camera.beside(baseline_m));
     let of_left = |within| {
-        let place = Place::new(within, half_px, endoscope).of_share([0.0, 0.5]);
+        let place = Place::new(within, half_px, endoscope, crop, aim).of_share([0.0, 0.5]);
         Half { place, camera: camera.copied(), within }
     };
     let of_right = |within| {
-        let place = Place::new(within, half_px, endoscope).of_share([0.5, 1.0]);
+        let place = Place::new(within, half_px, endoscope, crop, aim).of_share([0.5, 1.0]);
         Half { place, camera: of_right(), within }
     };
     match view {
@@ -88,6 +99,10 @@ mod tests {
 
     use super::*;
 
+    fn of(view: Option<StereoView>) -> Shown {
+        Shown { view, ..Shown::default() }
+    }
+
     #[test]
     fn each_half_is_a_picture_of_its_own_with_the_camera_of_its_lens() {
         let settings = usual(&Scene::load("bimanual").unwrap());
@@ -96,7 +111,7 @@ mod tests {
         endoscope.baseline_m = Some(0.004);
         assert_eq!(whole_px(camera.lens.size_px, &endoscope), [2560, 720]);
         let area = Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 360.0));
-        let [left, right] = halves(area, [2560, 720], &endoscope, Some(StereoView::Both), Some(&camera))[..] else {
+        let [left, right] = halves(area, [2560, 720], &endoscope, of(Some(StereoView::Both)), Some(&camera))[..] else {
             panic!("two halves")
         };
         assert_eq!(left.place.rect, Rect::from_min_size(Pos2::ZERO, vec2(640.0, 360.0)));
@@ -109,10 +124,10 @@ mod tests {
         let [seen_left, seen_right] = [left, right].map(|half| half.camera.unwrap().project(&point_m).unwrap());
         assert!(seen_left.x - seen_right.x > 10.0 && (seen_left.y - seen_right.y).abs() < 5.0);
         endoscope.baseline_m = None;
-        let alone = halves(area, [2560, 720], &endoscope, Some(StereoView::Right), Some(&camera));
+        let alone = halves(area, [2560, 720], &endoscope, of(Some(StereoView::Right)), Some(&camera));
         assert!(alone.len() == 1 && alone[0].camera.is_none());
         assert_eq!(told(Some(StereoView::Right), &endoscope), text::eyes::RIGHT_WITHOUT_FORCES);
-        let mono = halves(area, [1280, 720], &endoscope, None, Some(&camera));
+        let mono = halves(area, [1280, 720], &endoscope, of(None), Some(&camera));
         assert!(mono.len() == 1 && mono[0].camera == Some(camera));
     }
 

@@ -1,14 +1,18 @@
 //! The endoscope's picture in the surgeon's view: taken from a feed with threads of its own, uploaded once, and told in words when it is not what
 //! happens now. Nothing of it touches the loop.
 
+mod aim;
 mod halves;
+mod hidden;
 mod overlay;
 mod place;
 mod poses;
+mod projector;
 #[cfg(test)]
 mod tests;
 
 use std::{
+    path::Path,
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -16,17 +20,25 @@ use std::{
 use egui::{
     Align2, Color32, ColorImage, Context, Key, Mesh, Painter, Rect, Sense, TextureHandle, TextureOptions, Ui, vec2,
 };
-use nima_endoscope::{Address, Camera, FROZEN, Feed, Look, Picture, Standing, Wrong};
+use nalgebra::Vector3;
+use nima_endoscope::{Address, Camera, FROZEN, Feed, Look, Picture, Reel, Standing, Wrong};
 use nima_machine::{
-    config::{Endoscope, StereoView},
+    config::{Endoscope, EndoscopeCamera, StereoView},
     messages::Tick,
+    rig::{SIDES, Side},
 };
 use nima_world::emulators::endoscope::camera_of;
 
 #[cfg(test)]
 use self::place::Place;
-use self::{halves::Half, poses::Poses};
-use super::{live::Live, text, theme};
+use self::{
+    aim::Aim,
+    halves::{Half, Shown},
+    overlay::Instrument,
+    poses::{Pose, Poses},
+    projector::Projector,
+};
+use super::{live::Live, settings::PictureSettings, text, theme};
 
 /// A camera whose check was worse is not trusted, in widths of the picture: 10 px of 1280. Its forces are drawn with this opacity.
 const OFF: f64 = 10.0 / 1280.0;
@@ -48,12 +60,27 @@ const CLEAR: f32 = 24.0;
 
 type Newest = Look<Arc<Picture>>;
 
+/// What is known of the picture in a frame.
+struct Seen {
+    look: Option<Newest>,
+    /// Why there is none, and what to do, where its standing does not say so.
+    nothing: Option<[String; 2]>,
+    /// Where the tips were then, for a picture of the past.
+    poses: Option<[Option<Pose>; SIDES]>,
+}
+
+/// What was found for a moment of the past.
+#[cfg(test)]
+pub(in crate::console) struct Projected(pub(in crate::console) Option<Arc<Picture>>);
+
 /// The picture, or nothing where the rig has no endoscope.
 #[derive(Default)]
 pub struct Eyes {
     /// As the rig file has it.
     wanted: Option<Endoscope>,
     feed: Option<Feed>,
+    /// Of a recorded session.
+    projector: Option<Projector>,
     /// Why its address cannot be used.
     refused: Option<String>,
     camera: Option<Camera>,
@@ -68,6 +95,8 @@ pub struct Eyes {
     /// Of a picture of two lenses, what is shown.
     view: Option<StereoView>,
     poses: Poses,
+    aim: Aim,
+    settings: PictureSettings,
 }
 
 impl std::fmt::Debug for Eyes {
@@ -77,14 +106,15 @@ impl std::fmt::Debug for Eyes {
 }
 
 impl Eyes {
-    /// Takes the picture that the rig file names; called in every frame.
-    pub(in crate::console) fn serve(&mut self, wanted: Option<&Endoscope>, ctx: &Context) {
+    /// Takes the picture that the rig file names, and puts it into this reel too; called in every frame.
+    pub(in crate::console) fn serve(&mut self, wanted: Option<&Endoscope>, reel: &Reel, ctx: &Context) {
         if self.wanted.as_ref() == wanted {
             return;
         }
-        *self = Self { wanted: wanted.cloned(), hides_forces: self.hides_forces, ..Self::default() };
+        let Self { hides_forces, settings, .. } = *self;
+        *self = Self { wanted: wanted.cloned(), hides_forces, settings, ..Self::default() };
         let Some(endoscope @ Endoscope { url, camera, view, .. }) = wanted else { return };
-        self.camera = camera.as_ref().filter(|camera| camera.position_m.is_some()).map(camera_of);
+        self.camera = placed(camera.as_ref());
         self.view = *view;
         let address = match url.parse::<Address>() {
             Ok(address) => address,
@@ -96,8 +126,37 @@ impl Eyes {
         let ctx = ctx.clone();
         let size_px = camera.as_ref().map(|camera| halves::whole_px(camera.size_px, endoscope));
         match Feed::start(address, size_px, move || ctx.request_repaint()) {
-            Ok(feed) => self.feed = Some(feed),
+            Ok(feed) => {
+                feed.record_to(reel.clone());
+                feed.set_tone(self.settings.tone());
+                self.feed = Some(feed);
+            }
             Err(error) => self.refused = Some(text::eyes::refused(&error.to_string())),
+        }
+    }
+
+    /// Shows the pictures of a recorded session on this rig.
+    pub(in crate::console) fn project(&mut self, session: &Path, endoscope: Endoscope, ctx: &Context) {
+        let ctx = ctx.clone();
+        let settings = self.settings;
+        *self = Self {
+            settings,
+            camera: placed(endoscope.camera.as_ref()),
+            view: endoscope.view,
+            projector: Some(Projector::start(session, move || ctx.request_repaint())),
+            wanted: Some(endoscope),
+            ..Self::default()
+        };
+    }
+
+    /// Shows the picture so; called in every frame.
+    pub(in crate::console) fn show_as(&mut self, settings: PictureSettings) {
+        if self.settings == settings {
+            return;
+        }
+        self.settings = settings;
+        if let Some(feed) = &self.feed {
+            feed.set_tone(settings.tone());
         }
     }
 
@@ -146,7 +205,7 @@ impl Eyes {
     /// Draws the picture over the available space.
     pub(in crate::console) fn ui(&mut self, ui: &mut Ui, live: &Live) {
         let now = Instant::now();
-        let look = self.feed.as_ref().map(|feed| feed.look(now));
+        let Seen { look, nothing, poses: then } = self.look(live, now);
         self.rate_hz = look.as_ref().map_or(0.0, |look| look.rate_hz);
         let pressed = |key| ui.input(|input| input.modifiers.is_none() && input.key_pressed(key));
         let free = !ui.ctx().text_edit_focused();
@@ -154,9 +213,9 @@ impl Eyes {
         if free && pressed(Key::V) {
             self.view = self.view.map(halves::next);
         }
-        let (view, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+        let (view, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let standing = look.as_ref().map_or(Standing::Opening, |look| look.standing.clone());
-        let [told, cure] = self.standing_told(&standing);
+        let [told, cure] = nothing.unwrap_or_else(|| self.standing_told(&standing));
         let words = text::eyes::picture(&told);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &words));
         let painter = ui.painter_at(view);
@@ -176,8 +235,19 @@ impl Eyes {
             if self.off_px().is_some() {
                 painter.multiply_opacity(DOUBTFUL);
             }
+            let age = if self.settings.forces_of_now { Duration::ZERO } else { age };
             let seen = overlay::Seen { painter: &painter, place, camera, ceiling_n: live.gate_settings().ceiling_n };
-            tips.extend(seen.draw(live.sides().filter_map(|side| self.poses.at(side, now, age)), self.hides_forces));
+            let pose = |side: Side| match &then {
+                Some(poses) => poses[side.index()],
+                None => self.poses.at(side, now, age),
+            };
+            let instrument = |side| Some(Instrument { side, pose: pose(side)?, trocar_m: trocar(live, side) });
+            tips.extend(seen.draw(live.sides().filter_map(instrument), self.hides_forces));
+        }
+        // Of two halves, that over which the pointer is.
+        let pointed = response.hover_pos().and_then(|at| halves.iter().find(|half| half.within.contains(at)));
+        if let Some(half) = pointed.or(halves.first()) {
+            self.aim.obey(&response, half.within, &half.place);
         }
         if !is_good {
             let colour = if standing == Standing::Opening && self.refused.is_none() {
@@ -192,7 +262,31 @@ impl Eyes {
             wrong_ui(&painter, over, &tips, [&told, &cure], colour);
         }
         self.figures_ui(&painter, view, (&tips, fits), look.as_ref(), now);
-        ui.ctx().request_repaint_after(until_told(look.as_ref(), is_good));
+        if self.projector.is_none() {
+            ui.ctx().request_repaint_after(until_told(look.as_ref(), is_good));
+        }
+    }
+
+    /// The recorded picture of this moment (s), if there is one, once it was looked for.
+    #[cfg(test)]
+    pub(in crate::console) fn projected(&self, t_s: f64) -> Option<Projected> {
+        let found = self.projector.as_ref()?.found().filter(|found| found.asked_s.to_bits() == t_s.to_bits())?;
+        Some(Projected(found.look().ok().and_then(|look| look.picture).map(|(_, picture)| picture)))
+    }
+
+    /// The newest picture, or that of the moment on the screen.
+    fn look(&mut self, live: &Live, now: Instant) -> Seen {
+        let Some(projector) = &mut self.projector else {
+            return Seen { look: self.feed.as_ref().map(|feed| feed.look(now)), nothing: None, poses: None };
+        };
+        let tone = self.settings.tone();
+        projector.show(tone, live.ticks.iter().flatten().map(|tick| tick.t_s).fold(0.0, f64::max));
+        let nothing = |words: String| Seen { look: None, nothing: Some([words, String::new()]), poses: None };
+        let Some(found) = projector.found() else { return nothing(text::eyes::SEARCHING.to_owned()) };
+        match found.look() {
+            Ok(look) => Seen { look: Some(look), nothing: None, poses: Some(found.poses) },
+            Err(why) => nothing(text::eyes::none_then(why)),
+        }
     }
 
     /// How far forces are drawn beside the tips, px, if the check of the camera was worse than is tolerable.
@@ -221,7 +315,9 @@ impl Eyes {
             }
             self.number = *number;
         }
-        let halves = halves::halves(view, picture.size_px, self.wanted.as_ref()?, self.view, self.camera.as_ref());
+        let endoscope = self.wanted.as_ref()?;
+        let shown = Shown { view: self.view, crop: self.settings.crop(), aim: self.aim };
+        let halves = halves::halves(view, picture.size_px, endoscope, shown, self.camera.as_ref());
         for half in &halves {
             let mut mesh = Mesh::with_texture(self.textures[self.front].as_ref()?.id());
             for (corner, at) in half.place.corners() {
@@ -230,7 +326,7 @@ impl Eyes {
             }
             mesh.add_triangle(0, 1, 2);
             mesh.add_triangle(2, 1, 3);
-            painter.add(mesh);
+            painter.with_clip_rect(half.within).add(mesh);
         }
         Some(halves)
     }
@@ -249,6 +345,8 @@ impl Eyes {
             let age = look.age.unwrap_or_default();
             let figures = if look.standing == Standing::Still {
                 text::eyes::STILL.to_owned()
+            } else if self.projector.is_some() {
+                text::eyes::recorded(age)
             } else {
                 text::eyes::figures(age, look.rate_hz)
             };
@@ -262,12 +360,21 @@ impl Eyes {
             _ if !fits => String::new(),
             (_, true, _) => text::eyes::FORCES_HIDDEN.to_owned(),
             (_, false, Some(off_px)) => text::eyes::forces_off(off_px),
+            (_, false, None) if self.settings.forces_of_now && self.projector.is_none() => {
+                text::eyes::FORCES_AHEAD.to_owned()
+            }
             (_, false, None) => text::eyes::FORCES_DRAWN.to_owned(),
         };
+        let zoom = if self.aim.is_zoomed() { text::eyes::zoomed(self.aim.zoom) } else { String::new() };
         let figures = self.shown.as_ref().map(|(_, figures)| figures.as_str()).unwrap_or_default();
         let half = self.wanted.as_ref().map_or("", |endoscope| halves::told(self.view, endoscope));
         let weak = theme::DARK.text_weak;
-        let lines = [(figures, 15.0, theme::DARK.text), (forces.as_str(), 13.0, weak), (half, 13.0, weak)];
+        let lines = [
+            (figures, 15.0, theme::DARK.text),
+            (forces.as_str(), 13.0, weak),
+            (half, 13.0, weak),
+            (zoom.as_str(), 13.0, weak),
+        ];
         let inner = view.shrink(MARGIN);
         let corners = [
             (inner.left_bottom(), Align2::LEFT_BOTTOM),
@@ -278,7 +385,18 @@ impl Eyes {
     }
 }
 
-fn wrong_told(wrong: &Wrong) -> [String; 2] {
+/// Where the instrument of a side goes through the wall, m.
+fn trocar(live: &Live, side: Side) -> Option<Vector3<f64>> {
+    let of_rig = live.rig.devices.as_ref().and_then(|devices| devices.arm(side)).map(|set| set.rcm.trocar_m);
+    of_rig.or_else(|| live.scene.of_side(side).map(|scene| scene.trocar_m))
+}
+
+/// A camera whose place in the workspace is known.
+fn placed(camera: Option<&EndoscopeCamera>) -> Option<Camera> {
+    camera.filter(|camera| camera.position_m.is_some()).map(camera_of)
+}
+
+pub(in crate::console) fn wrong_told(wrong: &Wrong) -> [String; 2] {
     let (words, cure) = match wrong {
         Wrong::Frozen(stood) => (text::eyes::frozen(*stood), text::eyes::FROZEN_CURE),
         Wrong::Black => (text::eyes::BLACK.to_owned(), text::eyes::BLACK_CURE),

@@ -1,14 +1,15 @@
 //! Draws the forces into the picture: at each tip the measured force and, as a ring, the ceiling of what can reach the hand. Through the lens's
-//! own distortion, so that nothing has to be straightened. Shapes and lightness tell them apart, not hues.
+//! own distortion, so that nothing has to be straightened. What the instrument hides is dim. Shapes and lightness tell them apart, not hues.
 
 use std::f64::consts::TAU;
 
-use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, vec2};
+use egui::{Align, Align2, Color32, Painter, Pos2, Shape, Stroke, vec2};
 use nalgebra::Vector3;
 use nima_endoscope::Camera;
+use nima_machine::rig::Side;
 
-use super::{place::Place, poses::Pose};
-use crate::console::{text, theme};
+use super::{hidden::Shaft, place::Place, poses::Pose};
+use crate::console::{scene3d::side_name, text, theme};
 
 /// Length of an arrow, m per N; a force beyond the second is drawn no longer, N.
 const M_PER_N: f64 = 0.005;
@@ -16,13 +17,20 @@ const MOST_N: f64 = 8.0;
 /// A smaller force has no arrow, because it would show noise, N.
 const LEAST_N: f64 = 0.15;
 /// Pieces of a line that the lens bends, and of the ring.
-const PIECES: usize = 8;
+const PIECES: usize = 24;
 const RING_PIECES: usize = 48;
 /// Free space around a tip, points: the picture is never covered there.
 const FREE: f32 = 7.0;
 const ARROW: f32 = 3.0;
 const HEAD: f32 = 12.0;
 const RING: f32 = 1.5;
+/// What is left of a line that the instrument hides.
+const HIDDEN: f32 = 0.35;
+/// Half the side of the contact mark, and the length of its corners, points.
+const CONTACT: f32 = 15.0;
+const CORNER: f32 = 6.0;
+/// Distance of the sign of a tip beyond the view from its edge, points.
+const EDGE: f32 = 26.0;
 const SHADE: Color32 = Color32::from_black_alpha(200);
 
 /// A picture, and what is drawn into it.
@@ -33,16 +41,36 @@ pub(super) struct Seen<'a> {
     pub(super) ceiling_n: f64,
 }
 
+/// An instrument in the picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Instrument {
+    pub(super) side: Side,
+    pub(super) pose: Pose,
+    /// Where its shaft goes through the wall; `None` where that is not known.
+    pub(super) trocar_m: Option<Vector3<f64>>,
+}
+
+/// A stretch of a line on the screen.
+struct Stretch {
+    points: Vec<Pos2>,
+    /// The instrument hides it.
+    hidden: bool,
+}
+
 impl Seen<'_> {
-    /// Draws the forces unless they are hidden; gives the places of the tips.
-    pub(super) fn draw(&self, poses: impl Iterator<Item = Pose>, hidden: bool) -> Vec<Pos2> {
+    /// Draws the forces unless they are hidden; gives the places of the tips. A tip beyond the edge of the view is told there.
+    pub(super) fn draw(&self, instruments: impl Iterator<Item = Instrument>, hidden: bool) -> Vec<Pos2> {
         let mut tips = Vec::new();
-        for pose in poses {
-            let Some(tip) = self.at(&pose.tip_m).filter(|tip| self.place.rect.contains(*tip)) else { continue };
+        for instrument in instruments {
+            let Some(tip) = self.at(&instrument.pose.tip_m) else { continue };
+            if !self.place.rect.contains(tip) {
+                self.beyond(instrument.side, tip);
+                continue;
+            }
             tips.push(tip);
             if !hidden {
-                self.ring(&pose.tip_m);
-                self.arrow(&pose, tip);
+                self.ring(&instrument);
+                self.arrow(&instrument, tip);
             }
         }
         tips
@@ -53,45 +81,104 @@ impl Seen<'_> {
         self.camera.project(point_m).map(|place_px| self.place.at(&place_px))
     }
 
-    fn ring(&self, tip_m: &Vector3<f64>) {
-        let radius_m = M_PER_N * self.ceiling_n.min(MOST_N);
-        let (right, up) = (self.camera.right() * radius_m, self.camera.up() * radius_m);
-        let points: Option<Vec<Pos2>> = (0..=RING_PIECES)
-            .map(|piece| {
-                let (sin, cos) = (TAU * piece as f64 / RING_PIECES as f64).sin_cos();
-                self.at(&(tip_m + right * cos + up * sin))
-            })
-            .collect();
-        let Some(points) = points else { return };
-        self.painter.add(Shape::line(points.clone(), Stroke::new(RING + 2.0, SHADE)));
-        // Dashes: nothing else in the picture has them.
-        self.painter.extend(Shape::dashed_line(&points, Stroke::new(RING, theme::DARK.text), 6.0, 5.0));
-        let place = points[RING_PIECES / 4] - vec2(0.0, 4.0);
-        self.label(place, Align2::CENTER_BOTTOM, &text::roles::ceiling(self.ceiling_n), 13.0, theme::DARK.text);
+    /// At the edge, towards a tip that is not in the view.
+    fn beyond(&self, side: Side, tip: Pos2) {
+        let inner = self.place.rect.shrink(EDGE);
+        let at = tip.clamp(inner.min, inner.max);
+        let out = (tip - at).normalized();
+        if !inner.is_positive() || !out.is_finite() {
+            return;
+        }
+        let across = out.rot90() * (0.5 * HEAD);
+        let head = vec![at + out * HEAD, at + across, at - across];
+        self.painter.add(Shape::convex_polygon(head, theme::DARK.text, Stroke::new(1.5, SHADE)));
+        let align = Align2([Self::aligned(-out.x), Self::aligned(-out.y)]);
+        self.label(at - out * 6.0, align, &text::eyes::tip(side_name(side)), 15.0, theme::DARK.text);
     }
 
-    fn arrow(&self, pose: &Pose, tip: Pos2) {
-        let size_n = pose.measured_n.norm();
+    /// Words that lie on this side of their place.
+    fn aligned(towards: f32) -> Align {
+        if towards > 0.4 {
+            Align::Min
+        } else if towards < -0.4 {
+            Align::Max
+        } else {
+            Align::Center
+        }
+    }
+
+    /// A line of the workspace as it is seen, in stretches that the instrument hides and does not hide; `None` where the lens does not see all
+    /// of it.
+    fn line(&self, points_m: &[Vector3<f64>], instrument: &Instrument) -> Option<Vec<Stretch>> {
+        let lens_m = self.camera.world_from_camera.translation.vector;
+        let shaft = instrument.trocar_m.map(|trocar_m| Shaft { tip_m: instrument.pose.tip_m, trocar_m });
+        let mut stretches: Vec<Stretch> = Vec::new();
+        for point_m in points_m {
+            let point = self.at(point_m)?;
+            let hidden = shaft.is_some_and(|shaft| shaft.hides(&lens_m, point_m));
+            match stretches.last_mut() {
+                Some(last) if last.hidden == hidden => last.points.push(point),
+                before => {
+                    // From where the other one ends, so that there is no gap.
+                    let joint = before.and_then(|before| before.points.last().copied());
+                    stretches.push(Stretch { points: joint.into_iter().chain([point]).collect(), hidden });
+                }
+            }
+        }
+        Some(stretches)
+    }
+
+    fn ring(&self, instrument: &Instrument) {
+        let radius_m = M_PER_N * self.ceiling_n.min(MOST_N);
+        let (right, up) = (self.camera.right() * radius_m, self.camera.up() * radius_m);
+        let point_m = |piece: usize| {
+            let (sin, cos) = (TAU * piece as f64 / RING_PIECES as f64).sin_cos();
+            instrument.pose.tip_m + right * cos + up * sin
+        };
+        let points_m: Vec<_> = (0..=RING_PIECES).map(point_m).collect();
+        let Some(stretches) = self.line(&points_m, instrument) else { return };
+        for Stretch { points, hidden } in stretches {
+            self.painter.add(Shape::line(points.clone(), Stroke::new(RING + 2.0, seen_through(SHADE, hidden))));
+            // Dashes: nothing else in the picture has them.
+            let stroke = Stroke::new(RING, seen_through(theme::DARK.text, hidden));
+            self.painter.extend(Shape::dashed_line(&points, stroke, 6.0, 5.0));
+        }
+        if let Some(top) = self.at(&points_m[RING_PIECES / 4]) {
+            let words = text::roles::ceiling(self.ceiling_n);
+            self.label(top - vec2(0.0, 4.0), Align2::CENTER_BOTTOM, &words, 13.0, theme::DARK.text);
+        }
+    }
+
+    fn arrow(&self, instrument: &Instrument, tip: Pos2) {
+        let Pose { tip_m, measured_n } = instrument.pose;
+        let size_n = measured_n.norm();
         if !(LEAST_N..1e6).contains(&size_n) {
             return;
         }
-        let way_m = pose.measured_n * (M_PER_N * size_n.min(MOST_N) / size_n);
-        let points: Option<Vec<Pos2>> =
-            (0..=PIECES).map(|piece| self.at(&(pose.tip_m + way_m * (piece as f64 / PIECES as f64)))).collect();
-        let Some(points) = points else { return };
-        let end = points[PIECES];
+        self.contact(tip);
+        let way_m = measured_n * (M_PER_N * size_n.min(MOST_N) / size_n);
+        let points_m: Vec<_> = (0..=PIECES).map(|piece| tip_m + way_m * (piece as f64 / PIECES as f64)).collect();
+        let Some(stretches) = self.line(&points_m, instrument) else { return };
+        let (Some(end), Some(before)) = (self.at(&points_m[PIECES]), self.at(&points_m[PIECES - 1])) else { return };
+        let ends_hidden = stretches.last().is_some_and(|last| last.hidden);
         let colour = theme::DARK.measured;
-        let free: Vec<Pos2> = points.iter().copied().filter(|point| (*point - tip).length() > FREE).collect();
+        let mut drawn = false;
         for (stroke, more) in [(SHADE, 3.0), (colour, 0.0)] {
-            if free.len() > 1 {
-                self.painter.add(Shape::line(free.clone(), Stroke::new(ARROW + more, stroke)));
+            for Stretch { points, hidden } in &stretches {
+                let free: Vec<Pos2> = points.iter().copied().filter(|point| (*point - tip).length() > FREE).collect();
+                if free.len() > 1 {
+                    drawn = true;
+                    let stroke = Stroke::new(ARROW + more, seen_through(stroke, *hidden));
+                    self.painter.add(Shape::line(free, stroke));
+                }
             }
         }
-        let along = (end - points[PIECES - 1]).normalized();
-        if free.len() > 1 && along.is_finite() {
+        let along = (end - before).normalized();
+        if drawn && along.is_finite() {
             let side = along.rot90() * (0.5 * HEAD);
             let head = vec![end + along * HEAD, end + side, end - side];
-            self.painter.add(Shape::convex_polygon(head, colour, Stroke::new(1.5, SHADE)));
+            let [fill, edge] = [colour, SHADE].map(|colour| seen_through(colour, ends_hidden));
+            self.painter.add(Shape::convex_polygon(head, fill, Stroke::new(1.5, edge)));
         } else {
             // Towards the lens or away from it: a ring around the tip.
             self.painter.circle_stroke(tip, FREE + 4.0, Stroke::new(ARROW + 3.0, SHADE));
@@ -109,6 +196,17 @@ impl Seen<'_> {
         self.label(place, align, &text::eyes::force(size_n), 17.0, colour);
     }
 
+    /// Something touches the tip: four corners around it, which leave it free.
+    fn contact(&self, tip: Pos2) {
+        for (stroke, more) in [(SHADE, 2.0), (theme::DARK.text, 0.0)] {
+            for (x, y) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+                let corner = tip + vec2(x, y) * CONTACT;
+                let ends = [vec2(-x * CORNER, 0.0), vec2(0.0, 0.0), vec2(0.0, -y * CORNER)].map(|way| corner + way);
+                self.painter.add(Shape::line(ends.to_vec(), Stroke::new(2.0 + more, stroke)));
+            }
+        }
+    }
+
     /// Words with a dark outline on all sides.
     fn label(&self, place: Pos2, align: Align2, words: &str, size: f32, colour: Color32) {
         for shift in [vec2(1.5, 0.0), vec2(-1.5, 0.0), vec2(0.0, 1.5), vec2(0.0, -1.5)] {
@@ -116,4 +214,9 @@ impl Seen<'_> {
         }
         self.painter.text(place, align, words, theme::strong(size), colour);
     }
+}
+
+/// A colour where the instrument hides what has it.
+fn seen_through(colour: Color32, hidden: bool) -> Color32 {
+    if hidden { colour.gamma_multiply(HIDDEN) } else { colour }
 }

@@ -1,28 +1,42 @@
-//! Where the picture is on the screen: as large as it can be, mirrored and turned as the rig file says.
+//! Where the picture is on the screen: cropped, mirrored and turned as the rig file says, as large as it can be or zoomed.
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use nalgebra::Vector2;
 use nima_machine::config::Endoscope;
 
+use super::aim::Aim;
+
+/// What is left of a picture at least along a side, as a share.
+const LEAST: f32 = 0.1;
+
 /// The picture on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Place {
+    /// What of it is in the view.
     pub(super) rect: Rect,
     /// From where to where it lies in the width of the whole picture.
     share: [f32; 2],
+    /// Where all of what is not cut off would be.
+    pub(super) full: Rect,
+    /// What is not cut off, as shares of the picture's sides.
+    part: Rect,
     size_px: [usize; 2],
     rotation_deg: u16,
     mirror: bool,
 }
 
 impl Place {
-    pub(super) fn new(view: Rect, size_px: [usize; 2], endoscope: &Endoscope) -> Self {
+    /// In this view; `crop` cuts off so much at the left, top, right and bottom of the picture as it comes, as shares, unless the rig file
+    /// cuts off more.
+    pub(super) fn new(view: Rect, size_px: [usize; 2], endoscope: &Endoscope, crop: [f32; 4], aim: Aim) -> Self {
         let (rotation_deg, mirror) = (endoscope.rotation_deg, endoscope.mirror);
+        let part = part(size_px, endoscope.crop_px, crop);
         let [width, height] = size_px.map(|side| side.max(1) as f32);
+        let (width, height) = (width * part.width(), height * part.height());
         let size = if matches!(rotation_deg, 90 | 270) { vec2(height, width) } else { vec2(width, height) };
         let scale = (view.width() / size.x).min(view.height() / size.y).max(0.0);
-        let rect = Rect::from_center_size(view.center(), size * scale);
-        Self { rect, share: [0.0, 1.0], size_px, rotation_deg, mirror }
+        let full = aim.full(view, size * scale);
+        Self { rect: full.intersect(view), full, part, share: [0.0, 1.0], size_px, rotation_deg, mirror }
     }
 
     /// The same place for a part of a picture.
@@ -36,14 +50,16 @@ impl Place {
         self.turned(pos2((place_px.x / width) as f32, (place_px.y / height) as f32))
     }
 
-    /// The corners of what is shown, as shares of the whole picture's sides, and where they are.
+    /// The corners of what is not cut off, as shares of the whole picture's sides, and where they are.
     pub(super) fn corners(&self) -> [(Pos2, Pos2); 4] {
         let [from, to] = self.share;
-        let corners = [pos2(0.0, 0.0), pos2(1.0, 0.0), pos2(0.0, 1.0), pos2(1.0, 1.0)];
+        let Rect { min, max } = self.part;
+        let corners = [min, pos2(max.x, min.y), pos2(min.x, max.y), max];
         corners.map(|corner| (pos2(from + (to - from) * corner.x, corner.y), self.turned(corner)))
     }
 
     fn turned(&self, share: Pos2) -> Pos2 {
+        let share = (share - self.part.min) / self.part.size();
         let x = if self.mirror { 1.0 - share.x } else { share.x };
         let turned: Vec2 = match self.rotation_deg {
             90 => vec2(1.0 - share.y, x),
@@ -51,8 +67,22 @@ impl Place {
             270 => vec2(share.y, 1.0 - x),
             _ => vec2(x, share.y),
         };
-        self.rect.min + turned * self.rect.size()
+        self.full.min + turned * self.full.size()
     }
+}
+
+/// What is left of a picture. Edges that would leave nothing along a side are not cut off there.
+fn part(size_px: [usize; 2], crop_px: [usize; 4], crop: [f32; 4]) -> Rect {
+    let along = |low: usize, side: usize| {
+        let edge = |edge: usize| {
+            let share = crop_px[edge] as f32 / size_px[side].max(1) as f32;
+            if crop[edge].is_finite() { share.max(crop[edge]) } else { share }
+        };
+        let (low, high) = (edge(low), 1.0 - edge(low + 2));
+        if high - low >= LEAST { (low, high) } else { (0.0, 1.0) }
+    };
+    let ((left, right), (top, bottom)) = (along(0, 0), along(1, 1));
+    Rect::from_min_max(pos2(left, top), pos2(right, bottom))
 }
 
 #[cfg(test)]
@@ -61,7 +91,13 @@ mod tests {
 
     fn place(rotation_deg: u16, mirror: bool) -> Place {
         let endoscope = Endoscope { rotation_deg, mirror, ..Endoscope::default() };
-        Place::new(Rect::from_min_size(pos2(100.0, 50.0), vec2(1000.0, 400.0)), [1280, 720], &endoscope)
+        Place::new(
+            Rect::from_min_size(pos2(100.0, 50.0), vec2(1000.0, 400.0)),
+            [1280, 720],
+            &endoscope,
+            [0.0; 4],
+            Aim::default(),
+        )
     }
 
     #[test]
@@ -90,5 +126,30 @@ mod tests {
             near(mirrored, 0.0, 0.0, mirrored.rect.right_top())
                 && near(mirrored, 0.0, 720.0, mirrored.rect.right_bottom())
         );
+    }
+
+    #[test]
+    fn what_is_cut_off_is_not_shown_and_the_rest_fills_the_view() {
+        let endoscope = Endoscope { crop_px: [160, 0, 0, 0], ..Endoscope::default() };
+        let view = Rect::from_min_size(pos2(0.0, 0.0), vec2(1000.0, 360.0));
+        let place = Place::new(view, [1280, 720], &endoscope, [0.0, 0.0, 0.25, 0.0], Aim::default());
+        assert!((place.rect.width() - 400.0).abs() < 1e-3, "800 of 1280 columns: {:?}", place.rect);
+        let near = |x, y, corner: Pos2| (place.at(&Vector2::new(x, y)) - corner).length() < 1e-2;
+        assert!(near(160.0, 0.0, place.rect.left_top()) && near(960.0, 720.0, place.rect.right_bottom()));
+        let expected = [pos2(0.125, 0.0), pos2(0.75, 0.0), pos2(0.125, 1.0), pos2(0.75, 1.0)];
+        assert!(place.corners().iter().zip(expected).all(|((share, _), corner)| (*share - corner).length() < 1e-6));
+        // What would leave nothing is not done.
+        let nothing = Place::new(view, [100, 720], &endoscope, [0.0, 0.6, 0.0, 0.6], Aim::default());
+        assert_eq!(nothing.part, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)));
+    }
+
+    #[test]
+    fn a_zoomed_picture_has_its_pixels_where_the_overlay_has_them() {
+        let aim = Aim { zoom: 2.0, middle: vec2(0.25, 0.5) };
+        let view = Rect::from_min_size(pos2(0.0, 0.0), vec2(640.0, 360.0));
+        let place = Place::new(view, [1280, 720], &Endoscope::default(), [0.0; 4], aim);
+        assert_eq!(place.rect, view);
+        assert!((place.at(&Vector2::new(320.0, 360.0)) - view.center()).length() < 1e-2);
+        assert!((place.at(&Vector2::new(330.0, 360.0)) - view.center() - vec2(10.0, 0.0)).length() < 1e-2);
     }
 }

@@ -63,7 +63,7 @@ fn forces_are_drawn_where_the_tip_is_seen_through_the_distortion_of_the_lens() {
         let feed = Feed::start(serving.endpoint.parse().unwrap(), Some([1280, 720]), || {}).unwrap();
         let ctx = Context::default();
         let view = Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 720.0));
-        let place = Place::new(view, [1280, 720], &endoscope);
+        let place = Place::new(view, [1280, 720], &endoscope, [0.0; 4], Aim::default());
         let painter = Painter::new(ctx, egui::LayerId::background(), view);
         let seen = Seen { painter: &painter, place: &place, camera: &camera, ceiling_n: 4.0 };
         let mut squares = 0.0;

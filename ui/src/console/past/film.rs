@@ -16,7 +16,7 @@ use nima_session::{
     file::{Line, LineKind, Recorded},
     journal::Start,
     objects::{self, Objects},
-    plotted,
+    pictures, plotted,
     replay::Keyframe,
 };
 use nima_world::scene::Scene;
@@ -65,6 +65,8 @@ pub(super) struct File {
     start: Result<Start, String>,
     /// Rings or jaws are in it.
     has_objects: bool,
+    /// Pictures of the endoscope are in it.
+    pub(super) has_pictures: bool,
 }
 
 impl File {
@@ -80,7 +82,9 @@ impl File {
         };
         let (scene, arms) = (attached(&recorded, "scene.toml")?, plotted::arms(recorded.reader()));
         let has_objects = objects::are_shown(recorded.reader());
-        Ok(Self { path: path.to_owned(), recorded, begin_ns, end_s, arms, rig, scene, start, has_objects })
+        let has_pictures = pictures::are_recorded(recorded.reader());
+        let path = path.to_owned();
+        Ok(Self { path, recorded, begin_ns, end_s, arms, rig, scene, start, has_objects, has_pictures })
     }
 
     fn t_s(&self, time_ns: u64) -> f64 {

@@ -63,6 +63,7 @@ pub(crate) struct Past {
     pub(super) wants_beside: bool,
     job: Option<Job>,
     told: Told,
+    ctx: Context,
 }
 
 /// What is known when a session is open.
@@ -94,8 +95,8 @@ struct Told {
 impl Past {
     /// Opens a session at its beginning; `scene` draws the operating field.
     pub(crate) fn open(path: &Path, ctx: &Context, scene: SceneView) -> Self {
-        let ctx = ctx.clone();
-        let worker = Worker::start(path, move || ctx.request_repaint());
+        let wakes = ctx.clone();
+        let worker = Worker::start(path, move || wakes.request_repaint());
         worker.show(0.0);
         Self {
             path: path.to_path_buf(),
@@ -116,6 +117,7 @@ impl Past {
             wants_beside: false,
             job: None,
             told: Told::default(),
+            ctx: ctx.clone(),
         }
     }
 
@@ -180,7 +182,10 @@ impl Past {
     fn take(&mut self, answer: Answer) {
         match answer {
             Answer::Opened(opened) => {
-                let Opened { begin_ns, end_s, calibrations, devices } = *opened;
+                let Opened { begin_ns, end_s, calibrations, devices, endoscope } = *opened;
+                if let Some(endoscope) = endoscope {
+                    self.panels.eyes.project(&self.path, endoscope, &self.ctx);
+                }
                 self.about = Some(About { begin_ns, end_s });
                 (self.calibrations, self.devices) = (calibrations, devices);
                 if self.wanted_s > end_s {

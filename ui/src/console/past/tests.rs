@@ -25,6 +25,8 @@ use nima_session::{
 };
 use nima_world::{Plan, Training, scene::Scene};
 
+mod pictures;
+
 use super::Past;
 use crate::{
     console::scene3d::SceneView,

@@ -11,6 +11,8 @@ use std::{
     time::{Duration, Instant},
 };
 
+use nima_machine::config::Endoscope;
+
 use super::{
     feed::Frame,
     film::{Chase, File, Film, View},
@@ -38,6 +40,8 @@ pub(super) struct Opened {
     pub(super) calibrations: Tables,
     /// By their places in the loop's events.
     pub(super) devices: Vec<String>,
+    /// The endoscope whose pictures are in it.
+    pub(super) endoscope: Option<Endoscope>,
 }
 
 /// How much of a moment is as it was.
@@ -134,6 +138,7 @@ fn run(path: &Path, wanted: &Receiver<Wish>, told: &Told) -> Result<(), String> 
         end_s: file.end_s,
         calibrations: file.calibrations(),
         devices: file.rig.device_names(),
+        endoscope: file.has_pictures.then(|| file.rig.endoscope.clone().unwrap_or_default()),
     };
     told.tell(Answer::Opened(Box::new(opened)));
     let mut reading = Reading {

@@ -1,6 +1,7 @@
 //! The start page: choose or make a rig, choose a scene, see what is plugged in and what is missing.
 
 mod choices;
+mod endoscope;
 mod looking;
 mod making;
 
@@ -13,6 +14,7 @@ use nima_machine::{config::RigConfig, messages::LoopState, rig::Settings as Devi
 pub use choices::Choice;
 pub(crate) use choices::drawn_anew;
 use choices::{Entry, Lists};
+use endoscope::EndoscopeCard;
 pub(in crate::console) use looking::Looked;
 use looking::{Answers, PluggedIn};
 
@@ -41,6 +43,9 @@ pub struct StartPage {
     told: Option<String>,
     plugged: PluggedIn,
     answers: Answers,
+    endoscope: EndoscopeCard,
+    /// The chosen rig's file may have been changed.
+    is_stale: bool,
 }
 
 /// What the page is drawn from.
@@ -51,6 +56,8 @@ pub(super) struct Now<'a> {
     pub(super) recent: &'a [Choice],
     /// A rig is being started.
     pub(super) is_starting: bool,
+    /// How it stands with the picture of the rig that runs, and what to do.
+    pub(super) picture: Option<[String; 2]>,
 }
 
 impl StartPage {
@@ -67,6 +74,8 @@ impl StartPage {
             told: None,
             plugged: PluggedIn::default(),
             answers: Answers::default(),
+            endoscope: EndoscopeCard::default(),
+            is_stale: true,
         }
     }
 
@@ -74,6 +83,7 @@ impl StartPage {
     pub(super) fn open(&mut self, running: &Choice, recent: &[Choice]) {
         self.is_open = true;
         self.told = None;
+        self.is_stale = true;
         self.read(running, recent);
         self.choose(running.clone());
     }
@@ -99,9 +109,12 @@ impl StartPage {
     }
 
     fn choose(&mut self, choice: Choice) {
-        if choice.rig != self.chosen.rig || self.devices.is_none() {
+        if choice.rig != self.chosen.rig || self.is_stale {
             self.answers.forget();
-            self.devices = RigConfig::load(&choice.rig).ok().and_then(|rig| rig.devices);
+            let rig = RigConfig::load(&choice.rig).ok();
+            self.endoscope.choose(rig.as_ref());
+            self.is_stale = false;
+            self.devices = rig.and_then(|rig| rig.devices);
         }
         self.chosen = choice;
     }
@@ -192,12 +205,35 @@ impl StartPage {
 
     fn devices_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
         card(ui, text::start::MISSING, text::start::MISSING_HOVER, |ui| self.missing_ui(ui, now));
+        card(ui, text::start::ENDOSCOPE, text::start::ENDOSCOPE_HOVER, |ui| self.endoscope_ui(ui, now));
         card(ui, text::start::PLUGGED, text::start::PLUGGED_HOVER, |ui| {
             let ctx = ui.ctx().clone();
             if let Some(plugged) = self.plugged.now(&ctx) {
                 plugged_ui(ui, plugged);
             }
         });
+    }
+
+    fn endoscope_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
+        let runs = now.live.rig.endoscope.as_ref().zip(now.picture.as_ref());
+        let running = runs.map(|(endoscope, told)| (endoscope.url.as_str(), told));
+        if !self.endoscope.ui(ui, running) {
+            return;
+        }
+        match self.endoscope.write(&self.chosen.rig, self.folder.as_deref()) {
+            Ok(rig) => {
+                self.told = Some(text::start::endoscope_written(&rig));
+                self.read(now.running, now.recent);
+                self.is_stale = true;
+                self.choose(Choice { rig, ..self.chosen.clone() });
+            }
+            Err(told) => self.told = Some(told),
+        }
+    }
+
+    /// The page is not shown.
+    pub(super) fn rest(&mut self) {
+        self.endoscope.close();
     }
 
     /// Of the rig that runs its list of devices tells what is missing; the devices of another one are opened for a moment.

@@ -2,6 +2,7 @@
 //! on the screen but alarms and stop.
 
 use egui::{Align, Button, CentralPanel, Frame, Label, Layout, Margin, Panel, RichText, Ui, vec2};
+use nima_endoscope::Reel;
 use nima_machine::{
     config::SchedulingClass,
     messages::{LoopState, Tick},
@@ -26,7 +27,7 @@ use crate::{
         widgets::weak,
     },
     objects::OfSimulation,
-    recording,
+    pictures, recording,
     scoring::Scoring,
     user_study,
 };
@@ -80,10 +81,18 @@ impl Trial {
     }
 
     /// Starts its loop, recorded where the study wants it; in simulated time if there is a `speed`.
-    pub(in crate::console) fn start(&mut self, plan: &Plan, speed: Option<f64>) -> Result<Started, String> {
+    pub(in crate::console) fn start(
+        &mut self,
+        plan: &Plan,
+        speed: Option<f64>,
+        reel: &Reel,
+    ) -> Result<Started, String> {
         let recorded = self.running.session().map(|file| recording::begin(Destination::file(file), plan, "real"));
         let (tap, recorder) = recorded.transpose().map_err(|error| chain(&error))?.unzip();
         self.recorder = recorder;
+        if let Some(recorder) = &self.recorder {
+            pictures::film(recorder, &plan.rig, reel);
+        }
         let (assembly, mut watched) = match speed {
             Some(speed) => {
                 let (assembly, watched) = plan.watched().map_err(|error| chain(&error))?;

@@ -13,6 +13,7 @@ pub(in crate::console) const DAMAGED_CURE: &str = "The last whole picture is sho
 pub(in crate::console) const SIZE_CURE: &str =
     "Set the camera to the size that the rig file has. Until then no forces are drawn.";
 pub(in crate::console) const FORCES_DRAWN: &str = "Forces are drawn at the tips; O hides them";
+pub(in crate::console) const FORCES_AHEAD: &str = "Forces of now, ahead of the picture; O hides them";
 pub(in crate::console) const FORCES_HIDDEN: &str = "O draws the forces at the tips";
 pub(in crate::console) const LEFT_HALF: &str = "Left half; V shows the right one";
 pub(in crate::console) const RIGHT_HALF: &str = "Right half; V shows both";
@@ -65,6 +66,31 @@ pub(in crate::console) const REFUSED_CURE: &str = "Correct endoscope.url in the 
 /// Age and rate of the picture.
 pub(in crate::console) fn figures(age: Duration, rate_hz: f64) -> String {
     format!("{} ms old, {rate_hz:.0} pictures a second", age.as_millis())
+}
+
+/// Age of a recorded picture.
+pub(in crate::console) fn recorded(age: Duration) -> String {
+    format!("Recorded picture, {} ms old then", age.as_millis())
+}
+
+pub(in crate::console) const SEARCHING: &str = "Looking for the picture of this moment";
+
+/// There is no recorded picture of a moment.
+pub(in crate::console) fn none_then(why: Option<&str>) -> String {
+    why.map_or_else(
+        || "No picture came in the two seconds before this moment".to_owned(),
+        |why| format!("The picture of this moment cannot be read: {why}"),
+    )
+}
+
+/// How far the picture is zoomed, and how to get back.
+pub(in crate::console) fn zoomed(zoom: f32) -> String {
+    format!("Zoom {zoom:.1}; drag moves, a double click shows all")
+}
+
+/// A tip that is not in the view.
+pub(in crate::console) fn tip(side: &str) -> String {
+    format!("{side} tip")
 }
 
 /// The whole picture in words.

@@ -79,7 +79,7 @@ pub(in crate::console) const KEYS_HEADING: &str = "Keys";
 pub(in crate::console) const WORDS_HEADING: &str = "Terms";
 
 /// All keys with their functions.
-pub(in crate::console) const KEYS: [(&str, &str); 26] = [
+pub(in crate::console) const KEYS: [(&str, &str); 27] = [
     ("Space, Escape", "Stop, in every view. While you type a name, only Escape."),
     ("F1, F2, F3", "Surgeon, Technician, Demo."),
     ("F4", "This list of keys and terms."),
@@ -94,6 +94,7 @@ pub(in crate::console) const KEYS: [(&str, &str); 26] = [
     ("K", "Keep the session that is being recorded, or no longer."),
     ("O", "Draw the forces into the endoscope's picture, or hide them."),
     ("V", "Of an endoscope with two lenses: show the left picture, the right one, or both."),
+    ("Wheel", "Zoom the endoscope's picture. Drag moves it, a double click shows all of it."),
     ("M", "Drive the instrument by mouse, or let it go."),
     ("Arrow keys", "Move the instrument by a small step while you drive it."),
     ("Page Up, Page Down", "Move the instrument up or down while you drive it."),

@@ -34,7 +34,9 @@ pub(in crate::console) fn hover(shown: &Shown) -> String {
         .iter()
         .fold(String::new(), |words, one| words + &format!("\nOthers watch at {}: {} now", one.at, one.watchers));
     let (path, megabytes) = (shown.path.display(), shown.bytes as f64 * 1e-6);
-    format!("{what}\n{path}\n{megabytes:.1} MB, marks: {} (key E sets one){lost}{watched}", shown.marks)
+    let pictures =
+        if shown.pictures > 0 { format!("\n{} pictures of the endoscope", shown.pictures) } else { String::new() };
+    format!("{what}\n{path}\n{megabytes:.1} MB, marks: {} (key E sets one){pictures}{lost}{watched}", shown.marks)
 }
 
 /// The folder cannot be used.
@@ -60,6 +62,11 @@ pub(in crate::console) fn slow(waits: Duration) -> String {
 /// Entries are missing.
 pub(in crate::console) fn lost(entries: u64) -> String {
     format!("the disk is too slow: {entries} entries of this session are lost, a replay ends at the first of them")
+}
+
+/// Pictures are missing.
+pub(in crate::console) fn pictures_lost(pictures: u64) -> String {
+    format!("the disk is too slow: {pictures} pictures of the endoscope are missing in this session, nothing else")
 }
 
 /// Cause of an alarm.

@@ -39,6 +39,33 @@ pub(in crate::console) const NO_THREAD: &str = "the system gives no thread for t
 pub(in crate::console) const NO_FOLDER: &str = "There is no folder for your files: set NIMA_DATA_DIR";
 pub(in crate::console) const NAME_FIRST: &str = "Give it a name of letters, digits, blanks, dashes or underscores";
 
+pub(in crate::console) const ENDOSCOPE: &str = "Endoscope of this rig";
+pub(in crate::console) const ENDOSCOPE_HOVER: &str =
+    "Where the surgeon's picture comes from. What is typed is tried at once";
+pub(in crate::console) const ENDOSCOPE_ADDRESS: &str = "Address of the endoscope";
+pub(in crate::console) const ENDOSCOPE_HINT: &str = "http://192.168.10.7:8080/stream";
+pub(in crate::console) const ENDOSCOPE_USE: &str = "Write this address into the rig";
+pub(in crate::console) const ENDOSCOPE_REMOVE: &str = "Take the endoscope out of the rig";
+pub(in crate::console) const ENDOSCOPE_USE_HOVER: &str = "A built-in rig stays as it is: a copy of yours gets the address. Start it to see the picture in the surgeon's view.";
+pub(in crate::console) const ENDOSCOPE_TYPING: &str = "Tried when you stop typing";
+pub(in crate::console) const ENDOSCOPE_OPENING: &str = "Opening it";
+pub(in crate::console) const ENDOSCOPE_FORMS: &str =
+    "Give http://HOST:PORT/PATH, or the path of a .mjpeg, a JPEG or a folder of them";
+pub(in crate::console) const NO_ENDOSCOPE: &str = "None: the surgeon's view draws the field";
+
+/// An address that works: size of the picture, and pictures a second where it moves.
+pub(in crate::console) fn endoscope_sends([width, height]: [usize; 2], rate_hz: Option<f64>) -> String {
+    match rate_hz {
+        Some(rate_hz) => format!("Sends {width} x {height} pixels, {rate_hz:.0} pictures a second"),
+        None => format!("One picture of {width} x {height} pixels"),
+    }
+}
+
+/// The address is in the rig's file.
+pub(in crate::console) fn endoscope_written(path: &str) -> String {
+    format!("Written: {path}. Start it to use the address.")
+}
+
 /// A rig in few words: what it runs on.
 pub(in crate::console) fn of_devices(count: usize, emulated: bool) -> String {
     let devices = if count == 1 { "1 device".to_owned() } else { format!("{count} devices") };

@@ -1,0 +1,166 @@
+//! Pictures on their way into a recording: a queue with an end, in which nobody waits.
+
+use std::{
+    collections::VecDeque,
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
+};
+
+use crate::{Compressed, Format};
+
+/// Most bytes and most pictures that wait: some seconds of a usual camera. What comes while it is full is dropped and counted.
+const BYTES_MOST: usize = 32 << 20;
+const PICTURES_MOST: usize = 256;
+
+/// Where a [`crate::Feed`] puts every picture, as it came; the other end is a [`ReelEnd`]. Without one, nothing is kept.
+#[derive(Clone, Debug, Default)]
+pub struct Reel(Arc<Shared>);
+
+/// Takes the pictures out. Dropping it ends that.
+#[derive(Debug)]
+pub struct ReelEnd {
+    shared: Arc<Shared>,
+    number: u64,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    waiting: Mutex<Waiting>,
+    dropped: AtomicU64,
+}
+
+#[derive(Debug, Default)]
+struct Waiting {
+    /// The end that takes them; an earlier one gets nothing any more.
+    taker: Option<u64>,
+    takers: u64,
+    pictures: VecDeque<Compressed>,
+    bytes: usize,
+    rests: bool,
+}
+
+impl Shared {
+    fn waiting(&self) -> MutexGuard<'_, Waiting> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Waiting {
+    fn clear(&mut self) {
+        self.pictures.clear();
+        self.bytes = 0;
+    }
+}
+
+impl Reel {
+    /// The other end, for a new recording: it gets the pictures from now on, and an earlier one gets none any more.
+    pub fn end(&self) -> ReelEnd {
+        let mut waiting = self.0.waiting();
+        waiting.takers += 1;
+        waiting.taker = Some(waiting.takers);
+        waiting.clear();
+        self.0.dropped.store(0, Ordering::Relaxed);
+        ReelEnd { shared: Arc::clone(&self.0), number: waiting.takers }
+    }
+
+    /// Whether no pictures are taken for now, because nobody wants them recorded.
+    pub fn rest(&self, rests: bool) {
+        let mut waiting = self.0.waiting();
+        waiting.rests = rests;
+    }
+
+    /// Puts a JPEG in, unless there is no room or nobody takes it. Never waits for the other end.
+    pub(crate) fn put(&self, picture: &Compressed) {
+        let mut waiting = self.0.waiting();
+        // A session has JPEGs only: a picture that refers to others, or is not compressed, would be something else there.
+        if waiting.taker.is_none() || waiting.rests || picture.format != Format::Jpeg {
+            return;
+        }
+        let length = picture.bytes.len();
+        if waiting.pictures.len() >= PICTURES_MOST || waiting.bytes + length > BYTES_MOST {
+            self.0.dropped.fetch_add(1, Ordering::Relaxed);
+            return;
+        }
+        waiting.bytes += length;
+        waiting.pictures.push_back(picture.clone());
+    }
+}
+
+impl ReelEnd {
+    /// The oldest picture that waits.
+    pub fn take(&self) -> Option<Compressed> {
+        let mut waiting = self.shared.waiting();
+        if waiting.taker != Some(self.number) {
+            return None;
+        }
+        let picture = waiting.pictures.pop_front()?;
+        waiting.bytes -= picture.bytes.len();
+        Some(picture)
+    }
+
+    /// How many had no room so far.
+    pub fn dropped(&self) -> u64 {
+        self.shared.dropped.load(Ordering::Relaxed)
+    }
+}
+
+impl Drop for ReelEnd {
+    fn drop(&mut self) {
+        let mut waiting = self.shared.waiting();
+        if waiting.taker == Some(self.number) {
+            waiting.taker = None;
+            waiting.clear();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use super::*;
+
+    fn picture(length: usize) -> Compressed {
+        Compressed::jpeg(vec![7; length], Instant::now(), None)
+    }
+
+    #[test]
+    fn what_has_no_room_is_dropped_and_counted() {
+        let reel = Reel::default();
+        reel.put(&picture(10));
+        let end = reel.end();
+        assert!(end.take().is_none(), "nobody took that one");
+        for _ in 0..20 {
+            reel.put(&picture(2 << 20));
+        }
+        assert_eq!(end.dropped(), 4, "16 of 2 MiB fit");
+        assert_eq!(std::iter::from_fn(|| end.take()).count(), 16);
+        for _ in 0..2 * PICTURES_MOST {
+            reel.put(&picture(1));
+        }
+        assert_eq!(end.dropped(), 4 + PICTURES_MOST as u64);
+        assert_eq!(std::iter::from_fn(|| end.take()).count(), PICTURES_MOST);
+        reel.put(&picture(3));
+        assert_eq!(end.take().unwrap().bytes.len(), 3);
+    }
+
+    #[test]
+    fn a_new_recording_takes_over_and_what_rests_is_not_recorded() {
+        let reel = Reel::default();
+        let first = reel.end();
+        reel.put(&picture(1));
+        let second = reel.end();
+        reel.put(&picture(2));
+        assert!(first.take().is_none());
+        drop(first);
+        assert_eq!(second.take().unwrap().bytes.len(), 2);
+        reel.rest(true);
+        reel.put(&picture(4));
+        assert!(second.take().is_none());
+        reel.rest(false);
+        reel.put(&picture(5));
+        assert_eq!((second.take().unwrap().bytes.len(), second.dropped()), (5, 0));
+    }
+}

@@ -1,0 +1,210 @@
+//! The endoscope's pictures in a session: as the camera compressed them, at the loop's time of their arrival.
+//!
+//! They are no input of the loop, so the journal and its replay know nothing of them. What is recorded comes from a [`PictureSource`];
+//! [`Pictures`] reads it again.
+
+use std::{fmt::Debug, ops::Range, path::Path, time::Instant};
+
+use nima_recording::{
+    messages::foxglove::CompressedImage,
+    session::{Message, ReadError, Reader},
+};
+use prost::Message as _;
+use serde::{Deserialize, Serialize};
+
+use crate::plotted::beginning_ns;
+
+/// Topic of the pictures.
+pub const PICTURE_TOPIC: &str = "endoscope/picture";
+/// Topic of what is told of each of them.
+pub const PICTURE_FIGURES_TOPIC: &str = "endoscope/figures";
+/// The kind of its messages, and their description.
+pub(crate) const FIGURES_NAME: &str = "nima.PictureFigures";
+pub(crate) const FIGURES_SCHEMA: &str = r#"{
+  "title": "nima.PictureFigures",
+  "description": "A picture of the endoscope. The time of the message is that of the picture's arrival, on the loop's clock",
+  "type": "object",
+  "properties": {
+    "number": {"type": "integer", "description": "Pictures before it in this session"},
+    "bytes": {"type": "integer"},
+    "dropped": {"type": "integer", "description": "Pictures that were not recorded so far, because the disk was too slow"},
+    "camera_s": {"type": "number", "description": "The camera's own stamp, s since some moment of its own; left out where it sends none"}
+  },
+  "required": ["number", "bytes", "dropped"]
+}"#;
+
+/// Pictures are looked for this far back, ns: what is older was frozen for long.
+const BACK_NS: u64 = 2_000_000_000;
+/// And read this far ahead, ns, so that a session that is played is not searched for each of them.
+const AHEAD_NS: u64 = 500_000_000;
+
+/// A picture on its way into a recording.
+#[derive(Clone, Debug)]
+pub struct Taken {
+    /// When its last byte was here.
+    pub arrived: Instant,
+    /// The camera's own stamp, s since some moment of its own.
+    pub camera_s: Option<f64>,
+    /// Its format, as Foxglove names it: `jpeg`.
+    pub format: &'static str,
+    /// As it came.
+    pub data: Vec<u8>,
+}
+
+/// Who hands pictures to a recording. Asked on the recorder's thread; must not wait, and must not keep more than it can.
+pub trait PictureSource: Send + Debug {
+    /// The next picture, in the order of arrival.
+    fn picture(&mut self) -> Option<Taken>;
+
+    /// How many found no room so far, because the recording was too slow.
+    fn dropped(&self) -> u64;
+}
+
+/// What is told of a recorded picture beside itself.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PictureFigures {
+    /// Pictures before it in this session.
+    pub number: u64,
+    /// Its length.
+    pub bytes: u64,
+    /// Pictures that were not recorded so far.
+    pub dropped: u64,
+    /// The camera's own stamp, s since some moment of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera_s: Option<f64>,
+}
+
+/// A recorded picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recorded {
+    /// When it arrived, ns since 1970 as all times of a session.
+    pub time_ns: u64,
+    /// Its format: `jpeg`.
+    pub format: String,
+    /// As it came.
+    pub data: Vec<u8>,
+}
+
+/// The loop's time of a moment of this computer. Estimated from when ticks are known here: the least delay counts.
+#[derive(Debug, Default)]
+pub(crate) struct LoopClock {
+    begin: Option<Instant>,
+    /// This computer's time minus the loop's, s, and when it was last seen, s.
+    offset_s: Option<(f64, f64)>,
+}
+
+/// The loop's clock may run this much slower than the computer's.
+const DRIFT: f64 = 1e-3;
+
+impl LoopClock {
+    /// A tick of this time (s) is known now.
+    pub(crate) fn note(&mut self, t_s: f64, now: Instant) {
+        let now_s = now.duration_since(*self.begin.get_or_insert(now)).as_secs_f64();
+        let offset_s = now_s - t_s;
+        let least_s = self.offset_s.map_or(offset_s, |(least_s, at_s)| offset_s.min(least_s + DRIFT * (now_s - at_s)));
+        self.offset_s = Some((least_s, now_s));
+    }
+
+    /// The loop's time of a moment, s; before 0 where the loop had not begun.
+    pub(crate) fn at(&self, moment: Instant) -> Option<f64> {
+        let (begin, (offset_s, _)) = (self.begin?, self.offset_s?);
+        let since_s = match moment.checked_duration_since(begin) {
+            Some(since) => since.as_secs_f64(),
+            None => -begin.duration_since(moment).as_secs_f64(),
+        };
+        Some(since_s - offset_s)
+    }
+}
+
+/// Whether pictures are recorded in this session.
+pub fn are_recorded(reader: &Reader) -> bool {
+    reader.channels().iter().any(|channel| channel.topic == PICTURE_TOPIC && channel.messages != Some(0))
+}
+
+/// The pictures of a session, by time. Keeps those around the last one that was asked for.
+pub struct Pictures {
+    reader: Reader,
+    begin_ns: u64,
+    kept: Vec<Message>,
+    /// The times that are kept, ns.
+    times_ns: Range<u64>,
+}
+
+impl Debug for Pictures {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Pictures").field("kept", &self.kept.len()).finish_non_exhaustive()
+    }
+}
+
+impl Pictures {
+    /// Opens the session again, for itself; `None` where it has no pictures.
+    ///
+    /// # Errors
+    /// [`ReadError`] if it cannot be read.
+    pub fn open(path: &Path) -> Result<Option<Self>, ReadError> {
+        let reader = Reader::open(path)?;
+        if !are_recorded(&reader) {
+            return Ok(None);
+        }
+        let begin_ns = beginning_ns(&reader)?;
+        Ok(Some(Self { reader, begin_ns, kept: Vec::new(), times_ns: 0..0 }))
+    }
+
+    /// When the session began, ns.
+    pub const fn begin_ns(&self) -> u64 {
+        self.begin_ns
+    }
+
+    /// The file.
+    pub const fn reader(&self) -> &Reader {
+        &self.reader
+    }
+
+    /// The picture that was the newest at this time (s since the session began), if one came in the two seconds before.
+    ///
+    /// # Errors
+    /// [`ReadError`] if it cannot be read. What comes later can be asked for all the same.
+    pub fn at(&mut self, t_s: f64) -> Result<Option<Recorded>, ReadError> {
+        let time_ns = self.begin_ns + (t_s.max(0.0) * 1e9).round() as u64;
+        let wanted_ns = time_ns.saturating_sub(BACK_NS)..time_ns.saturating_add(1);
+        if wanted_ns.start < self.times_ns.start || wanted_ns.end > self.times_ns.end {
+            let times_ns = wanted_ns.start..wanted_ns.end.saturating_add(AHEAD_NS);
+            self.times_ns = 0..0;
+            self.kept = self.reader.messages(&[PICTURE_TOPIC], times_ns.clone()).collect::<Result<_, _>>()?;
+            self.times_ns = times_ns;
+        }
+        let newest = self.kept.partition_point(|message| message.log_time_ns() <= time_ns);
+        let newest = newest.checked_sub(1).and_then(|newest| self.kept.get(newest));
+        Ok(newest.filter(|message| wanted_ns.contains(&message.log_time_ns())).and_then(read))
+    }
+}
+
+/// The picture of a message; `None` for one of another program that is none.
+fn read(message: &Message) -> Option<Recorded> {
+    let CompressedImage { data, format, .. } = CompressedImage::decode(message.data()).ok()?;
+    Some(Recorded { time_ns: message.log_time_ns(), format, data })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    #[test]
+    fn a_moment_has_its_time_of_the_loop_however_late_ticks_are_known() {
+        let begin = Instant::now();
+        let mut clock = LoopClock::default();
+        assert_eq!(clock.at(begin), None);
+        for tick in 0..3000_u32 {
+            // The disk held the thread up for half a second; the loop began 2 s before its first tick is known here.
+            let late = if (1000..1500).contains(&tick) { 1500 - tick } else { tick % 3 };
+            clock.note(f64::from(tick) * 1e-3, begin + Duration::from_millis(u64::from(2000 + tick + late)));
+        }
+        for t_s in [0.5, 1.2, 2.9] {
+            let at_s = clock.at(begin + Duration::from_secs_f64(2.0 + t_s)).unwrap();
+            assert!((at_s - t_s).abs() < 3e-3, "{at_s} s, not {t_s} s");
+        }
+        assert!(clock.at(begin).unwrap() < -1.9, "before the loop began");
+    }
+}

@@ -1,0 +1,100 @@
+//! The file of a session and its channels.
+
+use std::collections::BTreeMap;
+
+use nima_machine::{
+    messages::Event,
+    rig::{SIDES, Side},
+    runtime::{Operation, Stepped},
+    teleop::Calibrations,
+};
+use nima_recording::session::Encoding;
+
+use super::{About, JOURNAL_ENCODING, JOURNAL_TOPIC, RecordError};
+use crate::{
+    kept::described,
+    layouts::layouts,
+    outlet::{Channel, Destination, Outlet},
+    scribe::{Pages, Written},
+    topics::Topics,
+};
+
+/// After so many blocks of the journal the chunk is closed: 0.4 s at 1 kHz, which is what a kill can cost.
+const BLOCKS_PER_CHUNK: u32 = 2;
+
+/// The file and its channels.
+pub(super) struct SessionFile {
+    pub(super) out: Outlet,
+    journal: Channel,
+    pub(super) topics: Topics,
+    pub(super) started_ns: u64,
+    blocks: u32,
+}
+
+impl SessionFile {
+    pub(super) fn create(
+        to: Destination<'_>,
+        about: About,
+        known: &[(Side, BTreeMap<String, String>)],
+        sides: [bool; SIDES],
+        devices: Vec<String>,
+    ) -> Result<Self, RecordError> {
+        let About { program, started_ns, metadata, files, words } = about;
+        let mut out = Outlet::create(to, &program, started_ns)?;
+        for (name, entries) in &metadata {
+            out.metadata(name, entries)?;
+        }
+        for (side, entries) in known {
+            out.metadata(&format!("calibrations {}", side.word()), entries)?;
+        }
+        for attached in files.iter().chain(&layouts(sides)) {
+            out.attachment(started_ns, attached)?;
+        }
+        let encoding = Encoding { message_encoding: JOURNAL_ENCODING.to_owned(), ..Encoding::default() };
+        let journal = out.channel(JOURNAL_TOPIC, encoding)?;
+        let topics = Topics::new(&mut out, sides, words, devices)?;
+        Ok(Self { out, journal, topics, started_ns, blocks: 0 })
+    }
+
+    pub(super) fn log_time_ns(&self, t_s: f64) -> u64 {
+        log_time_ns(self.started_ns, t_s)
+    }
+}
+
+/// A time of the loop, s, as that of a message of a session that began at `started_ns`.
+pub(super) fn log_time_ns(started_ns: u64, t_s: f64) -> u64 {
+    started_ns + (t_s.max(0.0) * 1e9).round() as u64
+}
+
+impl Pages for SessionFile {
+    type Error = RecordError;
+
+    fn write(&mut self, Written { t_s, bytes }: &Written) -> Result<(), RecordError> {
+        let time_ns = self.log_time_ns(*t_s);
+        self.out.message(self.journal, time_ns, bytes)?;
+        self.blocks += 1;
+        if self.blocks.is_multiple_of(BLOCKS_PER_CHUNK) {
+            self.out.flush()?;
+        }
+        Ok(())
+    }
+
+    fn tick(&mut self, stepped: &Stepped, events: &[Event]) -> Result<(), RecordError> {
+        let t_s = stepped.timing.now_s;
+        let time_ns = self.log_time_ns(t_s);
+        let started_ns = self.started_ns;
+        // All that the simulation told up to this tick was told before it.
+        self.topics.objects(&mut self.out, t_s, |t_s| log_time_ns(started_ns, t_s))?;
+        self.out.tick(t_s, &stepped.ticks, events);
+        Ok(self.topics.tick(&mut self.out, time_ns, stepped, events)?)
+    }
+
+    fn calibrations(&mut self, number: u64, calibrations: &Calibrations) -> Result<(), RecordError> {
+        Ok(self.out.metadata(&format!("calibrations {number}"), &described(calibrations))?)
+    }
+
+    fn operation(&mut self, operation: &Operation, t_s: f64) -> Result<(), RecordError> {
+        let time_ns = self.log_time_ns(t_s);
+        Ok(self.topics.operation(&mut self.out, time_ns, operation)?)
+    }
+}

@@ -1,0 +1,89 @@
+//! The channels of the endoscope's pictures: each as it came, and what is told of it.
+
+use nima_recording::{
+    messages::{
+        foxglove::{self, CompressedImage, Timestamp},
+        json_encoding,
+    },
+    session::WriteError,
+};
+use prost::Message as _;
+
+use crate::{
+    outlet::{Channel, FileChannel, Outlet},
+    pictures::{
+        FIGURES_NAME, FIGURES_SCHEMA, PICTURE_FIGURES_TOPIC, PICTURE_TOPIC, PictureFigures, PictureSource, Taken,
+    },
+};
+
+/// The frame of the pictures: its axes are those of the picture.
+const FRAME: &str = "endoscope";
+
+/// Writes what a source hands over, as soon as the loop's tick of its time has passed.
+#[derive(Debug)]
+pub(crate) struct OfPictures {
+    source: Box<dyn PictureSource>,
+    /// The picture whose time has not come yet.
+    waiting: Option<Taken>,
+    channels: Option<(FileChannel, Channel)>,
+    number: u64,
+    last_s: f64,
+}
+
+impl OfPictures {
+    pub(crate) fn new(source: Box<dyn PictureSource>) -> Self {
+        Self { source, waiting: None, channels: None, number: 0, last_s: 0.0 }
+    }
+
+    /// How many were written, and how many found no room.
+    pub(crate) fn counts(&self) -> [u64; 2] {
+        [self.number, self.source.dropped()]
+    }
+
+    /// Writes the pictures that arrived up to this time of the loop, s; `t_s_of` gives the time of one, and `time_ns` that of its message.
+    pub(crate) fn until(
+        &mut self,
+        out: &mut Outlet,
+        t_s: f64,
+        t_s_of: impl Fn(&Taken) -> Option<f64>,
+        time_ns: impl Fn(f64) -> u64,
+    ) -> Result<(), WriteError> {
+        while let Some(taken) = self.waiting.take().or_else(|| self.source.picture()) {
+            // Those before the loop's first tick are none of the session's.
+            let Some(at_s) = t_s_of(&taken).filter(|at_s| *at_s >= 0.0) else { continue };
+            if at_s > t_s {
+                self.waiting = Some(taken);
+                return Ok(());
+            }
+            // The estimate of the clock may be corrected by a little.
+            self.last_s = self.last_s.max(at_s);
+            self.write(out, time_ns(self.last_s), taken)?;
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, out: &mut Outlet, time_ns: u64, taken: Taken) -> Result<(), WriteError> {
+        let (pictures, figures) = match self.channels {
+            Some(channels) => channels,
+            None => *self.channels.insert((
+                out.file_channel(PICTURE_TOPIC, foxglove::encoding::<CompressedImage>())?,
+                out.channel(PICTURE_FIGURES_TOPIC, json_encoding(FIGURES_NAME, FIGURES_SCHEMA))?,
+            )),
+        };
+        let Taken { arrived: _, camera_s, format, data } = taken;
+        let [number, dropped] = self.counts();
+        let told =
+            PictureFigures { number, bytes: data.len() as u64, dropped, camera_s: camera_s.filter(|s| s.is_finite()) };
+        let picture = CompressedImage {
+            timestamp: Some(Timestamp::of_ns(time_ns)),
+            data,
+            format: format.to_owned(),
+            frame_id: FRAME.to_owned(),
+        };
+        out.file_message(pictures, time_ns, &picture.encode_to_vec())?;
+        self.number += 1;
+        // Numbers and names of fields always have a form in JSON.
+        let told = serde_json::to_vec(&told).unwrap_or_default();
+        out.message(figures, time_ns, &told)
+    }
+}

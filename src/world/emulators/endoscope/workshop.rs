@@ -1,0 +1,173 @@
+//! Makes the pictures on a thread of its own, so that neither the emulator's clients nor, in an emulated rig, the other devices wait for it.
+
+use std::{
+    io,
+    sync::mpsc::{Receiver, SyncSender, sync_channel},
+    thread::Builder,
+    time::Duration,
+};
+
+use nima_endoscope::{h264, jpeg};
+
+use super::{
+    Emulated,
+    pipe::Pipe,
+    shot::{Seen, Shot, Studio, Subject},
+};
+use crate::emulators::EmulatedFault;
+
+/// What stands between two pictures in the answer.
+pub(super) const BOUNDARY: &str = "nima-endoscope";
+
+/// A picture to be made.
+pub(super) struct Order {
+    /// The time that stands in it, since 1970: nothing in it is older.
+    pub(super) since: Duration,
+    pub(super) seen: Seen,
+    pub(super) fault: EmulatedFault,
+    /// Somebody watches over HTTP.
+    pub(super) parts: bool,
+    /// Somebody watches over RTSP.
+    pub(super) units: bool,
+    /// A player begins with it.
+    pub(super) key: bool,
+}
+
+/// A picture on its way, as those who watch want it; empty for those who do not.
+#[derive(Default)]
+pub(super) struct Sent {
+    /// One part of the answer over HTTP.
+    pub(super) part: Vec<u8>,
+    /// A picture of the stream over RTSP.
+    pub(super) unit: Vec<u8>,
+    pub(super) since: Duration,
+}
+
+/// The thread; it ends when this is dropped.
+pub(super) struct Workshop {
+    orders: SyncSender<Order>,
+    made: Receiver<Sent>,
+    /// An order is not done yet.
+    pub(super) is_busy: bool,
+}
+
+impl Workshop {
+    pub(super) fn start(emulated: Emulated, subject: Subject, pipe: Option<Pipe>) -> io::Result<Self> {
+        let ((orders, ordered), (hand_over, made)) = (sync_channel::<Order>(1), sync_channel(1));
+        let work = move || {
+            if emulated.gives_way {
+                give_way();
+            }
+            let mut bench = Bench::new(emulated, &subject, pipe);
+            while let Ok(order) = ordered.recv() {
+                if hand_over.send(bench.make(&order)).is_err() {
+                    return;
+                }
+            }
+        };
+        Builder::new().name("painter".to_owned()).spawn(work)?;
+        Ok(Self { orders, made, is_busy: false })
+    }
+
+    /// Begins the next picture, unless one is still being made.
+    pub(super) fn order(&mut self, order: Order) {
+        self.is_busy |= self.orders.try_send(order).is_ok();
+    }
+
+    /// The picture that was ordered, once it is made.
+    pub(super) fn made(&mut self) -> Option<Sent> {
+        let sent = self.made.try_recv().ok()?;
+        self.is_busy = false;
+        Some(sent)
+    }
+}
+
+/// A picture takes milliseconds, and other devices need theirs a thousand times a second. No lock of theirs is ever taken on this thread.
+fn give_way() {
+    #[cfg(target_os = "linux")]
+    #[expect(unsafe_code, reason = "std has no priorities")]
+    // SAFETY: a plain system call without pointers. On Linux it concerns the calling thread alone; where it is refused, nothing changes.
+    unsafe {
+        libc::setpriority(libc::PRIO_PROCESS, 0, NICE);
+    }
+}
+
+/// A third of an ordinary thread's share where both want a processor.
+#[cfg(target_os = "linux")]
+const NICE: libc::c_int = 5;
+
+struct Bench {
+    rate_hz: f64,
+    studio: Studio,
+    pipe: Option<Pipe>,
+    coders: Coders,
+}
+
+/// For all who watch; each is made when the first of them does.
+struct Coders {
+    quality: u8,
+    jpeg: Option<([usize; 2], jpeg::Encoder)>,
+    h264: Option<h264::Encoder>,
+}
+
+impl Bench {
+    fn new(emulated: Emulated, subject: &Subject, pipe: Option<Pipe>) -> Self {
+        let coders = Coders { quality: emulated.quality, jpeg: None, h264: None };
+        Self { rate_hz: emulated.rate_hz, studio: Studio::new(emulated, subject), pipe, coders }
+    }
+
+    fn make(&mut self, &Order { since, ref seen, fault, parts, units, key }: &Order) -> Sent {
+        let shot = self.studio.take(since, seen, fault);
+        if let Some(pipe) = &self.pipe {
+            pipe.send(&shot, fault);
+        }
+        let mut sent = Sent { since, ..Sent::default() };
+        if parts {
+            sent.part = self.coders.part(&shot, since, fault);
+        }
+        // An encoder never makes the same bytes of the same picture: a stream that hangs has no more pictures.
+        if units && fault != EmulatedFault::Freeze {
+            // A picture that the library does not take is not sent: the client tells that nothing comes.
+            sent.unit = self.coders.unit(&shot, key, self.rate_hz).unwrap_or_default();
+            if fault == EmulatedFault::Torn {
+                sent.unit.truncate(sent.unit.len() * 6 / 10);
+            }
+        }
+        sent
+    }
+}
+
+impl Coders {
+    fn part(&mut self, shot: &Shot<'_>, since: Duration, fault: EmulatedFault) -> Vec<u8> {
+        let (kind, mut picture) = if fault == EmulatedFault::OtherFormat {
+            ("image/png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec())
+        } else {
+            ("image/jpeg", self.jpeg(shot))
+        };
+        if fault == EmulatedFault::Torn {
+            picture.truncate(picture.len() * 6 / 10);
+        }
+        let head = format!(
+            "\r\n--{BOUNDARY}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nX-Timestamp: {}.{:06}\r\n\r\n",
+            picture.len(),
+            since.as_secs(),
+            since.subsec_micros()
+        );
+        [head.as_bytes(), &picture].concat()
+    }
+
+    fn jpeg(&mut self, shot: &Shot<'_>) -> Vec<u8> {
+        if self.jpeg.as_ref().is_none_or(|(size_px, _)| *size_px != shot.size_px) {
+            self.jpeg = Some((shot.size_px, jpeg::Encoder::new(shot.size_px, self.quality)));
+        }
+        self.jpeg.as_mut().map(|(_, encoder)| encoder.encode(shot.rgb)).unwrap_or_default()
+    }
+
+    fn unit(&mut self, shot: &Shot<'_>, key: bool, rate_hz: f64) -> io::Result<Vec<u8>> {
+        let encoder = match &mut self.h264 {
+            Some(encoder) => encoder,
+            none => none.insert(h264::Encoder::new(rate_hz)?),
+        };
+        encoder.encode(shot.rgb, shot.size_px, key)
+    }
+}

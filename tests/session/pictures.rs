@@ -1,0 +1,141 @@
+//! The endoscope's pictures in a session: recorded as they came, at the loop's time of their arrival, and neither in a stretch's way nor in an
+//! anonymous session.
+
+use std::{
+    path::Path,
+    sync::atomic::AtomicBool,
+    thread,
+    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
+};
+
+use nima_endoscope::{jpeg, time_code};
+use nima_machine::runtime::{self, Assembly, tap};
+use nima_recording::session::Reader;
+use nima_session::{
+    anonymous, cut,
+    outlet::Destination,
+    pictures::{PICTURE_FIGURES_TOPIC, PICTURE_TOPIC, PictureFigures, PictureSource, Pictures, Taken},
+    plotted::beginning_ns,
+    recorder::{Progress, Recorder},
+    report::Figures,
+};
+use nima_testing::real_time;
+use nima_tests::plan;
+
+use crate::file::about;
+
+const SQUARE_PX: usize = 8;
+const SIZE_PX: [usize; 2] = [256, 24];
+const PERIOD: Duration = Duration::from_millis(33);
+
+/// Hands over a picture of now every 33 ms, as a camera's reader does, but for what came before the loop began.
+#[derive(Debug)]
+struct Camera {
+    due: Instant,
+    waiting: Vec<Taken>,
+}
+
+impl Camera {
+    fn new() -> Self {
+        // What came a minute ago is none of this session's.
+        let before = Instant::now().checked_sub(Duration::from_mins(1)).map(|at| taken(at, 1));
+        Self { due: Instant::now(), waiting: before.into_iter().collect() }
+    }
+}
+
+fn taken(arrived: Instant, time_us: u64) -> Taken {
+    let mut rgb = vec![90; 3 * SIZE_PX[0] * SIZE_PX[1]];
+    time_code::draw(time_us, SQUARE_PX, &mut rgb, SIZE_PX[0]);
+    let data = jpeg::encode(&rgb, SIZE_PX, 90);
+    Taken { arrived, camera_s: Some(time_us as f64 * 1e-6), format: "jpeg", data }
+}
+
+impl PictureSource for Camera {
+    fn picture(&mut self) -> Option<Taken> {
+        if let Some(before) = self.waiting.pop() {
+            return Some(before);
+        }
+        let now = Instant::now();
+        if now < self.due {
+            return None;
+        }
+        self.due = now + PERIOD;
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap();
+        Some(taken(now, since.as_micros() as u64))
+    }
+
+    fn dropped(&self) -> u64 {
+        3
+    }
+}
+
+/// Three seconds of a simulated rig on the real clock, with pictures.
+fn record(path: &Path) -> Progress {
+    let _alone = real_time::alone();
+    let plan = plan("peg_transfer");
+    let (tap, end) = tap();
+    let recorder = Recorder::start(Destination::file(path), about(), plan.origin(), end).unwrap();
+    recorder.film(Box::new(Camera::new()));
+    let handle = runtime::start(Assembly { tap: Some(tap), ..plan.assembly().unwrap() }).unwrap();
+    thread::sleep(Duration::from_secs(3));
+    handle.stop_and_join().unwrap();
+    recorder.finish().unwrap()
+}
+
+#[test]
+fn pictures_are_recorded_as_they_came_at_the_loops_time_of_their_arrival() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    let progress = record(&path);
+    let reader = Reader::open(&path).unwrap();
+    let begin_ns = beginning_ns(&reader).unwrap();
+    let figures: Vec<PictureFigures> = reader
+        .messages(&[PICTURE_FIGURES_TOPIC], 0..u64::MAX)
+        .map(|message| serde_json::from_slice(message.unwrap().data()).unwrap())
+        .collect();
+    assert!(figures.len() > 20, "{} pictures", figures.len());
+    assert_eq!((progress.pictures, progress.pictures_dropped), (figures.len() as u64, 3));
+    let mut pictures = Pictures::open(&path).unwrap().unwrap();
+    let mut offsets_s = Vec::new();
+    let times_ns: Vec<u64> =
+        reader.messages(&[PICTURE_TOPIC], 0..u64::MAX).map(|message| message.unwrap().log_time_ns()).collect();
+    assert_eq!(times_ns.len(), figures.len());
+    for (time_ns, told) in times_ns.iter().zip(&figures) {
+        let t_s = (time_ns - begin_ns) as f64 / 1e9;
+        let recorded = pictures.at(t_s).unwrap().unwrap();
+        assert_eq!((recorded.time_ns, recorded.format.as_str()), (*time_ns, "jpeg"));
+        assert_eq!(recorded.data.len() as u64, told.bytes);
+        let decoded = jpeg::decode(&recorded.data).unwrap();
+        let code_us = time_code::read(SQUARE_PX, |x, y| decoded.rgba[4 * (SIZE_PX[0] * y + x)]).unwrap();
+        let stamp_miss_s = told.camera_s.unwrap() - code_us as f64 * 1e-6;
+        assert!(stamp_miss_s.abs() < 1e-6, "the camera's own stamp is kept");
+        offsets_s.push(code_us as f64 * 1e-6 - t_s);
+        assert_eq!(
+            pictures.at(t_s - 0.001).unwrap().map(|before| before.time_ns < *time_ns),
+            Some(true).filter(|_| told.number > 0)
+        );
+    }
+    // The loop's clock and that of the code differ by when the loop began.
+    offsets_s.sort_by(f64::total_cmp);
+    let spread_s = offsets_s[offsets_s.len() - 1] - offsets_s[0];
+    assert!(spread_s < PERIOD.as_secs_f64(), "{spread_s} s");
+
+    let read = Figures::read(&path).unwrap().pictures.unwrap();
+    assert_eq!((read.count, read.dropped), (figures.len() as u64, 3));
+    assert_eq!(read.bytes, figures.iter().map(|told| told.bytes).sum::<u64>());
+    assert!(read.rate_hz().is_some_and(|rate_hz| (5.0..31.0).contains(&rate_hz)), "{read:?}");
+
+    let part = folder.path().join("part.mcap");
+    let asked = AtomicBool::new(false);
+    let times_ns = begin_ns + 1_000_000_000..begin_ns + 2_000_000_000;
+    cut::write(&reader, "session", &times_ns, &part, &asked).unwrap();
+    let mut of_part = Pictures::open(&part).unwrap().unwrap();
+    assert_eq!(of_part.at(1.9).unwrap(), pictures.at(1.9).unwrap());
+    assert_eq!(of_part.at(0.9).unwrap(), None);
+
+    let shared = folder.path().join("shared.mcap");
+    let known = anonymous::Known { program: "test", files: &[], is_ours: &|_| true };
+    anonymous::write(&reader, &known, &(0..u64::MAX), &shared, &asked).unwrap();
+    assert!(Pictures::open(&shared).unwrap().is_none(), "a picture shows whose it is");
+    assert!(Reader::open(&shared).unwrap().channels().iter().all(|channel| !channel.topic.contains("endoscope")));
+}

@@ -1,0 +1,61 @@
+//! What of a drawn force the instrument hides.
+
+use nalgebra::Vector3;
+
+/// Half the width of an instrument's shaft, m: most have 5 mm.
+const SHAFT_M: f64 = 0.0025;
+/// A point nearer to the shaft than this behind its middle line is not hidden, as a share of the way from the lens.
+const BEHIND: f64 = 0.999;
+
+/// An instrument's shaft, from its tip to its trocar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Shaft {
+    pub(super) tip_m: Vector3<f64>,
+    pub(super) trocar_m: Vector3<f64>,
+}
+
+impl Shaft {
+    /// Whether it stands between the lens and a point.
+    pub(super) fn hides(&self, lens_m: &Vector3<f64>, point_m: &Vector3<f64>) -> bool {
+        let [sight, shaft] = [point_m - lens_m, self.trocar_m - self.tip_m];
+        let between = self.tip_m - lens_m;
+        let (a, b, c) = (sight.norm_squared(), sight.dot(&shaft), shaft.norm_squared());
+        let (d, e) = (sight.dot(&between), shaft.dot(&between));
+        let least = a * c - b * b;
+        if !(a > 0.0 && c > 0.0 && least > 1e-12 * a * c) {
+            return false;
+        }
+        // Where the two lines are nearest, then the nearest point of the sight to the end of the shaft that was meant.
+        let along = ((b * d - a * e) / least).clamp(0.0, 1.0);
+        let seen = (self.tip_m + shaft * along - lens_m).dot(&sight) / a;
+        if !(0.0..BEHIND).contains(&seen) {
+            return false;
+        }
+        (lens_m + sight * seen - self.tip_m - shaft * along).norm() < SHAFT_M
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Straight up from the tip; the lens is beside it.
+    fn shaft() -> Shaft {
+        Shaft { tip_m: Vector3::zeros(), trocar_m: Vector3::new(0.0, 0.0, 0.2) }
+    }
+
+    fn hides(x: f64, y: f64, z: f64) -> bool {
+        shaft().hides(&Vector3::new(0.0, -0.1, 0.02), &Vector3::new(x, y, z))
+    }
+
+    #[test]
+    fn what_is_behind_the_shaft_is_hidden_and_nothing_else() {
+        assert!(hides(0.0, 0.02, 0.02) && hides(0.0, 0.005, 0.05) && hides(0.002, 0.01, 0.03));
+        assert!(!hides(0.01, 0.02, 0.02), "beside it");
+        assert!(!hides(0.0, -0.02, 0.02), "before it");
+        assert!(!hides(0.0, 0.02, -0.02), "below its tip");
+        assert!(!hides(0.0, 0.0, 0.0), "at its tip");
+        let far = Shaft { trocar_m: Vector3::zeros(), ..shaft() };
+        assert!(!far.hides(&Vector3::new(0.0, -0.1, 0.02), &Vector3::new(0.0, 0.02, 0.02)), "no length");
+    }
+}

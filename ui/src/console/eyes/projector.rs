@@ -1,0 +1,190 @@
+//! The recorded picture of a moment of the past: found and decoded on a thread of its own, which shows the newest wish.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        mpsc::{Receiver, Sender, channel},
+    },
+    thread::Builder,
+    time::Duration,
+};
+
+use nima_endoscope::{Damage, FROZEN, Look, Picture, Standing, Tone, Wrong, jpeg};
+use nima_machine::rig::{SIDES, Side};
+use nima_session::{
+    pictures::{Pictures, Recorded},
+    plotted::{self, PlottedError},
+};
+
+use super::poses::Pose;
+use crate::console::chain;
+
+/// The tip of a picture is that of the last tick before it, within this time, ns.
+const TICK_NS: u64 = 20_000_000;
+
+/// Damaged pictures in a row before which a whole one is looked for.
+const TRIED_MOST: usize = 10;
+
+/// What the thread has found for a moment.
+#[derive(Clone, Debug)]
+pub(super) struct Found {
+    /// The moment that was asked for, and when its picture came, s; `None`: there was none.
+    pub(super) asked_s: f64,
+    pub(super) came_s: Option<f64>,
+    /// The last picture then that can be decoded, and its number.
+    picture: Option<(u64, Arc<Picture>)>,
+    damage: Option<Damage>,
+    /// Tips and forces when it came.
+    pub(super) poses: [Option<Pose>; SIDES],
+    /// Why the session cannot be read there.
+    trouble: Option<String>,
+}
+
+/// The window's end of the thread; dropping it ends the thread.
+#[derive(Debug)]
+pub(super) struct Projector {
+    wishes: Sender<(Tone, f64)>,
+    asked: (Tone, f64),
+    found: Arc<Mutex<Option<Found>>>,
+}
+
+fn locked(found: &Mutex<Option<Found>>) -> MutexGuard<'_, Option<Found>> {
+    found.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Projector {
+    /// Opens the pictures of a session; `wake` is called when there is another one.
+    pub(super) fn start(session: &Path, wake: impl Fn() + Send + 'static) -> Self {
+        let ((wishes, wanted), found) = (channel(), Arc::default());
+        let (session, told) = (session.to_path_buf(), Arc::clone(&found));
+        let work = move || {
+            let mut reel = match Pictures::open(&session) {
+                Ok(Some(pictures)) => Projection { pictures, session, shown: None, number: 0, tone: Tone::default() },
+                Ok(None) => return,
+                Err(error) => {
+                    *locked(&told) = Some(Found::trouble(0.0, chain(&error)));
+                    return wake();
+                }
+            };
+            while let Some((tone, t_s)) = newest(&wanted) {
+                if reel.tone != tone {
+                    (reel.tone, reel.shown) = (tone, None);
+                }
+                let found = reel.find(t_s);
+                *locked(&told) = Some(found);
+                wake();
+            }
+        };
+        // If no thread can be created, there is no picture.
+        Builder::new().name("projector".to_owned()).spawn(work).ok();
+        Self { wishes, asked: (Tone::default(), f64::NAN), found }
+    }
+
+    /// Shows this moment, s since the session began, so.
+    pub(super) fn show(&mut self, tone: Tone, t_s: f64) {
+        if self.asked != (tone, t_s) {
+            self.asked = (tone, t_s);
+            self.wishes.send(self.asked).ok();
+        }
+    }
+
+    pub(super) fn found(&self) -> Option<Found> {
+        locked(&self.found).clone()
+    }
+}
+
+/// The newest wish; waits for one. `None` when the window has gone.
+fn newest(wanted: &Receiver<(Tone, f64)>) -> Option<(Tone, f64)> {
+    let first = wanted.recv().ok()?;
+    Some(wanted.try_iter().last().unwrap_or(first))
+}
+
+impl Found {
+    const fn trouble(asked_s: f64, why: String) -> Self {
+        let (picture, damage, came_s) = (None, None, None);
+        Self { asked_s, came_s, picture, damage, poses: [None; SIDES], trouble: Some(why) }
+    }
+
+    /// As of a feed at that moment; why there is nothing to see.
+    pub(super) fn look(&self) -> Result<Look<Arc<Picture>>, Option<&str>> {
+        let Some(came_s) = self.came_s.filter(|_| self.picture.is_some() || self.damage.is_some()) else {
+            return Err(self.trouble.as_deref());
+        };
+        let age = Duration::from_secs_f64((self.asked_s - came_s).max(0.0));
+        let standing = match &self.damage {
+            Some(damage) => Standing::Wrong(Wrong::Damaged(damage.clone())),
+            None if age > FROZEN => Standing::Wrong(Wrong::Frozen(age)),
+            None => Standing::Live,
+        };
+        let picture = self.picture.clone();
+        Ok(Look { picture, standing, age: Some(age), rate_hz: 0.0, work: Duration::ZERO })
+    }
+}
+
+struct Projection {
+    pictures: Pictures,
+    session: PathBuf,
+    /// The picture that was decoded last, and its time, ns.
+    shown: Option<(u64, Found)>,
+    number: u64,
+    tone: Tone,
+}
+
+impl Projection {
+    fn find(&mut self, t_s: f64) -> Found {
+        let recorded = match self.pictures.at(t_s) {
+            Ok(Some(recorded)) => recorded,
+            Ok(None) => return Found { trouble: None, ..Found::trouble(t_s, String::new()) },
+            Err(error) => return Found::trouble(t_s, chain(&error)),
+        };
+        if let Some((_, shown)) = self.shown.as_ref().filter(|(time_ns, _)| *time_ns == recorded.time_ns) {
+            return Found { asked_s: t_s, ..shown.clone() };
+        }
+        let found = self.decoded(t_s, &recorded);
+        self.shown = Some((recorded.time_ns, found.clone()));
+        found
+    }
+
+    fn decoded(&mut self, t_s: f64, recorded: &Recorded) -> Found {
+        let came_s = recorded.time_ns.saturating_sub(self.pictures.begin_ns()) as f64 / 1e9;
+        let (picture, damage) = match jpeg::decode(&recorded.data) {
+            Ok(picture) => (Some(picture), None),
+            Err(damage) => (self.whole_before(recorded.time_ns), Some(damage)),
+        };
+        let picture = picture.map(|mut picture| {
+            self.tone.apply(&mut picture);
+            self.number += 1;
+            (self.number, Arc::new(picture))
+        });
+        let poses = self.poses(recorded.time_ns);
+        Found { asked_s: t_s, came_s: Some(came_s), picture, damage, poses, trouble: None }
+    }
+
+    /// As then, the last whole one stays where one is damaged.
+    fn whole_before(&mut self, time_ns: u64) -> Option<Picture> {
+        let mut before_ns = time_ns;
+        for _ in 0..TRIED_MOST {
+            let t_s = before_ns.saturating_sub(self.pictures.begin_ns()).checked_sub(1)? as f64 / 1e9;
+            let recorded = self.pictures.at(t_s).ok()??;
+            if let Ok(picture) = jpeg::decode(&recorded.data) {
+                return Some(picture);
+            }
+            before_ns = recorded.time_ns.min(before_ns - 1);
+        }
+        None
+    }
+
+    /// Where the tips were then; none where that is not plotted or cannot be read.
+    fn poses(&self, time_ns: u64) -> [Option<Pose>; SIDES] {
+        let (reader, times_ns) = (self.pictures.reader(), time_ns.saturating_sub(TICK_NS)..time_ns.saturating_add(1));
+        Side::ALL.map(|side| {
+            let mut pose = None;
+            let read = plotted::each_tick(reader, &self.session, side, times_ns.clone(), |tick| {
+                pose = Some(Pose { tip_m: tick.tip_m, measured_n: tick.measured_n });
+                Ok::<_, PlottedError>(())
+            });
+            read.ok().and(pose)
+        })
+    }
+}

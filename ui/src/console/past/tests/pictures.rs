@@ -1,0 +1,183 @@
+//! The recorded picture of a moment: read by the code of its time that is in the picture itself.
+
+use std::sync::Arc;
+
+use nima_endoscope::{Picture, jpeg, time_code};
+use nima_recording::{
+    messages::foxglove::{CompressedImage, Timestamp, encoding},
+    session::Writer,
+};
+use nima_session::pictures::PICTURE_TOPIC;
+use prost::Message as _;
+
+use super::*;
+use crate::console::theme;
+
+const SQUARE_PX: usize = 8;
+const SIZE_PX: [usize; 2] = [256, 24];
+/// Time between two pictures, ns, and from when no more come, s.
+const PERIOD_NS: u64 = 33_333_333;
+const STOPS_S: f64 = 4.0;
+
+/// A picture that shows this time (us).
+fn coded(time_us: u64) -> Vec<u8> {
+    let mut rgb = vec![120; 3 * SIZE_PX[0] * SIZE_PX[1]];
+    time_code::draw(time_us, SQUARE_PX, &mut rgb, SIZE_PX[0]);
+    jpeg::encode(&rgb, SIZE_PX, 90)
+}
+
+fn code_of(picture: &Picture) -> u64 {
+    let brightness = |x: usize, y: usize| picture.rgba[4 * (picture.size_px[0] * y + x) + 1];
+    time_code::read(SQUARE_PX, brightness).expect("a sound code")
+}
+
+/// The session with pictures as a camera would have sent them, up to four seconds, one of them damaged; and when it began, ns.
+fn with_pictures(from: &Path, to: &Path, damaged: u64) -> u64 {
+    let reader = Reader::open(from).unwrap();
+    let begin_ns = plotted::beginning_ns(&reader).unwrap();
+    let mut writer = Writer::create(to, "nima test").unwrap();
+    for (name, entries) in reader.metadata().unwrap() {
+        writer.metadata(&name, &entries).unwrap();
+    }
+    for one in reader.attachments() {
+        writer.attachment(&one.name, &one.media_type, one.log_time_ns, &reader.attachment(one).unwrap()).unwrap();
+    }
+    let channel = writer.channel(PICTURE_TOPIC, encoding::<CompressedImage>()).unwrap();
+    let mut channels = std::collections::BTreeMap::new();
+    for channel in reader.channels() {
+        channels.insert(channel.id, writer.channel(&channel.topic, channel.encoding.clone()).unwrap());
+    }
+    let mut number = 0;
+    for message in reader.messages(&[], 0..u64::MAX) {
+        let message = message.unwrap();
+        let time_ns = begin_ns + 5_000_000 + number * PERIOD_NS;
+        if message.log_time_ns() >= time_ns && time_ns < begin_ns + (STOPS_S * 1e9) as u64 {
+            let mut data = coded(time_ns / 1000);
+            if number == damaged {
+                data.truncate(data.len() / 2);
+            }
+            let timestamp = Some(Timestamp::of_ns(time_ns));
+            let picture =
+                CompressedImage { timestamp, data, format: "jpeg".to_owned(), frame_id: "endoscope".to_owned() };
+            writer.message(channel, time_ns, &picture.encode_to_vec()).unwrap();
+            number += 1;
+        }
+        writer.message(channels[&message.channel()], message.log_time_ns(), message.data()).unwrap();
+    }
+    writer.finish().unwrap();
+    begin_ns
+}
+
+/// One frame of the picture; all words in it.
+fn drawn(past: &mut Past) -> String {
+    let context = Context::default();
+    theme::apply(&context);
+    let (eyes, live) = (&mut past.panels.eyes, past.live.as_ref().unwrap());
+    let mut output = context.run_ui(egui::RawInput::default(), |ui| eyes.ui(ui, live));
+    output.textures_delta.clear();
+    let mut all = String::new();
+    output.shapes.iter().for_each(|clipped| texts(&clipped.shape, &mut all));
+    all
+}
+
+/// Draws until the picture is that of the moment on the screen.
+fn shown(past: &mut Past) -> Option<Arc<Picture>> {
+    let began = Instant::now();
+    loop {
+        past.step(0.0, false);
+        if past.live.is_some() {
+            // Only what a frame asks for is found.
+            drawn(past);
+            if let Some(found) = past.panels.eyes.projected(past.shown_s()) {
+                return found.0;
+            }
+        }
+        assert!(began.elapsed() < TIMEOUT, "no picture at {} s: {:?}", past.shown_s(), past.panels.eyes);
+        thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Time between the moment on the screen and the time that is in its picture, s.
+fn behind_s(past: &mut Past, begin_ns: u64) -> Option<f64> {
+    let picture = shown(past)?;
+    Some(past.shown_s() - (code_of(&picture) as f64 - begin_ns as f64 / 1e3) / 1e6)
+}
+
+#[test]
+fn the_picture_of_a_moment_is_that_of_the_frame_before_it_also_while_it_is_played() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, filmed] = ["session.mcap", "filmed.mcap"].map(|name| folder.path().join(name));
+    record(&path, "bimanual", 6.5, |_| None);
+    let begin_ns = with_pictures(&path, &filmed, 45);
+    let mut past = open(&filmed);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    assert!(past.panels.eyes.is_on());
+    let frame_s = PERIOD_NS as f64 / 1e9;
+    let is_in_time = |behind_s: f64| (-1e-5..frame_s + 1e-5).contains(&behind_s);
+    for t_s in [3.9, 0.005, 0.8, 2.0005, 1.234, 0.039, 3.0] {
+        settled(&mut past, t_s);
+        let behind_s = behind_s(&mut past, begin_ns).unwrap();
+        assert!(is_in_time(behind_s), "at {t_s} s the picture is {behind_s} s old");
+    }
+    settled(&mut past, 2.5);
+    past.toggle();
+    for _ in 0..50 {
+        let before = past.shown_s();
+        past.step(0.02, false);
+        until(&mut past, "went on", |past| past.shown_s() > before);
+        let behind_s = behind_s(&mut past, begin_ns).unwrap();
+        assert!(is_in_time(behind_s), "at {} s the picture is {behind_s} s old", past.shown_s());
+    }
+    past.toggle();
+    // A damaged one is told, and the last whole one stays.
+    settled(&mut past, 0.005 + 45.5 * frame_s);
+    let behind_s = behind_s(&mut past, begin_ns).unwrap();
+    assert!((frame_s..2.0 * frame_s).contains(&behind_s), "{behind_s} s");
+    // Frozen then is frozen now; and where none came for two seconds, there is none.
+    settled(&mut past, 5.0);
+    assert!((0.99..1.04).contains(&self::behind_s(&mut past, begin_ns).unwrap()));
+    settled(&mut past, 6.3);
+    assert!(shown(&mut past).is_none());
+}
+
+#[test]
+fn a_session_without_pictures_shows_the_drawn_field() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", 1.0, |_| None);
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    assert!(!past.panels.eyes.is_on());
+}
+
+#[test]
+fn the_words_over_a_recorded_picture_are_those_of_its_moment() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, filmed] = ["session.mcap", "filmed.mcap"].map(|name| folder.path().join(name));
+    record(&path, "bimanual", 6.5, |_| None);
+    with_pictures(&path, &filmed, u64::MAX);
+    let mut past = open(&filmed);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    let words = |past: &mut Past, t_s: f64| {
+        settled(past, t_s);
+        shown(past);
+        drawn(past)
+    };
+    let live = words(&mut past, 3.0);
+    assert!(live.contains("Recorded picture, ") && live.contains(" ms old then"), "{live}");
+    let frozen = words(&mut past, 4.8);
+    assert!(frozen.contains("Picture is frozen: nothing new for 0."), "{frozen}");
+    let none = words(&mut past, 6.4);
+    assert!(none.contains("No picture came in the two seconds before this moment"), "{none}");
+}
+
+fn texts(shape: &egui::Shape, all: &mut String) {
+    match shape {
+        egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| texts(shape, all)),
+        egui::Shape::Text(text) => {
+            all.push_str(text.galley.text());
+            all.push('\n');
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,215 @@
+//! The endoscope of the chosen rig: its address is typed, tried at once, and written into the rig's file.
+
+use std::{
+    path::Path,
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+use egui::{Button, ColorImage, Context, Label, TextEdit, TextureHandle, TextureOptions, Ui, vec2};
+use nima_core::calibration::frames::RigChange;
+use nima_endoscope::{Address, Feed, Look, Picture, Standing};
+use nima_machine::config::{Endoscope, RigConfig, change_rig};
+
+use super::{answer_ui, trouble_ui};
+use crate::console::{chain, eyes::wrong_told, text, widgets::small};
+
+/// An address is tried so long after the last key.
+const TYPED: Duration = Duration::from_millis(500);
+/// Folder of the user's rigs within that of the user's data.
+const RIGS: &str = "rigs";
+/// The key of the address in a rig file, and its table.
+const URL: &str = "endoscope.url";
+const TABLE: &str = "endoscope";
+
+/// State of the card.
+#[derive(Default)]
+pub(super) struct EndoscopeCard {
+    /// Of the chosen rig, as its file has it.
+    of_rig: Option<Endoscope>,
+    typed: String,
+    /// When the last key was pressed, if that was not tried yet.
+    typed_at: Option<Instant>,
+    tried: Option<Tried>,
+    preview: Option<TextureHandle>,
+    number: u64,
+}
+
+/// What came of an address.
+enum Tried {
+    /// It is open, or is being opened.
+    Feed(Feed),
+    /// Why it cannot be used.
+    Refused(String),
+}
+
+impl std::fmt::Debug for EndoscopeCard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("card").field("typed", &self.typed).finish_non_exhaustive()
+    }
+}
+
+impl EndoscopeCard {
+    /// Another rig is chosen, or the page is opened.
+    pub(super) fn choose(&mut self, rig: Option<&RigConfig>) {
+        let of_rig = rig.and_then(|rig| rig.endoscope.clone());
+        let typed = of_rig.as_ref().map(|endoscope| endoscope.url.clone()).unwrap_or_default();
+        let typed_at = (!typed.is_empty()).then(Instant::now);
+        *self = Self { of_rig, typed, typed_at, ..Self::default() };
+    }
+
+    /// Nobody looks at the page: no camera is kept open.
+    pub(super) fn close(&mut self) {
+        self.tried = None;
+        self.typed_at = None;
+    }
+
+    /// Draws the card. `running` is how it stands with the picture of the rig that runs, and its address: that one is not opened twice.
+    /// Returns true when the address is to be written.
+    pub(super) fn ui(&mut self, ui: &mut Ui, running: Option<(&str, &[String; 2])>) -> bool {
+        let width = ui.available_width();
+        let field = TextEdit::singleline(&mut self.typed).hint_text(text::start::ENDOSCOPE_HINT);
+        let field = ui.add_sized(vec2(width, 28.0), field);
+        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, text::start::ENDOSCOPE_ADDRESS));
+        if field.changed() {
+            self.typed_at = Some(Instant::now());
+            (self.tried, self.preview) = (None, None);
+        }
+        let address = self.typed.trim().to_owned();
+        match running.filter(|(url, _)| *url == address) {
+            Some((_, [told, cure])) => {
+                self.close();
+                outcome_ui(ui, told, cure);
+            }
+            None if address.is_empty() => {
+                self.close();
+                ui.add(Label::new(small(text::start::NO_ENDOSCOPE)).wrap());
+            }
+            None => {
+                self.try_it(ui.ctx(), &address);
+                self.tried_ui(ui, width);
+            }
+        }
+        let before = self.of_rig.as_ref().map_or("", |endoscope| endoscope.url.as_str());
+        let words = if address.is_empty() { text::start::ENDOSCOPE_REMOVE } else { text::start::ENDOSCOPE_USE };
+        let button = ui.add_enabled(address != before, Button::new(words).min_size(vec2(width, 32.0)));
+        button.on_hover_text(text::start::ENDOSCOPE_USE_HOVER).clicked()
+    }
+
+    /// Tries what was typed, once nobody types.
+    fn try_it(&mut self, ctx: &Context, address: &str) {
+        let Some(typed_at) = self.typed_at else {
+            // After the rig that has it has ended.
+            if self.tried.is_none() {
+                self.typed_at = Some(Instant::now());
+            }
+            return;
+        };
+        let rest = TYPED.saturating_sub(typed_at.elapsed());
+        if !rest.is_zero() {
+            return ctx.request_repaint_after(rest);
+        }
+        self.typed_at = None;
+        let wakes = ctx.clone();
+        let parsed = address.parse::<Address>().map_err(|error| error.to_string());
+        let feed = parsed.and_then(|address| {
+            Feed::start(address, None, move || wakes.request_repaint()).map_err(|error| error.to_string())
+        });
+        self.tried = Some(feed.map_or_else(Tried::Refused, Tried::Feed));
+    }
+
+    fn tried_ui(&mut self, ui: &mut Ui, width: f32) {
+        let look = match &self.tried {
+            None => return drop(ui.label(small(text::start::ENDOSCOPE_TYPING))),
+            Some(Tried::Refused(why)) => {
+                return outcome_ui(ui, &text::eyes::refused(why), text::start::ENDOSCOPE_FORMS);
+            }
+            Some(Tried::Feed(feed)) => feed.look(Instant::now()),
+        };
+        match &look.standing {
+            Standing::Opening => drop(ui.label(small(text::start::ENDOSCOPE_OPENING))),
+            Standing::Live | Standing::Still => {
+                let size_px = look.picture.as_ref().map_or([0; 2], |(_, picture)| picture.size_px);
+                let rate_hz = (look.standing == Standing::Live).then_some(look.rate_hz);
+                answer_ui(ui, true, &text::start::endoscope_sends(size_px, rate_hz));
+            }
+            Standing::Wrong(wrong) => {
+                let [told, cure] = wrong_told(wrong);
+                outcome_ui(ui, &told, &cure);
+            }
+            Standing::Lost(trouble) => outcome_ui(ui, &trouble.to_string(), trouble.cure()),
+        }
+        self.preview_ui(ui, &look, width);
+    }
+
+    /// The picture, small.
+    fn preview_ui(&mut self, ui: &mut Ui, look: &Look<Arc<Picture>>, width: f32) {
+        let Some((number, picture)) = &look.picture else { return };
+        if self.preview.is_none() || self.number != *number {
+            let image = ColorImage::from_rgba_premultiplied(picture.size_px, &picture.rgba);
+            match &mut self.preview {
+                Some(texture) => texture.set(image, TextureOptions::LINEAR),
+                None => self.preview = Some(ui.ctx().load_texture("tried", image, TextureOptions::LINEAR)),
+            }
+            self.number = *number;
+        }
+        let Some(texture) = &self.preview else { return };
+        let [columns, rows] = picture.size_px.map(|side| side.max(1) as f32);
+        ui.add(egui::Image::new((texture.id(), vec2(width, width * rows / columns))));
+    }
+
+    /// Writes the address into the file of this rig, or of a copy if it is built in; without one, takes the endoscope out of it. Returns the
+    /// path of the file.
+    pub(super) fn write(&self, rig: &str, folder: Option<&Path>) -> Result<String, String> {
+        let folder = folder.ok_or(text::start::NO_FOLDER)?;
+        let address = self.typed.trim();
+        let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
+        let before = self.of_rig.as_ref().map(|endoscope| quoted(&endoscope.url));
+        let change = match address {
+            "" => RigChange { key: TABLE.to_owned(), before, after: None },
+            _ => RigChange { key: URL.to_owned(), before, after: Some(quoted(address)) },
+        };
+        let (path, _) = change_rig(rig, &folder.join(RIGS), &[change]).map_err(|error| chain(&error))?;
+        Ok(path.display().to_string())
+    }
+}
+
+/// What is wrong and what to do; only the first where all is well.
+fn outcome_ui(ui: &mut Ui, told: &str, cure: &str) {
+    if cure.is_empty() {
+        answer_ui(ui, true, told);
+    } else {
+        trouble_ui(ui, text::start::ENDOSCOPE, told, cure);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn card(rig: &str, typed: &str) -> EndoscopeCard {
+        let mut card = EndoscopeCard::default();
+        card.choose(Some(&RigConfig::load(rig).unwrap()));
+        typed.clone_into(&mut card.typed);
+        card
+    }
+
+    #[test]
+    fn an_address_is_written_into_the_users_own_rig_and_taken_out_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let url = "http://192.168.10.7:8080/a \"b\"";
+        let path = card("simulated", url).write("simulated", Some(folder.path())).unwrap();
+        let rig = RigConfig::load(&path).unwrap();
+        assert_eq!(rig.endoscope, Some(Endoscope { url: url.to_owned(), ..Endoscope::default() }));
+        assert_eq!(RigConfig::load("simulated").unwrap().endoscope, None, "what is built in stays");
+        // What else is known of the endoscope stays with a new address.
+        let text = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(&path, text + "mirror = true\n").unwrap();
+        assert_eq!(card(&path, "film.mjpeg").write(&path, Some(folder.path())).unwrap(), path);
+        let endoscope = RigConfig::load(&path).unwrap().endoscope.unwrap();
+        assert!(endoscope.mirror && endoscope.url == "film.mjpeg");
+        card(&path, "  ").write(&path, Some(folder.path())).unwrap();
+        assert_eq!(RigConfig::load(&path).unwrap().endoscope, None);
+        assert_eq!(card(&path, "x").write(&path, None), Err(text::start::NO_FOLDER.to_owned()));
+    }
+}

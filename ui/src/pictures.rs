@@ -1,0 +1,77 @@
+//! The endoscope's pictures on their way into a session.
+
+use nima_endoscope::{Address, Compressed, Feed, Reel, ReelEnd, Standing};
+use nima_machine::config::RigConfig;
+use nima_session::{
+    pictures::{PictureSource, Taken},
+    recorder::Recorder,
+};
+
+/// Hands the pictures of a reel to a recording.
+#[derive(Debug)]
+struct OfEndoscope(ReelEnd);
+
+/// As Foxglove names the format.
+const JPEG: &str = "jpeg";
+
+impl PictureSource for OfEndoscope {
+    fn picture(&mut self) -> Option<Taken> {
+        // A reel has JPEGs only.
+        let Compressed { bytes, arrived, stamp_s, .. } = self.0.take()?;
+        Some(Taken { arrived, camera_s: stamp_s, format: JPEG, data: bytes })
+    }
+
+    fn dropped(&self) -> u64 {
+        self.0.dropped()
+    }
+}
+
+/// The rig has an endoscope whose picture is recorded.
+pub(crate) fn are_recorded(rig: &RigConfig) -> bool {
+    rig.endoscope.as_ref().is_some_and(|endoscope| endoscope.record)
+}
+
+/// Lets the recording of a loop on this rig take the pictures of this reel, if they are to be recorded.
+pub(crate) fn film(recorder: &Recorder, rig: &RigConfig, reel: &Reel) {
+    if are_recorded(rig) {
+        recorder.film(Box::new(OfEndoscope(reel.end())));
+    }
+}
+
+/// Reads the pictures for a recording alone: nobody shows them.
+#[derive(Debug)]
+pub(crate) struct Filming {
+    feed: Option<Feed>,
+    /// Why there are none.
+    refused: Option<String>,
+}
+
+impl Filming {
+    /// Begins, if the pictures of this rig are to be recorded.
+    pub(crate) fn start(recorder: &Recorder, rig: &RigConfig) -> Option<Self> {
+        let endoscope = rig.endoscope.as_ref().filter(|endoscope| endoscope.record)?;
+        let size_px = endoscope.camera.map(|camera| camera.size_px);
+        let started = endoscope.url.parse::<Address>().map_err(|error| error.to_string());
+        let started =
+            started.and_then(|address| Feed::start(address, size_px, || ()).map_err(|error| error.to_string()));
+        let (feed, refused) = match started {
+            Ok(feed) => (Some(feed), None),
+            Err(why) => (None, Some(why)),
+        };
+        if let Some(feed) = &feed {
+            let reel = Reel::default();
+            feed.record_to(reel.clone());
+            film(recorder, rig, &reel);
+        }
+        Some(Self { feed, refused })
+    }
+
+    /// Why no pictures are recorded now.
+    pub(crate) fn trouble(&self) -> Option<String> {
+        let lost = || match self.feed.as_ref()?.standing(std::time::Instant::now()) {
+            Standing::Lost(trouble) => Some(format!("{trouble}: {}", trouble.cure())),
+            _ => None,
+        };
+        self.refused.clone().or_else(lost)
+    }
+}

@@ -62,7 +62,8 @@ impl Bench {
         let path = folder.join("theatre.toml");
         let rig = file.save(&path).unwrap();
         let name = path.display().to_string();
-        let plan = Plan { rig, ..plan("peg_transfer") };
+        // Idle: an instrument that does its task would be at a corner only by chance.
+        let plan = Plan { rig, engage: false, ..plan("peg_transfer") };
         let (kept, running) = (folder.to_path_buf(), name.clone());
         let console = shown(&plan, size, move |app| {
             let mut settings = Kept::open(&kept);

@@ -13,6 +13,7 @@ pub mod deadlines;
 pub mod desk;
 pub mod diary;
 pub mod door;
+mod double_buffer;
 pub mod eyes;
 pub mod frames;
 pub mod help;

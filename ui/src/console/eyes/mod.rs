@@ -17,9 +17,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use egui::{
-    Align2, Color32, ColorImage, Context, Key, Mesh, Painter, Rect, Sense, TextureHandle, TextureOptions, Ui, vec2,
-};
+use egui::{Align2, Color32, Context, Key, Mesh, Painter, Rect, Sense, Ui, vec2};
 use nalgebra::Vector3;
 use nima_endoscope::{Address, Camera, FROZEN, Feed, Look, Picture, Reel, Standing, Wrong};
 use nima_machine::{
@@ -38,7 +36,7 @@ use self::{
     poses::{Pose, Poses},
     projector::Projector,
 };
-use super::{live::Live, settings::PictureSettings, text, theme};
+use super::{double_buffer::DoubleBuffer, live::Live, settings::PictureSettings, text, theme};
 
 /// A camera whose check was worse is not trusted, in widths of the picture: 10 px of 1280. Its forces are drawn with this opacity.
 const OFF: f64 = 10.0 / 1280.0;
@@ -84,9 +82,7 @@ pub struct Eyes {
     /// Why its address cannot be used.
     refused: Option<String>,
     camera: Option<Camera>,
-    /// Two, so that one is shown while the other is written.
-    textures: [Option<TextureHandle>; 2],
-    front: usize,
+    screen: DoubleBuffer,
     /// Number of the picture on the screen.
     number: u64,
     shown: Option<(Instant, String)>,
@@ -306,20 +302,14 @@ impl Eyes {
     ) -> Option<Vec<Half>> {
         let (number, picture) = look.picture.as_ref()?;
         if self.number != *number {
-            let image = ColorImage::from_rgba_premultiplied(picture.size_px, &picture.rgba);
-            self.front = 1 - self.front;
-            let back = &mut self.textures[self.front];
-            match back {
-                Some(texture) => texture.set(image, TextureOptions::LINEAR),
-                None => *back = Some(ctx.load_texture("endoscope", image, TextureOptions::LINEAR)),
-            }
+            self.screen.upload(ctx, "endoscope", picture);
             self.number = *number;
         }
         let endoscope = self.wanted.as_ref()?;
         let shown = Shown { view: self.view, crop: self.settings.crop(), aim: self.aim };
         let halves = halves::halves(view, picture.size_px, endoscope, shown, self.camera.as_ref());
         for half in &halves {
-            let mut mesh = Mesh::with_texture(self.textures[self.front].as_ref()?.id());
+            let mut mesh = Mesh::with_texture(self.screen.id()?);
             for (corner, at) in half.place.corners() {
                 let colour = if shows_past { PAST } else { Color32::WHITE };
                 mesh.vertices.push(egui::epaint::Vertex { pos: at, uv: corner, color: colour });

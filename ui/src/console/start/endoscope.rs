@@ -6,13 +6,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-use egui::{Button, ColorImage, Context, Label, TextEdit, TextureHandle, TextureOptions, Ui, vec2};
+use egui::{Button, Context, Label, TextEdit, Ui, vec2};
 use nima_core::calibration::frames::RigChange;
 use nima_endoscope::{Address, Feed, Look, Picture, Standing};
 use nima_machine::config::{Endoscope, RigConfig, change_rig};
 
 use super::{answer_ui, trouble_ui};
-use crate::console::{chain, eyes::wrong_told, text, widgets::small};
+use crate::console::{chain, double_buffer::DoubleBuffer, eyes::wrong_told, text, widgets::small};
 
 /// An address is tried so long after the last key.
 const TYPED: Duration = Duration::from_millis(500);
@@ -31,7 +31,7 @@ pub(super) struct EndoscopeCard {
     /// When the last key was pressed, if that was not tried yet.
     typed_at: Option<Instant>,
     tried: Option<Tried>,
-    preview: Option<TextureHandle>,
+    preview: DoubleBuffer,
     number: u64,
 }
 
@@ -73,7 +73,7 @@ impl EndoscopeCard {
         field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, text::start::ENDOSCOPE_ADDRESS));
         if field.changed() {
             self.typed_at = Some(Instant::now());
-            (self.tried, self.preview) = (None, None);
+            (self.tried, self.preview) = (None, DoubleBuffer::default());
         }
         let address = self.typed.trim().to_owned();
         match running.filter(|(url, _)| *url == address) {
@@ -145,17 +145,13 @@ impl EndoscopeCard {
     /// The picture, small.
     fn preview_ui(&mut self, ui: &mut Ui, look: &Look<Arc<Picture>>, width: f32) {
         let Some((number, picture)) = &look.picture else { return };
-        if self.preview.is_none() || self.number != *number {
-            let image = ColorImage::from_rgba_premultiplied(picture.size_px, &picture.rgba);
-            match &mut self.preview {
-                Some(texture) => texture.set(image, TextureOptions::LINEAR),
-                None => self.preview = Some(ui.ctx().load_texture("tried", image, TextureOptions::LINEAR)),
-            }
+        if self.preview.id().is_none() || self.number != *number {
+            self.preview.upload(ui.ctx(), "tried", picture);
             self.number = *number;
         }
-        let Some(texture) = &self.preview else { return };
+        let Some(texture) = self.preview.id() else { return };
         let [columns, rows] = picture.size_px.map(|side| side.max(1) as f32);
-        ui.add(egui::Image::new((texture.id(), vec2(width, width * rows / columns))));
+        ui.add(egui::Image::new((texture, vec2(width, width * rows / columns))));
     }
 
     /// Writes the address into the file of this rig, or of a copy if it is built in; without one, takes the endoscope out of it. Returns the

@@ -66,7 +66,7 @@ pub(super) struct CameraWizard {
     detector: Option<Detector>,
     /// The newest picture that was looked at, until it is uploaded.
     fresh: Option<Arc<Picture>>,
-    shown: Option<Shown>,
+    shown: Shown,
     sight: Option<Sight>,
     last: Option<Result<Offer, Unseen>>,
     session: Option<Session>,
@@ -100,7 +100,7 @@ impl Default for CameraWizard {
             rig: None,
             detector: None,
             fresh: None,
-            shown: None,
+            shown: Shown::default(),
             sight: None,
             last: None,
             session: None,
@@ -305,7 +305,7 @@ impl Wizard for CameraWizard {
 
     fn may_go_on(&self, _: &Binding) -> Result<(), &'static str> {
         match self.frame.step {
-            CHECK if self.endoscope.is_none() || self.shown.is_none() => Err(text::wizards::NEEDS_CHECKS),
+            CHECK if self.endoscope.is_none() || !self.shown.has_come() => Err(text::wizards::NEEDS_CHECKS),
             CHECK => self.board().map(|_| ()).map_err(|_| texts::NEEDS_BOARD),
             VIEWS | LENS if self.keeps_lens => Ok(()),
             VIEWS if self.views() >= 4 => Ok(()),
@@ -327,7 +327,7 @@ impl Wizard for CameraWizard {
 
     fn step_ui(&mut self, ui: &mut Ui, _: &Binding) -> Option<Wish> {
         if let Some(picture) = self.fresh.take() {
-            self.shown = Some(Shown::upload(self.shown.take(), ui, &picture));
+            self.shown.upload(ui, &picture);
         }
         match self.frame.step {
             CHECK => self.check_ui(ui),

@@ -1,10 +1,10 @@
 //! The endoscope's picture with the corners that were found in it, and the map of where corners have been.
 
-use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, StrokeKind, TextureHandle, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use nima_camera::{CELLS, Coverage, Sight};
 use nima_endoscope::{Board, Picture};
 
-use crate::console::{text::camera as texts, theme};
+use crate::console::{double_buffer::DoubleBuffer, text::camera as texts, theme};
 
 /// Width of the map, points.
 pub(super) const MAP_WIDTH: f32 = 190.0;
@@ -12,21 +12,21 @@ const CORNER: f32 = 3.0;
 const MARK: f32 = 11.0;
 
 /// The picture that is shown, uploaded.
+#[derive(Default)]
 pub(super) struct Shown {
-    pub(super) texture: TextureHandle,
-    pub(super) size_px: [usize; 2],
+    screen: DoubleBuffer,
+    size_px: Option<[usize; 2]>,
 }
 
 impl Shown {
-    pub(super) fn upload(before: Option<Self>, ui: &Ui, picture: &Picture) -> Self {
-        let image = egui::ColorImage::from_rgba_premultiplied(picture.size_px, &picture.rgba);
-        let options = egui::TextureOptions::LINEAR;
-        let mut texture = match before {
-            Some(shown) => shown.texture,
-            None => return Self { texture: ui.ctx().load_texture("board", image, options), size_px: picture.size_px },
-        };
-        texture.set(image, options);
-        Self { texture, size_px: picture.size_px }
+    pub(super) fn upload(&mut self, ui: &Ui, picture: &Picture) {
+        self.screen.upload(ui.ctx(), "board", picture);
+        self.size_px = Some(picture.size_px);
+    }
+
+    /// There is a picture.
+    pub(super) const fn has_come(&self) -> bool {
+        self.size_px.is_some()
     }
 }
 
@@ -34,19 +34,19 @@ impl Shown {
 pub(super) fn picture_ui(
     ui: &mut Ui,
     width: f32,
-    shown: Option<&Shown>,
+    shown: &Shown,
     sight: Option<(&Sight, &Board)>,
     marked: Option<usize>,
     words: &str,
 ) {
-    let [across, down] = shown.map_or([16, 9], |shown| shown.size_px).map(|side| side as f32);
+    let [across, down] = shown.size_px.unwrap_or([16, 9]).map(|side| side as f32);
     let (rect, response) = ui.allocate_exact_size(vec2(width, width * down / across), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, words));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 0.0, Color32::BLACK);
-    let Some(shown) = shown else { return };
+    let Some(texture) = shown.screen.id() else { return };
     let uv = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-    painter.image(shown.texture.id(), rect, uv, Color32::WHITE);
+    painter.image(texture, rect, uv, Color32::WHITE);
     let Some((sight, board)) = sight else { return };
     let at = |index: usize| {
         let place_px = sight.corners_px.get(index)?;

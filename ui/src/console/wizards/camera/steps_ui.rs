@@ -31,7 +31,7 @@ impl CameraWizard {
             ui.label(texts::TASK);
             ui.add_space(6.0);
             check_line(ui, texts::CHECK_ENDOSCOPE, self.endoscope.is_some(), texts::NO_ENDOSCOPE);
-            check_line(ui, texts::CHECK_PICTURE, self.shown.is_some(), texts::NO_PICTURE);
+            check_line(ui, texts::CHECK_PICTURE, self.shown.has_come(), texts::NO_PICTURE);
         });
         let free = self.views() == 0 && self.touches.is_empty();
         card(ui, texts::BOARD_TITLE, texts::BOARD_HOVER, |ui| {
@@ -169,7 +169,7 @@ impl CameraWizard {
         let sight = if marked.is_some() { self.base.as_ref() } else { self.sight.as_ref() };
         let board = self.board().ok();
         let words = texts::picture(&self.told());
-        picture_ui(ui, width, self.shown.as_ref(), sight.zip(board.as_ref()), marked, &words);
+        picture_ui(ui, width, &self.shown, sight.zip(board.as_ref()), marked, &words);
     }
 }
 

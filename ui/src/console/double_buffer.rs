@@ -1,0 +1,47 @@
+//! A moving picture on the screen.
+
+use egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
+use nima_endoscope::Picture;
+
+/// Two textures, of which one is shown while the other is written: where the processor draws, a frame before may still be read by its threads, and
+/// would show parts of both pictures.
+#[derive(Default)]
+pub(in crate::console) struct DoubleBuffer {
+    textures: [Option<TextureHandle>; 2],
+    front: usize,
+}
+
+impl DoubleBuffer {
+    /// Uploads a picture, which is shown from now on.
+    pub(in crate::console) fn upload(&mut self, ctx: &Context, name: &str, picture: &Picture) {
+        let image = ColorImage::from_rgba_premultiplied(picture.size_px, &picture.rgba);
+        self.front = 1 - self.front;
+        let back = &mut self.textures[self.front];
+        match back {
+            Some(texture) => texture.set(image, TextureOptions::LINEAR),
+            None => *back = Some(ctx.load_texture(name, image, TextureOptions::LINEAR)),
+        }
+    }
+
+    /// What is shown; `None` before the first picture.
+    pub(in crate::console) fn id(&self) -> Option<TextureId> {
+        self.textures[self.front].as_ref().map(TextureHandle::id)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_shown_before_is_not_written() {
+        let (ctx, mut buffer) = (Context::default(), DoubleBuffer::default());
+        let picture = Picture { size_px: [1, 1], rgba: vec![255; 4] };
+        assert_eq!(buffer.id(), None);
+        let ids = [(); 4].map(|()| {
+            buffer.upload(&ctx, "test", &picture);
+            buffer.id().unwrap()
+        });
+        assert!(ids[0] != ids[1] && ids[..2] == ids[2..], "{ids:?}");
+    }
+}

@@ -52,7 +52,7 @@ struct Shared {
     /// What is not decoded yet.
     waiting: Mutex<Waiting>,
     came: Condvar,
-    /// Where every picture goes too, as it came.
+    /// Where every JPEG goes too, as it came.
     reel: OnceLock<Reel>,
     /// How the pictures are prepared.
     tone: Mutex<Tone>,
@@ -65,6 +65,8 @@ struct State {
     is_still: bool,
     /// It has been open.
     opened: bool,
+    /// What came last.
+    format: Option<Format>,
     newest: Option<Newest>,
     shown: u64,
     /// When somebody last took the picture, and when one was last decoded.
@@ -100,6 +102,7 @@ impl Feed {
             trouble: None,
             is_still: false,
             opened: false,
+            format: None,
             newest: None,
             shown: 0,
             looked: None,
@@ -121,7 +124,7 @@ impl Feed {
         Ok(feed)
     }
 
-    /// Every picture from now on goes into this reel too. The first one that is given counts.
+    /// Every JPEG from now on goes into this reel too. The first reel that is given counts.
     pub fn record_to(&self, reel: Reel) {
         self.shared.reel.set(reel).ok();
     }
@@ -129,6 +132,11 @@ impl Feed {
     /// Pictures are prepared with this tone from now on, the newest one too.
     pub fn set_tone(&self, tone: Tone) {
         *locked(&self.shared.tone) = tone;
+    }
+
+    /// Whether what comes goes into a reel, which has JPEGs only.
+    pub fn is_recordable(&self) -> bool {
+        locked(&self.shared.state).format.is_none_or(|format| format == Format::Jpeg)
     }
 
     /// How it stands with the picture at this moment, for who does not show it.
@@ -219,7 +227,7 @@ impl Shared {
                     {
                         let mut state = locked(&self.state);
                         state.watch.arrived(&compressed);
-                        (state.trouble, state.opened) = (None, true);
+                        (state.trouble, state.opened, state.format) = (None, true, Some(compressed.format));
                     }
                     if let Some(reel) = self.reel.get() {
                         reel.put(&compressed);

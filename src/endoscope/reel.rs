@@ -14,7 +14,7 @@ use crate::{Compressed, Format};
 const BYTES_MOST: usize = 32 << 20;
 const PICTURES_MOST: usize = 256;
 
-/// Where a [`crate::Feed`] puts every picture, as it came; the other end is a [`ReelEnd`]. Without one, nothing is kept.
+/// Where a [`crate::Feed`] puts every JPEG, as it came; the other end is a [`ReelEnd`]. Without one, nothing is kept.
 #[derive(Clone, Debug, Default)]
 pub struct Reel(Arc<Shared>);
 
@@ -144,6 +144,14 @@ mod tests {
         assert_eq!(std::iter::from_fn(|| end.take()).count(), PICTURES_MOST);
         reel.put(&picture(3));
         assert_eq!(end.take().unwrap().bytes.len(), 3);
+    }
+
+    #[test]
+    fn what_is_no_jpeg_is_not_put_in() {
+        let reel = Reel::default();
+        let end = reel.end();
+        reel.put(&Compressed { format: Format::H264 { is_key: true }, ..picture(1) });
+        assert!(end.take().is_none() && end.dropped() == 0);
     }
 
     #[test]

@@ -10,6 +10,8 @@ use nima_machine::config::{RigConfig, RigFile};
 use nima_world::emulators::endoscope::held;
 use serde_json::Value;
 
+use crate::one_line;
+
 fn nima(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_nima")).args(arguments).output().unwrap()
 }
@@ -30,13 +32,6 @@ fn pictures(folder: &Path, poses: impl Iterator<Item = u32>) {
         let rgb: Vec<u8> = greys.iter().flat_map(|grey| [*grey as u8; 3]).collect();
         std::fs::write(folder.join(format!("{number:02}.jpg")), jpeg::encode(&rgb, [640, 360], 92)).unwrap();
     }
-}
-
-fn one_line(output: &Output) -> String {
-    let text = String::from_utf8(output.stderr.clone()).unwrap();
-    assert!(!output.status.success());
-    assert_eq!(text.lines().count(), 1, "{text}");
-    text
 }
 
 #[test]

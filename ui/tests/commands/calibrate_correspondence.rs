@@ -11,6 +11,8 @@ use nima_core::{calibration::correspondence::CorrespondenceRecord, frames::from_
 use nima_recording::store;
 use serde_json::Value;
 
+use crate::one_line;
+
 fn calibrate(pairs: &Path, more: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_nima"))
         .args(["calibrate", "correspondence", pairs.to_str().unwrap()])
@@ -38,13 +40,6 @@ fn pairs(folder: &Path, shape: impl Fn(Vector3<f64>) -> Vector3<f64>) -> PathBuf
     let path = folder.join("pairs.csv");
     std::fs::write(&path, text).unwrap();
     path
-}
-
-fn one_line(output: &Output) -> String {
-    let text = String::from_utf8(output.stderr.clone()).unwrap();
-    assert!(!output.status.success());
-    assert_eq!(text.lines().count(), 1, "{text}");
-    text
 }
 
 #[test]

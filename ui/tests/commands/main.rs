@@ -25,3 +25,11 @@ mod study;
 mod two_machines;
 mod user_study;
 mod words;
+
+/// What a command that failed says, in its one line.
+fn one_line(output: &std::process::Output) -> String {
+    let text = String::from_utf8(output.stderr.clone()).unwrap();
+    assert!(!output.status.success());
+    assert_eq!(text.lines().count(), 1, "{text}");
+    text
+}

@@ -359,11 +359,15 @@ impl Eyes {
         let figures = self.shown.as_ref().map(|(_, figures)| figures.as_str()).unwrap_or_default();
         let half = self.wanted.as_ref().map_or("", |endoscope| halves::told(self.view, endoscope));
         let weak = theme::DARK.text_weak;
+        let is_wanted = self.wanted.as_ref().is_some_and(|wanted| wanted.record);
+        let is_missing = is_wanted && self.feed.as_ref().is_some_and(|feed| !feed.is_recordable());
+        let unrecorded = if is_missing { text::eyes::NOT_RECORDED } else { "" };
         let lines = [
             (figures, 15.0, theme::DARK.text),
             (forces.as_str(), 13.0, weak),
             (half, 13.0, weak),
             (zoom.as_str(), 13.0, weak),
+            (unrecorded, 13.0, weak),
         ];
         let inner = view.shrink(MARGIN);
         let corners = [

@@ -52,7 +52,7 @@ struct Shared {
     /// What is not decoded yet.
     waiting: Mutex<Waiting>,
     came: Condvar,
-    /// Where every JPEG goes too, as it came.
+    /// Where what is compressed goes too, as it came.
     reel: OnceLock<Reel>,
     /// How the pictures are prepared.
     tone: Mutex<Tone>,
@@ -124,7 +124,7 @@ impl Feed {
         Ok(feed)
     }
 
-    /// Every JPEG from now on goes into this reel too. The first reel that is given counts.
+    /// Every JPEG and every picture of H.264 from now on goes into this reel too. The first reel that is given counts.
     pub fn record_to(&self, reel: Reel) {
         self.shared.reel.set(reel).ok();
     }
@@ -134,9 +134,9 @@ impl Feed {
         *locked(&self.shared.tone) = tone;
     }
 
-    /// Whether what comes goes into a reel, which has JPEGs only.
+    /// Whether what comes goes into a reel, which has nothing that is not compressed.
     pub fn is_recordable(&self) -> bool {
-        locked(&self.shared.state).format.is_none_or(|format| format == Format::Jpeg)
+        !matches!(locked(&self.shared.state).format, Some(Format::Raw(_)))
     }
 
     /// How it stands with the picture at this moment, for who does not show it.
@@ -220,6 +220,9 @@ impl Shared {
             state.is_still = source.is_still();
         }
         *locked(&self.waiting) = Waiting::default();
+        if let Some(reel) = self.reel.get() {
+            reel.begins();
+        }
         while !self.wanted.has_ended() {
             match source.next() {
                 Ok(None) => {}

@@ -11,15 +11,11 @@ mod tests;
 mod units;
 
 #[cfg(not(feature = "h264"))]
-pub(crate) use absent::Decoder;
-#[cfg(not(feature = "h264"))]
-pub use absent::Encoder;
+pub use absent::{Decoder, Encoder};
 #[cfg(feature = "h264")]
-pub(crate) use engine::Decoder;
-#[cfg(feature = "h264")]
-pub use engine::Encoder;
-pub(crate) use units::{Splitter, is_key};
-pub use units::{kind, nal_units};
+pub use engine::{Decoder, Encoder};
+pub(crate) use units::Splitter;
+pub use units::{is_key, kind, nal_units};
 
 use crate::Picture;
 
@@ -32,9 +28,9 @@ const ABSENT: &str =
 
 /// A picture that was decoded.
 #[derive(Debug)]
-pub(crate) struct Taken {
+pub struct Taken {
     /// Its pixels, where somebody wants them.
-    pub(crate) picture: Option<Picture>,
+    pub picture: Option<Picture>,
     /// The same for the same picture.
-    pub(crate) hash: u64,
+    pub hash: u64,
 }

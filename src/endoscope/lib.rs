@@ -2,7 +2,7 @@
 //!
 //! A [`Feed`] takes an [`Address`] (motion JPEG over HTTP, a camera of this computer, a file, a folder), opens it on threads of its own, opens it again when it is lost,
 //! and has the newest picture ready, with its age, its rate and what is wrong with it ([`Standing`]). Nobody waits for anybody: a picture that
-//! nobody took is replaced by the next one; a recording gets all JPEGs as they came, over a [`Reel`]. [`Camera`] is where the endoscope looks and how its lens bends the picture; [`Board`] is what it
+//! nobody took is replaced by the next one; a recording gets all that is compressed as it came, over a [`Reel`]. [`Camera`] is where the endoscope looks and how its lens bends the picture; [`Board`] is what it
 //! is calibrated with; [`time_code`], [`jpeg::encode`] and [`board::Portrait`] are for emulators and tests. Bad input (a picture or an answer that is cut off, too large, of another format) is a
 //! [`Trouble`] with its cure, or a [`Damage`] of one picture. Knows no loop, device or window.
 //!

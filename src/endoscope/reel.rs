@@ -14,7 +14,7 @@ use crate::{Compressed, Format};
 const BYTES_MOST: usize = 32 << 20;
 const PICTURES_MOST: usize = 256;
 
-/// Where a [`crate::Feed`] puts every JPEG, as it came; the other end is a [`ReelEnd`]. Without one, nothing is kept.
+/// Where a [`crate::Feed`] puts every JPEG and every picture of a stream of H.264, as it came; the other end is a [`ReelEnd`]. Without one, nothing is kept.
 #[derive(Clone, Debug, Default)]
 pub struct Reel(Arc<Shared>);
 
@@ -39,6 +39,8 @@ struct Waiting {
     pictures: VecDeque<Compressed>,
     bytes: usize,
     rests: bool,
+    /// Until a picture of the stream comes that refers to no other.
+    skips: bool,
 }
 
 impl Shared {
@@ -48,6 +50,18 @@ impl Shared {
 }
 
 impl Waiting {
+    /// Whether it would be understood: a picture of a stream only after all those since one that refers to no other.
+    fn understands(&mut self, format: Format) -> bool {
+        match format {
+            Format::Raw(_) => false,
+            Format::Jpeg => true,
+            Format::H264 { is_key } => {
+                self.skips &= !is_key;
+                !self.skips
+            }
+        }
+    }
+
     fn clear(&mut self) {
         self.pictures.clear();
         self.bytes = 0;
@@ -61,6 +75,7 @@ impl Reel {
         waiting.takers += 1;
         waiting.taker = Some(waiting.takers);
         waiting.clear();
+        waiting.skips = true;
         self.0.dropped.store(0, Ordering::Relaxed);
         ReelEnd { shared: Arc::clone(&self.0), number: waiting.takers }
     }
@@ -69,18 +84,24 @@ impl Reel {
     pub fn rest(&self, rests: bool) {
         let mut waiting = self.0.waiting();
         waiting.rests = rests;
+        waiting.skips |= rests;
     }
 
-    /// Puts a JPEG in, unless there is no room or nobody takes it. Never waits for the other end.
+    /// A new stream begins.
+    pub(crate) fn begins(&self) {
+        self.0.waiting().skips = true;
+    }
+
+    /// Puts a picture in, unless there is no room, nobody takes it, or it is not compressed. Never waits for the other end.
     pub(crate) fn put(&self, picture: &Compressed) {
         let mut waiting = self.0.waiting();
-        // A session has JPEGs only: a picture that refers to others, or is not compressed, would be something else there.
-        if waiting.taker.is_none() || waiting.rests || picture.format != Format::Jpeg {
+        if waiting.taker.is_none() || waiting.rests || !waiting.understands(picture.format) {
             return;
         }
         let length = picture.bytes.len();
         if waiting.pictures.len() >= PICTURES_MOST || waiting.bytes + length > BYTES_MOST {
             self.0.dropped.fetch_add(1, Ordering::Relaxed);
+            waiting.skips = true;
             return;
         }
         waiting.bytes += length;
@@ -121,6 +142,7 @@ mod tests {
     use std::time::Instant;
 
     use super::*;
+    use crate::{Colours, Layout, Raw};
 
     fn picture(length: usize) -> Compressed {
         Compressed::jpeg(vec![7; length], Instant::now(), None)
@@ -147,11 +169,35 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_jpeg_is_not_put_in() {
+    fn what_is_not_compressed_is_not_put_in() {
         let reel = Reel::default();
         let end = reel.end();
-        reel.put(&Compressed { format: Format::H264 { is_key: true }, ..picture(1) });
+        let raw = Raw { layout: Layout::Nv12, colours: Colours::usual([16, 16]), size_px: [16, 16], stride: 16 };
+        reel.put(&Compressed { format: Format::Raw(raw), ..picture(1) });
         assert!(end.take().is_none() && end.dropped() == 0);
+    }
+
+    #[test]
+    fn a_stream_is_put_in_from_a_picture_on_that_refers_to_no_other() {
+        let of = |length, is_key| Compressed { format: Format::H264 { is_key }, ..picture(length) };
+        let reel = Reel::default();
+        let end = reel.end();
+        let lengths = || -> Vec<usize> { std::iter::from_fn(|| end.take()).map(|taken| taken.bytes.len()).collect() };
+        [of(1, false), of(2, true), of(3, false)].iter().for_each(|picture| reel.put(picture));
+        assert_eq!(lengths(), [2, 3]);
+        reel.begins();
+        [of(4, false), of(5, true), of(6, false)].iter().for_each(|picture| reel.put(picture));
+        assert_eq!(lengths(), [5, 6], "the camera was opened again");
+        // One has no room: those that refer to it are left out too.
+        [of(7, true), of(33 << 20, false), of(8, false), of(9, true), of(10, false)]
+            .iter()
+            .for_each(|picture| reel.put(picture));
+        assert_eq!((lengths(), end.dropped()), (vec![7, 9, 10], 1));
+        reel.rest(true);
+        reel.put(&of(11, true));
+        reel.rest(false);
+        [of(12, false), of(13, true)].iter().for_each(|picture| reel.put(picture));
+        assert_eq!(lengths(), [13]);
     }
 
     #[test]

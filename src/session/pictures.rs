@@ -6,16 +6,18 @@
 use std::{fmt::Debug, ops::Range, path::Path, time::Instant};
 
 use nima_recording::{
-    messages::foxglove::CompressedImage,
-    session::{Message, ReadError, Reader},
+    messages::foxglove::{CompressedImage, CompressedVideo},
+    session::{ChannelId, Message, ReadError, Reader},
 };
 use prost::Message as _;
 use serde::{Deserialize, Serialize};
 
 use crate::plotted::beginning_ns;
 
-/// Topic of the pictures.
+/// Topic of pictures that stand alone.
 pub const PICTURE_TOPIC: &str = "endoscope/picture";
+/// Topic of the pictures of a stream, which refer to those before them.
+pub const VIDEO_TOPIC: &str = "endoscope/video";
 /// Topic of what is told of each of them.
 pub const PICTURE_FIGURES_TOPIC: &str = "endoscope/figures";
 /// The kind of its messages, and their description.
@@ -38,6 +40,30 @@ const BACK_NS: u64 = 2_000_000_000;
 /// And read this far ahead, ns, so that a session that is played is not searched for each of them.
 const AHEAD_NS: u64 = 500_000_000;
 
+/// How far back a decoder may have to begin, ns: cameras send a picture that refers to no other every second or two, some every ten.
+const LEAD_NS: u64 = 12_000_000_000;
+/// A decoder goes on where it stands rather than begin anew over so much, ns.
+const GOES_ON_NS: u64 = 1_000_000_000;
+
+/// How a picture is compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coding {
+    /// JPEG: it stands alone.
+    Jpeg,
+    /// H.264, annex B: it may refer to those before it.
+    H264,
+}
+
+impl Coding {
+    /// As Foxglove names it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Jpeg => "jpeg",
+            Self::H264 => "h264",
+        }
+    }
+}
+
 /// A picture on its way into a recording.
 #[derive(Clone, Debug)]
 pub struct Taken {
@@ -45,8 +71,8 @@ pub struct Taken {
     pub arrived: Instant,
     /// The camera's own stamp, s since some moment of its own.
     pub camera_s: Option<f64>,
-    /// Its format, as Foxglove names it: `jpeg`.
-    pub format: &'static str,
+    /// What its bytes are.
+    pub coding: Coding,
     /// As it came.
     pub data: Vec<u8>,
 }
@@ -79,8 +105,8 @@ pub struct PictureFigures {
 pub struct Recorded {
     /// When it arrived, ns since 1970 as all times of a session.
     pub time_ns: u64,
-    /// Its format: `jpeg`.
-    pub format: String,
+    /// What its bytes are.
+    pub coding: Coding,
     /// As it came.
     pub data: Vec<u8>,
 }
@@ -118,13 +144,16 @@ impl LoopClock {
 
 /// Whether pictures are recorded in this session.
 pub fn are_recorded(reader: &Reader) -> bool {
-    reader.channels().iter().any(|channel| channel.topic == PICTURE_TOPIC && channel.messages != Some(0))
+    let is_one = |topic: &str| [PICTURE_TOPIC, VIDEO_TOPIC].contains(&topic);
+    reader.channels().iter().any(|channel| is_one(&channel.topic) && channel.messages != Some(0))
 }
 
 /// The pictures of a session, by time. Keeps those around the last one that was asked for.
 pub struct Pictures {
     reader: Reader,
     begin_ns: u64,
+    /// The channel of the stream, where there is one.
+    video: Option<ChannelId>,
     kept: Vec<Message>,
     /// The times that are kept, ns.
     times_ns: Range<u64>,
@@ -147,7 +176,8 @@ impl Pictures {
             return Ok(None);
         }
         let begin_ns = beginning_ns(&reader)?;
-        Ok(Some(Self { reader, begin_ns, kept: Vec::new(), times_ns: 0..0 }))
+        let video = reader.channels().iter().find(|channel| channel.topic == VIDEO_TOPIC).map(|channel| channel.id);
+        Ok(Some(Self { reader, begin_ns, video, kept: Vec::new(), times_ns: 0..0 }))
     }
 
     /// When the session began, ns.
@@ -170,19 +200,50 @@ impl Pictures {
         if wanted_ns.start < self.times_ns.start || wanted_ns.end > self.times_ns.end {
             let times_ns = wanted_ns.start..wanted_ns.end.saturating_add(AHEAD_NS);
             self.times_ns = 0..0;
-            self.kept = self.reader.messages(&[PICTURE_TOPIC], times_ns.clone()).collect::<Result<_, _>>()?;
+            self.kept =
+                self.reader.messages(&[PICTURE_TOPIC, VIDEO_TOPIC], times_ns.clone()).collect::<Result<_, _>>()?;
             self.times_ns = times_ns;
         }
         let newest = self.kept.partition_point(|message| message.log_time_ns() <= time_ns);
         let newest = newest.checked_sub(1).and_then(|newest| self.kept.get(newest));
-        Ok(newest.filter(|message| wanted_ns.contains(&message.log_time_ns())).and_then(read))
+        Ok(newest.filter(|message| wanted_ns.contains(&message.log_time_ns())).and_then(|message| self.read(message)))
     }
-}
 
-/// The picture of a message; `None` for one of another program that is none.
-fn read(message: &Message) -> Option<Recorded> {
-    let CompressedImage { data, format, .. } = CompressedImage::decode(message.data()).ok()?;
-    Some(Recorded { time_ns: message.log_time_ns(), format, data })
+    /// The pictures of the stream that a decoder needs to show the one of this time, which is the last of them: those since one that refers to no
+    /// other (`is_key` tells which), or those after `known_ns`, where the decoder stands, if that is shortly before. Empty where it cannot be shown.
+    ///
+    /// # Errors
+    /// [`ReadError`] if they cannot be read.
+    pub fn leading_to(
+        &self,
+        time_ns: u64,
+        known_ns: Option<u64>,
+        is_key: impl Fn(&[u8]) -> bool,
+    ) -> Result<Vec<Recorded>, ReadError> {
+        let goes_on = known_ns.filter(|known_ns| *known_ns < time_ns && time_ns - known_ns <= GOES_ON_NS);
+        let from_ns = goes_on.map_or(time_ns.saturating_sub(LEAD_NS), |known_ns| known_ns + 1);
+        let messages = self.reader.messages(&[VIDEO_TOPIC], from_ns..time_ns.saturating_add(1));
+        let read = messages.filter_map(|message| message.map(|message| self.read(&message)).transpose());
+        let mut pictures = read.collect::<Result<Vec<_>, _>>()?;
+        if goes_on.is_none() {
+            match pictures.iter().rposition(|picture| is_key(&picture.data)) {
+                Some(first) => drop(pictures.drain(..first)),
+                None => pictures.clear(),
+            }
+        }
+        Ok(pictures)
+    }
+
+    /// The picture of a message; `None` for one of another program that is none.
+    fn read(&self, message: &Message) -> Option<Recorded> {
+        let time_ns = message.log_time_ns();
+        if Some(message.channel()) == self.video {
+            let CompressedVideo { data, format, .. } = CompressedVideo::decode(message.data()).ok()?;
+            return (format == Coding::H264.name()).then_some(Recorded { time_ns, coding: Coding::H264, data });
+        }
+        let CompressedImage { data, .. } = CompressedImage::decode(message.data()).ok()?;
+        Some(Recorded { time_ns, coding: Coding::Jpeg, data })
+    }
 }
 
 #[cfg(test)]

@@ -14,7 +14,10 @@ use nima_recording::session::Reader;
 use nima_session::{
     anonymous, cut,
     outlet::Destination,
-    pictures::{PICTURE_FIGURES_TOPIC, PICTURE_TOPIC, PictureFigures, PictureSource, Pictures, Taken},
+    pictures::{
+        Coding, PICTURE_FIGURES_TOPIC, PICTURE_TOPIC, PictureFigures, PictureSource, Pictures, Recorded, Taken,
+        VIDEO_TOPIC,
+    },
     plotted::beginning_ns,
     recorder::{Progress, Recorder},
     report::Figures,
@@ -47,7 +50,7 @@ fn taken(arrived: Instant, time_us: u64) -> Taken {
     let mut rgb = vec![90; 3 * SIZE_PX[0] * SIZE_PX[1]];
     time_code::draw(time_us, SQUARE_PX, &mut rgb, SIZE_PX[0]);
     let data = jpeg::encode(&rgb, SIZE_PX, 90);
-    Taken { arrived, camera_s: Some(time_us as f64 * 1e-6), format: "jpeg", data }
+    Taken { arrived, camera_s: Some(time_us as f64 * 1e-6), coding: Coding::Jpeg, data }
 }
 
 impl PictureSource for Camera {
@@ -69,15 +72,44 @@ impl PictureSource for Camera {
     }
 }
 
-/// Three seconds of a simulated rig on the real clock, with pictures.
-fn record(path: &Path) -> Progress {
+/// A camera that sends a stream: every tenth picture refers to no other.
+#[derive(Debug)]
+struct Streaming {
+    due: Instant,
+    number: u8,
+}
+
+const KEY_EVERY: u8 = 10;
+
+fn is_key(data: &[u8]) -> bool {
+    data[0] % KEY_EVERY == 0
+}
+
+impl PictureSource for Streaming {
+    fn picture(&mut self) -> Option<Taken> {
+        let now = Instant::now();
+        if now < self.due {
+            return None;
+        }
+        self.due = now + PERIOD;
+        self.number += 1;
+        Some(Taken { arrived: now, camera_s: None, coding: Coding::H264, data: vec![self.number - 1; 100] })
+    }
+
+    fn dropped(&self) -> u64 {
+        0
+    }
+}
+
+/// Some seconds of a simulated rig on the real clock, with pictures.
+fn record(path: &Path, camera: impl PictureSource + 'static, seconds: u64) -> Progress {
     let _alone = real_time::alone();
     let plan = plan("peg_transfer");
     let (tap, end) = tap();
     let recorder = Recorder::start(Destination::file(path), about(), plan.origin(), end).unwrap();
-    recorder.film(Box::new(Camera::new()));
+    recorder.film(Box::new(camera));
     let handle = runtime::start(Assembly { tap: Some(tap), ..plan.assembly().unwrap() }).unwrap();
-    thread::sleep(Duration::from_secs(3));
+    thread::sleep(Duration::from_secs(seconds));
     handle.stop_and_join().unwrap();
     recorder.finish().unwrap()
 }
@@ -86,7 +118,7 @@ fn record(path: &Path) -> Progress {
 fn pictures_are_recorded_as_they_came_at_the_loops_time_of_their_arrival() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    let progress = record(&path);
+    let progress = record(&path, Camera::new(), 3);
     let reader = Reader::open(&path).unwrap();
     let begin_ns = beginning_ns(&reader).unwrap();
     let figures: Vec<PictureFigures> = reader
@@ -103,7 +135,7 @@ fn pictures_are_recorded_as_they_came_at_the_loops_time_of_their_arrival() {
     for (time_ns, told) in times_ns.iter().zip(&figures) {
         let t_s = (time_ns - begin_ns) as f64 / 1e9;
         let recorded = pictures.at(t_s).unwrap().unwrap();
-        assert_eq!((recorded.time_ns, recorded.format.as_str()), (*time_ns, "jpeg"));
+        assert_eq!((recorded.time_ns, recorded.coding), (*time_ns, Coding::Jpeg));
         assert_eq!(recorded.data.len() as u64, told.bytes);
         let decoded = jpeg::decode(&recorded.data).unwrap();
         let code_us = time_code::read(SQUARE_PX, |x, y| decoded.rgba[4 * (SIZE_PX[0] * y + x)]).unwrap();
@@ -138,4 +170,40 @@ fn pictures_are_recorded_as_they_came_at_the_loops_time_of_their_arrival() {
     anonymous::write(&reader, &known, &(0..u64::MAX), &shared, &asked).unwrap();
     assert!(Pictures::open(&shared).unwrap().is_none(), "a picture shows whose it is");
     assert!(Reader::open(&shared).unwrap().channels().iter().all(|channel| !channel.topic.contains("endoscope")));
+}
+
+#[test]
+fn a_stream_is_recorded_and_a_picture_comes_with_those_that_it_refers_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, Streaming { due: Instant::now(), number: 0 }, 2);
+    let reader = Reader::open(&path).unwrap();
+    let begin_ns = beginning_ns(&reader).unwrap();
+    let times_ns: Vec<u64> =
+        reader.messages(&[VIDEO_TOPIC], 0..u64::MAX).map(|message| message.unwrap().log_time_ns()).collect();
+    assert!(times_ns.len() > 15, "{} pictures", times_ns.len());
+    let mut pictures = Pictures::open(&path).unwrap().unwrap();
+    // Those before the loop's first tick are none of the session's.
+    let first = pictures.at((times_ns[0] - begin_ns) as f64 / 1e9).unwrap().unwrap().data[0];
+    let numbers = |found: Vec<Recorded>| found.iter().map(|picture| picture.data[0]).collect::<Vec<u8>>();
+    for (number, time_ns) in (first..).zip(&times_ns) {
+        let newest = pictures.at((time_ns - begin_ns) as f64 / 1e9).unwrap().unwrap();
+        assert_eq!((newest.time_ns, newest.coding, newest.data[0]), (*time_ns, Coding::H264, number));
+        let key = number - number % KEY_EVERY;
+        let needed: Vec<u8> = if key < first { Vec::new() } else { (key..=number).collect() };
+        assert_eq!(numbers(pictures.leading_to(*time_ns, None, is_key).unwrap()), needed);
+        // A decoder that stands three pictures before goes on; one that stands behind, or long before, begins anew.
+        if let Some(three_before) = usize::from(number - first).checked_sub(3) {
+            let known_ns = Some(times_ns[three_before]);
+            assert_eq!(
+                numbers(pictures.leading_to(*time_ns, known_ns, is_key).unwrap()),
+                [number - 2, number - 1, number]
+            );
+        }
+        for known_ns in [time_ns + 1, time_ns.saturating_sub(1_500_000_000)] {
+            assert_eq!(numbers(pictures.leading_to(*time_ns, Some(known_ns), is_key).unwrap()), needed);
+        }
+    }
+    let read = Figures::read(&path).unwrap().pictures.unwrap();
+    assert_eq!((read.count, read.bytes), (times_ns.len() as u64, 100 * times_ns.len() as u64));
 }

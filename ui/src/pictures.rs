@@ -1,9 +1,9 @@
 //! The endoscope's pictures on their way into a session.
 
-use nima_endoscope::{Address, Compressed, Feed, Reel, ReelEnd, Standing};
+use nima_endoscope::{Address, Compressed, Feed, Format, Reel, ReelEnd, Standing};
 use nima_machine::config::RigConfig;
 use nima_session::{
-    pictures::{PictureSource, Taken},
+    pictures::{Coding, PictureSource, Taken},
     recorder::Recorder,
 };
 
@@ -11,14 +11,12 @@ use nima_session::{
 #[derive(Debug)]
 struct OfEndoscope(ReelEnd);
 
-/// As Foxglove names the format.
-const JPEG: &str = "jpeg";
-
 impl PictureSource for OfEndoscope {
     fn picture(&mut self) -> Option<Taken> {
-        // A reel has JPEGs only.
-        let Compressed { bytes, arrived, stamp_s, .. } = self.0.take()?;
-        Some(Taken { arrived, camera_s: stamp_s, format: JPEG, data: bytes })
+        let Compressed { format, bytes, arrived, stamp_s, .. } = self.0.take()?;
+        // A reel has nothing that is not compressed.
+        let coding = if matches!(format, Format::H264 { .. }) { Coding::H264 } else { Coding::Jpeg };
+        Some(Taken { arrived, camera_s: stamp_s, coding, data: bytes })
     }
 
     fn dropped(&self) -> u64 {

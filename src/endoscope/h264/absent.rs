@@ -7,11 +7,15 @@ use crate::Damage;
 
 /// Says that it is not there.
 #[derive(Debug, Default)]
-pub(crate) struct Decoder(());
+pub struct Decoder(());
 
 impl Decoder {
+    /// Nothing comes of this: there is no such decoder.
+    ///
+    /// # Errors
+    /// Always: it was not built.
     #[expect(clippy::unused_self, reason = "as the real one")]
-    pub(crate) fn take(&mut self, _: &[u8], _: bool, _: bool) -> Result<Option<Taken>, Damage> {
+    pub fn take(&mut self, _: &[u8], _: bool, _: bool) -> Result<Option<Taken>, Damage> {
         Err(Damage::Undecodable { reason: ABSENT.to_owned() })
     }
 }

@@ -29,12 +29,18 @@ const ROW_OF: usize = 4;
 const KEY_EVERY: u32 = 30;
 
 /// Decodes the pictures of a stream one after the other.
-pub(crate) struct Decoder {
+pub struct Decoder {
     /// Made anew after a damage, so that nothing of it stays.
     inner: Option<decoder::Decoder>,
     colours: Option<Colours>,
     /// It begins with a picture that needs no other.
     waits: bool,
+}
+
+impl std::fmt::Debug for Decoder {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Decoder").field("waits", &self.waits).finish_non_exhaustive()
+    }
 }
 
 impl Default for Decoder {
@@ -45,7 +51,10 @@ impl Default for Decoder {
 
 impl Decoder {
     /// The next picture; nothing before the first that needs no other, or where one is not finished. Its pixels are made only if `wanted`.
-    pub(crate) fn take(&mut self, unit: &[u8], is_key: bool, wanted: bool) -> Result<Option<Taken>, Damage> {
+    ///
+    /// # Errors
+    /// What is wrong with it; the next one that needs no other is then the first.
+    pub fn take(&mut self, unit: &[u8], is_key: bool, wanted: bool) -> Result<Option<Taken>, Damage> {
         if self.waits && !is_key {
             return Ok(None);
         }

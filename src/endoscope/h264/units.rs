@@ -29,7 +29,7 @@ pub fn nal_units(unit: &[u8]) -> impl Iterator<Item = &[u8]> {
 }
 
 /// A decoder can begin with this picture.
-pub(crate) fn is_key(unit: &[u8]) -> bool {
+pub fn is_key(unit: &[u8]) -> bool {
     nal_units(unit).any(|nal| kind(nal) == KEY)
 }
 

@@ -26,7 +26,7 @@ use crate::{
     cut,
     journal::{Outline, outline},
     objects::{self, kind},
-    pictures::{PICTURE_FIGURES_TOPIC, PICTURE_TOPIC},
+    pictures::{PICTURE_FIGURES_TOPIC, PICTURE_TOPIC, VIDEO_TOPIC},
     recorder::JOURNAL_TOPIC,
     topics::{
         HAPPENING_LINE, HAPPENINGS_TOPIC, LOG_TOPIC, MARK_LINE, MARKS_TOPIC, RINGS_TOPIC, TASK_TOPIC, TIMES,
@@ -234,7 +234,7 @@ impl<'a> Reading<'a> {
 
     fn all(&mut self, figures: &mut Figures) {
         let topics: Vec<&str> = self.reader.channels().iter().map(|channel| channel.topic.as_str()).collect();
-        let drawn = ["frames", "arrows", RINGS_TOPIC, MARKS_TOPIC, PICTURE_TOPIC];
+        let drawn = ["frames", "arrows", RINGS_TOPIC, MARKS_TOPIC, PICTURE_TOPIC, VIDEO_TOPIC];
         let skipped = drawn.into_iter().chain(["right/poses", "left/poses", "right/jaws", "left/jaws", TASK_TOPIC]);
         let skipped: Vec<&str> = skipped.collect();
         let topics: Vec<&str> = topics.into_iter().filter(|topic| !skipped.contains(topic)).collect();

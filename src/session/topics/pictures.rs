@@ -2,7 +2,7 @@
 
 use nima_recording::{
     messages::{
-        foxglove::{self, CompressedImage, Timestamp},
+        foxglove::{self, CompressedImage, CompressedVideo, Timestamp},
         json_encoding,
     },
     session::WriteError,
@@ -12,7 +12,8 @@ use prost::Message as _;
 use crate::{
     outlet::{Channel, FileChannel, Outlet},
     pictures::{
-        FIGURES_NAME, FIGURES_SCHEMA, PICTURE_FIGURES_TOPIC, PICTURE_TOPIC, PictureFigures, PictureSource, Taken,
+        Coding, FIGURES_NAME, FIGURES_SCHEMA, PICTURE_FIGURES_TOPIC, PICTURE_TOPIC, PictureFigures, PictureSource,
+        Taken, VIDEO_TOPIC,
     },
 };
 
@@ -25,14 +26,16 @@ pub(crate) struct OfPictures {
     source: Box<dyn PictureSource>,
     /// The picture whose time has not come yet.
     waiting: Option<Taken>,
-    channels: Option<(FileChannel, Channel)>,
+    images: Option<FileChannel>,
+    video: Option<FileChannel>,
+    figures: Option<Channel>,
     number: u64,
     last_s: f64,
 }
 
 impl OfPictures {
     pub(crate) fn new(source: Box<dyn PictureSource>) -> Self {
-        Self { source, waiting: None, channels: None, number: 0, last_s: 0.0 }
+        Self { source, waiting: None, images: None, video: None, figures: None, number: 0, last_s: 0.0 }
     }
 
     /// How many were written, and how many found no room.
@@ -63,27 +66,39 @@ impl OfPictures {
     }
 
     fn write(&mut self, out: &mut Outlet, time_ns: u64, taken: Taken) -> Result<(), WriteError> {
-        let (pictures, figures) = match self.channels {
-            Some(channels) => channels,
-            None => *self.channels.insert((
-                out.file_channel(PICTURE_TOPIC, foxglove::encoding::<CompressedImage>())?,
-                out.channel(PICTURE_FIGURES_TOPIC, json_encoding(FIGURES_NAME, FIGURES_SCHEMA))?,
-            )),
-        };
-        let Taken { arrived: _, camera_s, format, data } = taken;
+        let Taken { arrived: _, camera_s, coding, data } = taken;
         let [number, dropped] = self.counts();
         let told =
             PictureFigures { number, bytes: data.len() as u64, dropped, camera_s: camera_s.filter(|s| s.is_finite()) };
-        let picture = CompressedImage {
-            timestamp: Some(Timestamp::of_ns(time_ns)),
-            data,
-            format: format.to_owned(),
-            frame_id: FRAME.to_owned(),
-        };
-        out.file_message(pictures, time_ns, &picture.encode_to_vec())?;
+        let (timestamp, format, frame_id) =
+            (Some(Timestamp::of_ns(time_ns)), coding.name().to_owned(), FRAME.to_owned());
+        match coding {
+            Coding::Jpeg => {
+                let open = || out.file_channel(PICTURE_TOPIC, foxglove::encoding::<CompressedImage>());
+                let channel = opened(&mut self.images, open)?;
+                let image = CompressedImage { timestamp, data, format, frame_id };
+                out.file_message(channel, time_ns, &image.encode_to_vec())?;
+            }
+            Coding::H264 => {
+                let open = || out.file_channel(VIDEO_TOPIC, foxglove::encoding::<CompressedVideo>());
+                let channel = opened(&mut self.video, open)?;
+                let picture = CompressedVideo { timestamp, frame_id, data, format };
+                out.file_message(channel, time_ns, &picture.encode_to_vec())?;
+            }
+        }
+        let open = || out.channel(PICTURE_FIGURES_TOPIC, json_encoding(FIGURES_NAME, FIGURES_SCHEMA));
+        let figures = opened(&mut self.figures, open)?;
         self.number += 1;
         // Numbers and names of fields always have a form in JSON.
         let told = serde_json::to_vec(&told).unwrap_or_default();
         out.message(figures, time_ns, &told)
+    }
+}
+
+/// A channel is there from its first message on.
+fn opened<C: Copy>(channel: &mut Option<C>, open: impl FnOnce() -> Result<C, WriteError>) -> Result<C, WriteError> {
+    match *channel {
+        Some(channel) => Ok(channel),
+        None => Ok(*channel.insert(open()?)),
     }
 }

@@ -247,8 +247,28 @@ pub struct CompressedImage {
     pub frame_id: String,
 }
 
+/// A picture of a stream: some refer to those before them.
+#[derive(Clone, PartialEq, Eq, Message)]
+pub struct CompressedVideo {
+    /// When.
+    #[prost(message, optional, tag = "1")]
+    pub timestamp: Option<Timestamp>,
+    /// In which frame, as in [`CompressedImage`].
+    #[prost(string, tag = "2")]
+    pub frame_id: String,
+    /// The bytes of this one picture; of H.264 as annex B has them, without pictures that refer to later ones.
+    #[prost(bytes = "vec", tag = "3")]
+    pub data: Vec<u8>,
+    /// Their format: `h264`.
+    #[prost(string, tag = "4")]
+    pub format: String,
+}
+
 impl Described for CompressedImage {
     const NAME: &'static str = "CompressedImage";
+}
+impl Described for CompressedVideo {
+    const NAME: &'static str = "CompressedVideo";
 }
 impl Described for FrameTransforms {
     const NAME: &'static str = "FrameTransforms";

@@ -68,6 +68,10 @@ pub(super) const SCHEMAS: &[Schema] = &[
         "CompressedImage",
         &[one("timestamp", 1, STAMP), one("data", 2, Bytes), one("format", 3, Text), one("frame_id", 4, Text)],
     ),
+    plain(
+        "CompressedVideo",
+        &[one("timestamp", 1, STAMP), one("frame_id", 2, Text), one("data", 3, Bytes), one("format", 4, Text)],
+    ),
     Schema {
         name: "Log",
         fields: &[

@@ -10,10 +10,10 @@ use std::{
     time::Duration,
 };
 
-use nima_endoscope::{Damage, FROZEN, Look, Picture, Standing, Tone, Wrong, jpeg};
+use nima_endoscope::{Damage, FROZEN, Look, Picture, Standing, Tone, Wrong, h264, jpeg};
 use nima_machine::rig::{SIDES, Side};
 use nima_session::{
-    pictures::{Pictures, Recorded},
+    pictures::{Coding, Pictures, Recorded},
     plotted::{self, PlottedError},
 };
 
@@ -60,7 +60,7 @@ impl Projector {
         let (session, told) = (session.to_path_buf(), Arc::clone(&found));
         let work = move || {
             let mut reel = match Pictures::open(&session) {
-                Ok(Some(pictures)) => Projection { pictures, session, shown: None, number: 0, tone: Tone::default() },
+                Ok(Some(pictures)) => Projection::of(pictures, session),
                 Ok(None) => return,
                 Err(error) => {
                     *locked(&told) = Some(Found::trouble(0.0, chain(&error)));
@@ -129,9 +129,45 @@ struct Projection {
     shown: Option<(u64, Found)>,
     number: u64,
     tone: Tone,
+    stream: Stream,
+}
+
+/// A stream's decoder, and the picture where it stands, ns.
+#[derive(Default)]
+struct Stream {
+    decoder: h264::Decoder,
+    stands_ns: Option<u64>,
+}
+
+impl Stream {
+    /// Shows the picture of this time: decodes all that it refers to.
+    fn show(&mut self, pictures: &Pictures, time_ns: u64) -> Result<Picture, Damage> {
+        let damaged = |reason: String| Damage::Undecodable { reason };
+        let units = pictures.leading_to(time_ns, self.stands_ns, h264::is_key);
+        let units = units.map_err(|error| damaged(chain(&error)))?;
+        let mut shown = Err(damaged("the picture that it builds upon is not in the session".to_owned()));
+        self.stands_ns = None;
+        for (left, unit) in (0..units.len()).rev().zip(&units) {
+            match self.decoder.take(&unit.data, h264::is_key(&unit.data), left == 0) {
+                Ok(taken) => {
+                    if let Some(picture) = taken.and_then(|taken| taken.picture) {
+                        shown = Ok(picture);
+                    }
+                }
+                Err(damage) => shown = Err(damage),
+            }
+        }
+        self.stands_ns = shown.is_ok().then_some(time_ns);
+        shown
+    }
 }
 
 impl Projection {
+    fn of(pictures: Pictures, session: PathBuf) -> Self {
+        let (tone, stream) = (Tone::default(), Stream::default());
+        Self { pictures, session, shown: None, number: 0, tone, stream }
+    }
+
     fn find(&mut self, t_s: f64) -> Found {
         let recorded = match self.pictures.at(t_s) {
             Ok(Some(recorded)) => recorded,
@@ -148,9 +184,14 @@ impl Projection {
 
     fn decoded(&mut self, t_s: f64, recorded: &Recorded) -> Found {
         let came_s = recorded.time_ns.saturating_sub(self.pictures.begin_ns()) as f64 / 1e9;
-        let (picture, damage) = match jpeg::decode(&recorded.data) {
-            Ok(picture) => (Some(picture), None),
-            Err(damage) => (self.whole_before(recorded.time_ns), Some(damage)),
+        let decoded = match recorded.coding {
+            Coding::Jpeg => jpeg::decode(&recorded.data),
+            Coding::H264 => self.stream.show(&self.pictures, recorded.time_ns),
+        };
+        let (picture, damage) = match (decoded, recorded.coding) {
+            (Ok(picture), _) => (Some(picture), None),
+            (Err(damage), Coding::Jpeg) => (self.whole_before(recorded.time_ns), Some(damage)),
+            (Err(damage), Coding::H264) => (None, Some(damage)),
         };
         let picture = picture.map(|mut picture| {
             self.tone.apply(&mut picture);

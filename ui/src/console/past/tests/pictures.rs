@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use nima_endoscope::{Picture, jpeg, time_code};
 use nima_recording::{
-    messages::foxglove::{CompressedImage, Timestamp, encoding},
-    session::Writer,
+    messages::foxglove::{CompressedImage, CompressedVideo, Timestamp, encoding},
+    session::{Encoding, Writer},
 };
-use nima_session::pictures::PICTURE_TOPIC;
+use nima_session::pictures::{PICTURE_TOPIC, VIDEO_TOPIC};
 use prost::Message as _;
 
 use super::*;
@@ -20,10 +20,10 @@ const PERIOD_NS: u64 = 33_333_333;
 const STOPS_S: f64 = 4.0;
 
 /// A picture that shows this time (us).
-fn coded(time_us: u64) -> Vec<u8> {
+fn pixels(time_us: u64) -> Vec<u8> {
     let mut rgb = vec![120; 3 * SIZE_PX[0] * SIZE_PX[1]];
     time_code::draw(time_us, SQUARE_PX, &mut rgb, SIZE_PX[0]);
-    jpeg::encode(&rgb, SIZE_PX, 90)
+    rgb
 }
 
 fn code_of(picture: &Picture) -> u64 {
@@ -31,8 +31,35 @@ fn code_of(picture: &Picture) -> u64 {
     time_code::read(SQUARE_PX, brightness).expect("a sound code")
 }
 
-/// The session with pictures as a camera would have sent them, up to four seconds, one of them damaged; and when it began, ns.
+/// The session with JPEGs as a camera would have sent them, up to four seconds, one of them damaged; and when it began, ns.
 fn with_pictures(from: &Path, to: &Path, damaged: u64) -> u64 {
+    with_messages(from, to, PICTURE_TOPIC, encoding::<CompressedImage>(), |number, time_ns| {
+        let mut data = jpeg::encode(&pixels(time_ns / 1000), SIZE_PX, 90);
+        if number == damaged {
+            data.truncate(data.len() / 2);
+        }
+        let (timestamp, frame_id) = (Some(Timestamp::of_ns(time_ns)), "endoscope".to_owned());
+        CompressedImage { timestamp, data, format: "jpeg".to_owned(), frame_id }.encode_to_vec()
+    })
+}
+
+/// The same as a stream, whose pictures come from `coded`.
+fn with_stream(from: &Path, to: &Path, mut coded: impl FnMut(u64, u64) -> Vec<u8>) -> u64 {
+    with_messages(from, to, VIDEO_TOPIC, encoding::<CompressedVideo>(), |number, time_ns| {
+        let (timestamp, frame_id) = (Some(Timestamp::of_ns(time_ns)), "endoscope".to_owned());
+        let data = coded(number, time_ns);
+        CompressedVideo { timestamp, frame_id, data, format: "h264".to_owned() }.encode_to_vec()
+    })
+}
+
+/// The session with these messages of pictures, which are asked for by number and time; and when it began, ns.
+fn with_messages(
+    from: &Path,
+    to: &Path,
+    topic: &str,
+    encoding: Encoding,
+    mut message_of: impl FnMut(u64, u64) -> Vec<u8>,
+) -> u64 {
     let reader = Reader::open(from).unwrap();
     let begin_ns = plotted::beginning_ns(&reader).unwrap();
     let mut writer = Writer::create(to, "nima test").unwrap();
@@ -42,7 +69,7 @@ fn with_pictures(from: &Path, to: &Path, damaged: u64) -> u64 {
     for one in reader.attachments() {
         writer.attachment(&one.name, &one.media_type, one.log_time_ns, &reader.attachment(one).unwrap()).unwrap();
     }
-    let channel = writer.channel(PICTURE_TOPIC, encoding::<CompressedImage>()).unwrap();
+    let channel = writer.channel(topic, encoding).unwrap();
     let mut channels = std::collections::BTreeMap::new();
     for channel in reader.channels() {
         channels.insert(channel.id, writer.channel(&channel.topic, channel.encoding.clone()).unwrap());
@@ -52,14 +79,7 @@ fn with_pictures(from: &Path, to: &Path, damaged: u64) -> u64 {
         let message = message.unwrap();
         let time_ns = begin_ns + 5_000_000 + number * PERIOD_NS;
         if message.log_time_ns() >= time_ns && time_ns < begin_ns + (STOPS_S * 1e9) as u64 {
-            let mut data = coded(time_ns / 1000);
-            if number == damaged {
-                data.truncate(data.len() / 2);
-            }
-            let timestamp = Some(Timestamp::of_ns(time_ns));
-            let picture =
-                CompressedImage { timestamp, data, format: "jpeg".to_owned(), frame_id: "endoscope".to_owned() };
-            writer.message(channel, time_ns, &picture.encode_to_vec()).unwrap();
+            writer.message(channel, time_ns, &message_of(number, time_ns)).unwrap();
             number += 1;
         }
         writer.message(channels[&message.channel()], message.log_time_ns(), message.data()).unwrap();
@@ -138,6 +158,55 @@ fn the_picture_of_a_moment_is_that_of_the_frame_before_it_also_while_it_is_playe
     assert!((0.99..1.04).contains(&self::behind_s(&mut past, begin_ns).unwrap()));
     settled(&mut past, 6.3);
     assert!(shown(&mut past).is_none());
+}
+
+/// A session of 4.5 s with a stream: open, read, and when it began, ns.
+fn streamed(folder: &Path, coded: impl FnMut(u64, u64) -> Vec<u8>) -> (Past, u64) {
+    let [path, filmed] = ["session.mcap", "filmed.mcap"].map(|name| folder.join(name));
+    record(&path, "bimanual", 4.5, |_| None);
+    let begin_ns = with_stream(&path, &filmed, coded);
+    let mut past = open(&filmed);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    (past, begin_ns)
+}
+
+#[cfg(feature = "h264")]
+#[test]
+fn a_recorded_stream_is_shown_at_every_moment_and_while_it_is_played() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut encoder = nima_endoscope::h264::Encoder::new(30.0).unwrap();
+    let coded = |number: u64, time_ns: u64| {
+        encoder.encode(&pixels(time_ns / 1000), SIZE_PX, number.is_multiple_of(45)).unwrap()
+    };
+    let (mut past, begin_ns) = streamed(folder.path(), coded);
+    assert!(past.panels.eyes.is_on());
+    let frame_s = PERIOD_NS as f64 / 1e9;
+    let is_in_time = |behind_s: f64| (-1e-5..frame_s + 1e-5).contains(&behind_s);
+    for t_s in [3.9, 0.8, 0.805, 2.0005, 0.039, 0.09, 3.0, 2.96, 3.95] {
+        settled(&mut past, t_s);
+        let behind_s = behind_s(&mut past, begin_ns).unwrap();
+        assert!(is_in_time(behind_s), "at {t_s} s the picture is {behind_s} s old");
+    }
+    settled(&mut past, 2.5);
+    past.toggle();
+    for _ in 0..50 {
+        let before = past.shown_s();
+        past.step(0.02, false);
+        until(&mut past, "went on", |past| past.shown_s() > before);
+        let behind_s = behind_s(&mut past, begin_ns).unwrap();
+        assert!(is_in_time(behind_s), "at {} s the picture is {behind_s} s old", past.shown_s());
+    }
+}
+
+#[cfg(not(feature = "h264"))]
+#[test]
+fn a_recorded_stream_says_which_program_shows_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut past, _) = streamed(folder.path(), |_, _| vec![0, 0, 0, 1, 0x65, 0x88, 1]);
+    settled(&mut past, 2.0);
+    shown(&mut past);
+    let words = drawn(&mut past);
+    assert!(words.contains("Picture is damaged") && words.contains("built without H.264"), "{words}");
 }
 
 #[test]

@@ -91,6 +91,7 @@ pub fn rig_file(devices: &Settings) -> RigFile {
     let tools = tracker.tools.iter().map(|tool| tool.display().to_string());
     file.set_all("devices.tracker.tools", tools);
     file.set("devices.pedal.source", &devices.pedal.as_ref().unwrap().source);
+    file.set("endoscope.url", format!("http://127.0.0.1:{}/", free_port()));
     assert_eq!(file.rig().unwrap().devices.as_ref(), Some(devices));
     file
 }

@@ -12,7 +12,7 @@ use nima_testing::real_time::{alone, judged, too_busy};
 use serde_json::Value;
 
 /// Ports of the embedded rig.
-const PORTS: [u16; 8] = [47130, 47100, 47101, 47131, 47110, 47111, 47140, 47120];
+const PORTS: [u16; 9] = [47130, 47100, 47101, 47131, 47110, 47111, 47140, 47120, 47160];
 
 /// The embedded emulated rig on ports that are free for TCP and UDP, so that it disturbs nobody.
 pub(crate) fn rig() -> String {

@@ -30,6 +30,8 @@ fn rig_file(folder: &Path, devices: &Settings) -> String {
     put("tissue_sensor.port", &devices.tissue_sensor.as_ref().unwrap().bota().unwrap().port);
     put("tracker.address", devices.tracker.as_ref().unwrap().address.as_ref().unwrap());
     put("pedal.source", &devices.pedal.as_ref().unwrap().source);
+    // Nothing serves it here.
+    file.set("endoscope.url", "http://127.0.0.1:9/");
     for side in Side::ALL {
         let arm = devices.arm(side).unwrap().arm.kinova().unwrap();
         for (key, port) in [("tcp_port", arm.tcp_port), ("udp_port", arm.udp_port)] {

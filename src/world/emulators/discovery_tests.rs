@@ -308,6 +308,8 @@ fn rules_name_every_device_of_the_project_and_the_kernels_keys() {
     for line in rules::RULES.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
         assert!(line.contains("==\"") && line.matches('"').count() % 2 == 0, "{line}");
         assert!(["MODE=", "ATTR{latency_timer}=", "ENV{LIBINPUT"].iter().any(|key| line.contains(key)), "{line}");
+        // Whoever sits at the computer, also where there is no group `plugdev`.
+        assert_eq!(line.contains("MODE="), line.contains(r#"TAG+="uaccess""#), "{line}");
     }
     for model in nima_devices::hid::MODELS.iter().filter(|model| model.vendor == 0x046d) {
         let (family, last) = (model.product >> 4, model.product & 15);

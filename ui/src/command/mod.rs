@@ -21,6 +21,7 @@ mod run;
 mod score;
 mod sessions;
 mod setup;
+mod shells;
 mod stretch;
 mod study;
 mod study_report;
@@ -40,7 +41,7 @@ const NO_WINDOW: u8 = 69;
 
 /// Operator console for haptic teleoperation in laparoscopy. Research software, not for clinical use.
 #[derive(Debug, Parser)]
-#[command(name = "nima", version, about, max_term_width = 100)]
+#[command(name = "nima", version, max_term_width = 100)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -95,6 +96,10 @@ enum Command {
     /// Evaluate models on data that were not used for training
     #[command(subcommand, arg_required_else_help = false)]
     Evaluate(evaluate::EvaluateCommand),
+    /// Print the script by which a shell completes the commands and options of `nima`
+    Completions(shells::CompletionsArguments),
+    /// Write the manual pages of every command into a folder
+    Man(shells::ManArguments),
 }
 
 /// Reports invalid arguments in one line, without the usage text.
@@ -143,6 +148,8 @@ pub fn main() -> ExitCode {
         Command::StudyReport(arguments) => study_report::run(&arguments),
         Command::Train(train) => train::run(&train),
         Command::Evaluate(evaluate) => evaluate::run(&evaluate),
+        Command::Completions(arguments) => shells::completions(&arguments),
+        Command::Man(arguments) => shells::man(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

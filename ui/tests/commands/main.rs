@@ -15,6 +15,7 @@ mod every_command;
 mod export;
 mod hostile_files;
 mod installed;
+mod packages;
 mod paper_rig;
 mod replay;
 mod report;

@@ -1,0 +1,244 @@
+# Makes the packages. Sourced by ./dev, which has `say`, `need` and `need_cargo`.
+#   ./dev package           all packages into target/packages
+#   ./dev package --twice   and again from another folder; fails where a byte differs
+#   ./dev package --try     and installs them in minimal systems, as a newcomer would (assets/package/try.sh)
+#   ./dev package --sizes   what the program is made of
+# shellcheck shell=bash
+
+package_target=x86_64-unknown-linux-gnu
+windows_target=x86_64-pc-windows-gnu
+package_tools=(binutils dpkg python3 python3-venv xz-utils zstd)
+zig_version=0.15.2
+
+# What was not made or not tried, told at the end.
+declare -a package_left_out=()
+leave_out() { package_left_out+=("$1"); }
+
+# One word of the manifest.
+package_version() { sed -n '/^\[workspace.package\]/,/^\[/s/^version = "\(.*\)"$/\1/p' Cargo.toml; }
+
+# The time that stands in every package: that of the last commit.
+package_epoch() {
+  if [ -n "${SOURCE_DATE_EPOCH:-}" ]; then
+    echo "$SOURCE_DATE_EPOCH"
+  elif ! git log -1 --format=%ct 2>/dev/null; then
+    say "no commit tells the time of this source: set SOURCE_DATE_EPOCH (seconds since 1970)"
+    return 1
+  fi
+}
+
+# Zig comes as a Python package; it brings the linker and what each version of glibc offers.
+fetch_zig() {
+  local folder=$1/zig
+  [ -x "$folder/bin/python" ] || python3 -m venv "$folder"
+  "$folder/bin/python" -m pip install --quiet --disable-pip-version-check "ziglang==$zig_version"
+  NIMA_ZIG=$("$folder/bin/python" -c 'import pathlib, ziglang; print(pathlib.Path(ziglang.__file__).parent / "zig")')
+  export NIMA_ZIG ZIG_GLOBAL_CACHE_DIR=$1/zig-cache ZIG_LOCAL_CACHE_DIR=$1/zig-cache
+}
+
+# The program with its symbols, built from this folder. No path of this computer gets into it.
+build_program() {
+  local target=$1 registry=${CARGO_HOME:-$HOME/.cargo} flags
+  flags=(-Clinker=nima-linker -Clinker-features=-lld "--remap-path-prefix=$registry=/cargo" "--remap-path-prefix=$PWD=/nima"
+    "--remap-path-prefix=$target=/target")
+  PATH=$PWD/assets/package:$PATH CARGO_ENCODED_RUSTFLAGS=$(IFS=$'\x1f'; printf '%s' "${flags[*]}") CARGO_TARGET_DIR=$target CARGO_INCREMENTAL=0 \
+    timed cargo build --locked --profile packages --target "$package_target" -p nima-console --bin nima
+}
+
+# SBOM, licence texts and the list of crates of the program for a kind of system.
+take_inventory() {
+  local target=$1 out=$2 system=$3 zig sysroot
+  zig=$(dirname "$NIMA_ZIG") sysroot=$(rustc --print sysroot)
+  mkdir -p "$out"
+  cargo metadata --locked --format-version 1 --filter-platform "$system" >"$target/metadata.json"
+  cargo tree --locked -p nima-console --edges normal,no-proc-macro --target "$system" --prefix none | sed 's/ (\*)$//' | sort -u >"$target/tree.txt"
+  python3 assets/package/inventory.py --metadata "$target/metadata.json" --tree "$target/tree.txt" --lock Cargo.lock --standard LICENSE-APACHE \
+    --also "Roboto, the fonts of the screen|Apache-2.0|assets/fonts/Roboto-LICENSE.txt" \
+    --also "Rust's standard library|MIT OR Apache-2.0|$sysroot/share/doc/rust/COPYRIGHT-library.html" \
+    --also "LLVM's unwinder and run-time functions|Apache-2.0 WITH LLVM-exception|$zig/lib/libcxxabi/LICENSE.TXT" \
+    --also "zig's linker scripts and start code|MIT|$zig/LICENSE" \
+    --epoch "$SOURCE_DATE_EPOCH" --out "$out"
+}
+
+# Without symbols, with the list of crates inside (the section that cargo-auditable writes).
+finish_program() {
+  objcopy --strip-all --remove-section .comment --add-section ".dep-v0=$2/dep-v0" "$1" "$3"
+  chmod 755 "$3"
+}
+
+# Replaces @NAME@ by what is given as NAME=value.
+fill() {
+  local text
+  text=$(cat "$1")
+  shift
+  for pair; do text=${text//"@${pair%%=*}@"/"${pair#*=}"}; done
+  printf '%s\n' "$text"
+}
+
+# The files of every package, as they lie in an installed system; zsh completes from another folder on Debian than elsewhere.
+stage() {
+  local root=$1 program=$2 inventory=$3 zsh=$4 share=$1/usr/share shell
+  rm -rf "$root"
+  mkdir -p "$root"/{usr/bin,usr/lib/udev/rules.d,etc/security/limits.d} "$share"/{applications,metainfo,man/man1,doc/nima-console} \
+    "$share"/{bash-completion/completions,fish/vendor_completions.d,"$zsh"} "$share"/icons/hicolor/{scalable,256x256}/apps
+  finish_program "$program" "$inventory" "$root/usr/bin/nima"
+  cp assets/70-nima.rules "$root/usr/lib/udev/rules.d/"
+  cp assets/package/realtime.conf "$root/etc/security/limits.d/70-nima-realtime.conf"
+  cp assets/package/nima-console.desktop "$share/applications/"
+  fill assets/package/nima-console.metainfo.xml "VERSION=$version" "DATE=$(date -u -d "@$SOURCE_DATE_EPOCH" +%F)" >"$share/metainfo/nima-console.metainfo.xml"
+  cp assets/package/nima-console.svg "$share/icons/hicolor/scalable/apps/"
+  cp assets/package/nima-console.png "$share/icons/hicolor/256x256/apps/"
+  "$root/usr/bin/nima" completions bash >"$share/bash-completion/completions/nima"
+  "$root/usr/bin/nima" completions zsh >"$share/$zsh/_nima"
+  "$root/usr/bin/nima" completions fish >"$share/fish/vendor_completions.d/nima.fish"
+  "$root/usr/bin/nima" man "$share/man/man1"
+  cp "$inventory/sbom.cdx.json" "$inventory/third-party.txt" "$share/doc/nima-console/"
+  gzip -9n "$share"/man/man1/*.1 "$share/doc/nima-console/third-party.txt"
+  settle "$root"
+}
+
+# Rights and times that are the same wherever the packages are made.
+settle() {
+  find "$1" -type d -exec chmod 755 {} +
+  find "$1" -type f ! -path '*/bin/*' ! -path '*/DEBIAN/p*' ! -name '*.sh' -exec chmod 644 {} +
+  find "$1" -exec touch --no-dereference -d "@$SOURCE_DATE_EPOCH" {} +
+}
+
+make_deb() {
+  local root=$1 out=$2 doc=$1/usr/share/doc/nima-console maintainer=${NIMA_MAINTAINER:-NIMA Console maintainers <nima-console@example.org>} mit
+  mit=$(sed -n '/^Permission/,$p' LICENSE-MIT | sed 's/^$/./; s/^/ /')
+  fill assets/package/deb/copyright "MIT=$mit" >"$doc/copyright"
+  printf 'nima-console (%s) unstable; urgency=medium\n\n  * See CHANGELOG.md of the source.\n\n -- %s  %s\n' "$version" "$maintainer" \
+    "$(LC_ALL=C date -u -R -d "@$SOURCE_DATE_EPOCH")" | gzip -9n >"$doc/changelog.gz"
+  mkdir "$root/DEBIAN"
+  fill assets/package/deb/control "VERSION=$version" "MAINTAINER=$maintainer" "SIZE=$(find "$root" -type f -printf '%s\n' | awk '{ kib += int(($1 + 1023) / 1024) } END { print kib }')" >"$root/DEBIAN/control"
+  cp assets/package/deb/{postinst,postrm} "$root/DEBIAN/"
+  chmod 755 "$root"/DEBIAN/post*
+  echo /etc/security/limits.d/70-nima-realtime.conf >"$root/DEBIAN/conffiles"
+  (cd "$root" && find usr -type f | LC_ALL=C sort | xargs md5sum) >"$root/DEBIAN/md5sums"
+  settle "$root"
+  # Not zstd, which Debian 11 cannot read.
+  DPKG_DEB_THREADS_MAX=1 dpkg-deb --root-owner-group -Zxz -z9 --build "$root" "$out/nima-console_${version}_amd64.deb" >&2
+}
+
+make_rpm() {
+  local root=$1 out=$2 work=$3/rpm-work
+  rm -rf "$work"
+  mkdir -p "$work"
+  cp LICENSE-MIT LICENSE-APACHE CHANGELOG.md "$root/usr/share/doc/nima-console/"
+  settle "$root"
+  fill assets/package/rpm/nima-console.spec "VERSION=$version" >"$work/nima-console.spec"
+  rpmbuild -bb --quiet --target x86_64 --define "_topdir $work" --define "staged $root" --define "_rpmdir $out" --define '_build_name_fmt %%{NAME}-%%{VERSION}-%%{RELEASE}.%%{ARCH}.rpm' \
+    --define '_buildhost packages' --define 'use_source_date_epoch_as_buildtime 1' --define 'clamp_mtime_to_source_date_epoch 1' --define 'source_date_epoch_from_changelog 0' \
+    --define '_binary_payload w7.xzdio' --define '_build_id_links none' --define 'debug_package %{nil}' --define '__os_install_post %{nil}' "$work/nima-console.spec" >&2
+}
+
+# To be unpacked anywhere and run from there.
+make_tar() {
+  local root=$1 out=$2 name=nima-console-$version-x86_64-linux
+  mv "$root/usr" "$root/$name"
+  mv "$root/etc" "$root/$name/etc"
+  cp LICENSE-MIT LICENSE-APACHE README.md CHANGELOG.md "$root/$name/"
+  settle "$root"
+  tar --create --sort=name --format=gnu --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH" --directory "$root" "$name" |
+    zstd --quiet --force -19 --single-thread -o "$out/$name.tar.zst"
+}
+
+# For Windows, where the standard library for it and a linker are at hand. Says what is missing, and is no failure then.
+windows_is_possible() {
+  command -v x86_64-w64-mingw32-gcc >/dev/null || { leave_out "Windows: the linker is missing (Debian's package gcc-mingw-w64-x86-64)"; return 1; }
+  rustup target list --installed 2>/dev/null | grep -qx "$windows_target" || rustup target add "$windows_target" >&2 ||
+    { leave_out "Windows: Rust's standard library for $windows_target is missing"; return 1; }
+  command -v makensis >/dev/null || leave_out "Windows: no installer, makensis is missing (Debian's package nsis)"
+}
+
+make_windows() {
+  local target=$1 out=$2 staged=$1/stage-windows/nima-console registry=${CARGO_HOME:-$HOME/.cargo} flags
+  flags=(-Clinker=x86_64-w64-mingw32-gcc -Clink-arg=-Wl,--no-insert-timestamp "--remap-path-prefix=$registry=/cargo" "--remap-path-prefix=$PWD=/nima"
+    "--remap-path-prefix=$target=/target")
+  CARGO_ENCODED_RUSTFLAGS=$(IFS=$'\x1f'; printf '%s' "${flags[*]}") CARGO_TARGET_DIR=$target CARGO_INCREMENTAL=0 \
+    timed cargo build --locked --profile packages --target "$windows_target" -p nima-console --bin nima || return
+  take_inventory "$target" "$target/inventory-windows" "$windows_target" || return
+  rm -rf "$staged"
+  mkdir -p "$staged"
+  x86_64-w64-mingw32-strip -o "$staged/nima.exe" "$target/$windows_target/packages/nima.exe"
+  cp README.md "$target"/inventory-windows/{third-party.txt,sbom.cdx.json} "$staged/"
+  cp LICENSE-MIT "$staged/LICENSE-MIT.txt"
+  cp LICENSE-APACHE "$staged/LICENSE-APACHE.txt"
+  settle "$staged"
+  python3 assets/package/archive.py "$staged" "$out/nima-console-$version-x86_64-windows.zip" "$SOURCE_DATE_EPOCH"
+  ! command -v makensis >/dev/null || makensis -V2 "-DOUT=$out/nima-console-$version-x86_64-windows-setup.exe" "-DSTAGED=$staged" "-DVERSION=$version" \
+    assets/package/windows/nima-console.nsi >&2
+}
+
+# All packages of the source in this folder, into $2; what is built goes to $1.
+make_packages() {
+  local target=$1 out=$2 inventory=$1/inventory program=$1/$package_target/packages/nima
+  rm -rf "$out"
+  mkdir -p "$out"
+  build_program "$target"
+  take_inventory "$target" "$inventory" "$package_target"
+  stage "$target/stage-deb" "$program" "$inventory" zsh/vendor-completions
+  make_deb "$target/stage-deb" "$out"
+  stage "$target/stage-tar" "$program" "$inventory" zsh/site-functions
+  make_tar "$target/stage-tar" "$out"
+  if command -v rpmbuild >/dev/null; then
+    stage "$target/stage-rpm" "$program" "$inventory" zsh/site-functions
+    make_rpm "$target/stage-rpm" "$out" "$target"
+  fi
+  cp "$inventory/sbom.cdx.json" "$out/nima-console-$version.cdx.json"
+  (cd "$out" && sha256sum -- *) >"$target/SHA256SUMS"
+  mv "$target/SHA256SUMS" "$out/"
+  cat "$out/SHA256SUMS"
+}
+
+# The same source in a folder of another name, built into a folder of its own.
+make_packages_again() {
+  local elsewhere=$1/another-folder-for-the-same-source
+  rm -rf "$elsewhere"
+  mkdir -p "$elsewhere"
+  git ls-files -z | tar --create --null --files-from - | tar --extract --directory "$elsewhere"
+  (cd "$elsewhere" && make_packages "$elsewhere/target" "$elsewhere/packages")
+  if diff "$2/SHA256SUMS" "$elsewhere/packages/SHA256SUMS"; then
+    say "two builds in two folders: the same to the last bit"
+    rm -rf "$elsewhere"
+  else
+    say "two builds in two folders differ; the second one is in $elsewhere"
+    return 1
+  fi
+}
+
+package() {
+  local version target=${CARGO_TARGET_DIR:-$PWD/target} out what=${1:-} status=0
+  case $what in '' | --twice | --try | --sizes) ;; *) say "give nothing, --twice, --try or --sizes"; exit 2 ;; esac
+  need_cargo
+  need "${build_packages[@]}" "${package_tools[@]}" || exit 1
+  need rpm || true
+  version=$(package_version) out=$target/packages
+  SOURCE_DATE_EPOCH=$(package_epoch)
+  export SOURCE_DATE_EPOCH LC_ALL=C.UTF-8 TZ=UTC
+  fetch_zig "$target/tools"
+  if [ "$what" = --sizes ]; then
+    build_program "$target/package-build"
+    python3 assets/package/sizes.py "$target/package-build/$package_target/packages/nima"
+    return
+  fi
+  # Not by `timed`, in which a failure would not end this.
+  make_packages "$target/package-build" "$out"
+  command -v rpmbuild >/dev/null || leave_out ".rpm: rpmbuild is missing (Debian's package rpm)"
+  leave_out "Windows: not built (docs/installing.md says what is missing)"
+  leave_out "macOS and 64-bit ARM: not built, nothing here could run them"
+  case $what in
+    --twice) make_packages_again "$target/tools" "$out" ;;
+    --try)
+      # shellcheck source=assets/package/try.sh
+      source assets/package/try.sh
+      try_packages "$out" || status=1
+      ;;
+    *) leave_out "not tried in other systems: ./dev package --try" ;;
+  esac
+  say "packages are in $out"
+  say "left out: ${#package_left_out[@]}"
+  printf '   %s\n' "${package_left_out[@]}" >&2
+  return $status
+}

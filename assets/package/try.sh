@@ -1,0 +1,166 @@
+# Judges the packages, and installs them in minimal systems as a newcomer would. Sourced by build.sh; needs root for its systems, and deletes them.
+# shellcheck shell=bash
+
+try_tools=(debootstrap lintian appstream desktop-file-utils xvfb xdotool imagemagick)
+try_suites=(bookworm trixie bullseye)
+
+try_packages() {
+  local out=$1 deb rpm archive suite failed=0
+  deb=$(echo "$out"/*.deb) rpm=$(echo "$out"/*.rpm) archive=$(echo "$out"/*.tar.zst)
+  need "${try_tools[@]}" || true
+  judge_files "$out" "$deb" || failed=1
+  judge_rpm "$rpm" || failed=1
+  if [ "$(id -u)" -ne 0 ] || ! command -v debootstrap >/dev/null; then
+    leave_out "not tried in ${try_suites[*]}: that needs root and debootstrap"
+    return $failed
+  fi
+  for suite in "${try_suites[@]}"; do
+    try_in "$suite" "$deb" "$rpm" "$archive" || { say "FAILED: Debian $suite"; failed=1; }
+  done
+  leave_out "not tried on a Fedora, RHEL or openSUSE system: no root of one can be made from Debian's archive; the .rpm was installed by rpm in a Debian root"
+  leave_out "not tried on a real screen or with real devices"
+  return $failed
+}
+
+# lintian, desktop entry and metainfo.
+judge_files() {
+  local out=$1 deb=$2 unpacked=$1/../package-build/stage-deb/usr/share failed=0
+  if command -v lintian >/dev/null; then
+    lintian --tag-display-limit 0 --allow-root "$deb" >"$out/../lintian.txt" 2>&1 || true
+    cat "$out/../lintian.txt"
+    say "lintian: $(grep -c '^E:' "$out/../lintian.txt") errors, $(grep -c '^W:' "$out/../lintian.txt") warnings"
+    ! grep -q '^E:' "$out/../lintian.txt" || failed=1
+  else
+    leave_out "lintian is missing"
+  fi
+  if command -v desktop-file-validate >/dev/null; then
+    desktop-file-validate "$unpacked/applications/nima-console.desktop" && say "desktop entry: valid" || failed=1
+  else
+    leave_out "the desktop entry was not judged: desktop-file-utils is missing"
+  fi
+  if command -v appstreamcli >/dev/null; then
+    appstreamcli validate --no-net "$unpacked/metainfo/nima-console.metainfo.xml" || failed=1
+  else
+    leave_out "the metainfo was not judged: appstream is missing"
+  fi
+  return $failed
+}
+
+# What can be seen of the .rpm without a system that uses it.
+judge_rpm() {
+  local rpm=$1
+  [ -e "$rpm" ] && command -v rpm >/dev/null || { leave_out "the .rpm was not tried: it or rpm is missing"; return 0; }
+  say "the .rpm: $(rpm -qlp "$rpm" | wc -l) files; needs $(rpm -qp --requires "$rpm" | grep -v '^rpmlib' | tr '\n' ' ')"
+  rpm -K --nosignature "$rpm" >&2
+}
+
+# Runs a command in a system of its own: its processes end and its mounts are gone with it.
+inside() {
+  local root=$1
+  shift
+  # shellcheck disable=SC2016
+  unshare --mount --pid --fork --kill-child sh -c '
+    mount --make-rprivate /
+    mount -t proc proc "$0/proc" && mount -t sysfs sysfs "$0/sys" && mount -t tmpfs tmpfs "$0/dev/shm" &&
+    mount -t devpts -o newinstance,ptmxmode=0666,mode=620,gid=5 devpts "$0/dev/pts" && exec chroot "$0" "$@"' "$root" \
+    env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root TERM=dumb LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive DISPLAY="${try_display:-}" "$@"
+}
+
+# The same as an ordinary user who has logged in.
+as_person() {
+  local root=$1
+  shift
+  inside "$root" su --login person --whitelist-environment=DISPLAY --command "$*"
+}
+
+# Nothing of the package may be left but what the user made.
+nothing_left() {
+  local root=$1 left
+  left=$(find "$root" -xdev -iname '*nima*' ! -path "$root/home/*" ! -path "$root/proc/*" ! -path "$root/tmp/*" ! -path "$root/var/cache/apt/*" ! -path "$root/root/*" -printf '%P\n')
+  left+=$(grep -s '^realtime:' "$root/etc/group" || true)
+  if [ -n "$left" ]; then
+    say "left behind after the package was removed: $left"
+    return 1
+  fi
+  [ -n "$(find "$root/home/person/.local/share/nima-console" -name '*.mcap' 2>/dev/null)" ] || { say "the user's sessions are gone"; return 1; }
+}
+
+try_in() {
+  local suite=$1 root=$target/try-$1 status=0
+  rm -rf --one-file-system "$root"
+  say "Debian $suite"
+  if ! debootstrap --variant=minbase "$suite" "$root" http://deb.debian.org/debian >"$target/try-$suite.log" 2>&1; then
+    leave_out "Debian $suite: debootstrap could not make it ($(tail -n 1 "$target/try-$suite.log"))"
+  else
+    walk_through "$@" || status=$?
+  fi
+  rm -rf --one-file-system "$root"
+  return $status
+}
+
+walk_through() {
+  local suite=$1 deb=$2 rpm=$3 archive=$4 root=$target/try-$1 screen try_display=:97 status=0
+  cp "$deb" "$root/tmp/nima-console.deb"
+  cp assets/package/newcomer.sh "$root/usr/local/bin/newcomer"
+  chmod 755 "$root/usr/local/bin/newcomer"
+  inside "$root" useradd --create-home --shell /bin/sh person || return
+  inside "$root" apt-get update -q >>"$target/try-$suite.log" 2>&1 || return
+  Xvfb "$try_display" -screen 0 1600x1000x24 -nolisten tcp -noreset -ac >/dev/null 2>&1 &
+  screen=$!
+  try_deb "$suite" "$root" && try_archive "$root" "$archive" && try_rpm "$root" "$rpm" || status=1
+  kill "$screen"
+  wait "$screen" 2>/dev/null || true
+  return $status
+}
+
+try_deb() {
+  local suite=$1 root=$2 began=$SECONDS installed
+  inside "$root" apt-get install -y -q /tmp/nima-console.deb >>"$target/try-$suite.log" 2>&1 || { tail -n 20 "$target/try-$suite.log"; return 1; }
+  installed=$((SECONDS - began))
+  picture "$suite" &
+  as_person "$root" newcomer || return
+  wait $! || true
+  cp "$root/home/person/window.png" "$target/try-$suite-window.png"
+  say "Debian $suite: installed in $installed s (with what a window needs, from the archive), the window's start-up: $(tr -d ' \n' <"$root/home/person/frames.json" | head -c 400)"
+  inside "$root" usermod -aG realtime person || return
+  say "Debian $suite: a member of realtime may ask for priority $(as_person "$root" ulimit -r) and $(as_person "$root" ulimit -l) memory"
+  inside "$root" gpasswd --delete person realtime >/dev/null || return
+  inside "$root" apt-get purge -y -q nima-console >>"$target/try-$suite.log" 2>&1 || return
+  nothing_left "$root"
+}
+
+# Two pictures of the screen, a second apart, while the window is open: it shows something, and that moves.
+picture() {
+  local suite=$1 differ tries
+  for tries in $(seq 120); do
+    ! DISPLAY=$try_display xdotool search --name 'NIMA Console' >/dev/null 2>&1 || break
+    sleep 0.5
+  done
+  say "Debian $suite: the window is there ${tries} half seconds after the newcomer began"
+  sleep 2
+  import -display "$try_display" -window root "$target/try-$suite-1.png" && sleep 1 && import -display "$try_display" -window root "$target/try-$suite-2.png" || return
+  differ=$(compare -metric AE "$target/try-$suite-1.png" "$target/try-$suite-2.png" null: 2>&1 || true)
+  say "Debian $suite: $differ pixels of the screen changed within a second"
+}
+
+# Unpacked in the home of the user, nothing installed.
+try_archive() {
+  local root=$1 archive=$2 folder
+  folder=$(basename "$archive" .tar.zst)
+  zstd --quiet --decompress --stdout "$archive" | tar --extract --directory "$root/home/person" || return
+  as_person "$root" "$folder/bin/nima" run --virtual --seconds 5 --json >"$target/try-archive.json" || return
+  say "unpacked from .tar.zst: $(grep -o '"final_state": "[a-z]*"' "$target/try-archive.json")"
+  rm -rf "${root:?}/home/person/$folder"
+}
+
+# By rpm, with its scripts, in a system that has none of its database: dependencies cannot be judged there.
+try_rpm() {
+  local root=$1 rpm=$2
+  [ -e "$rpm" ] && command -v rpm >/dev/null || return 0
+  # The system's programs have their database elsewhere.
+  rpm --root "$root" --dbpath /var/lib/rpm --nodeps --nosignature --install "$rpm" || return
+  as_person "$root" nima run --virtual --seconds 5 --json >"$target/try-rpm.json" || return
+  say "installed from .rpm: $(grep -o '"final_state": "[a-z]*"' "$target/try-rpm.json"), group $(grep '^realtime:' "$root/etc/group")"
+  rpm --root "$root" --dbpath /var/lib/rpm --nodeps --erase nima-console || return
+  nothing_left "$root"
+}

@@ -49,7 +49,7 @@ pub use feed::{Feed, Look};
 pub use jpeg::{Damage, Picture};
 pub use judge::{FROZEN, LATE, Standing, Wrong};
 pub use plugged::{PluggedCamera, plugged_cameras};
-pub use reel::{Reel, ReelEnd};
+pub use reel::{Glimpse, Reel, ReelEnd};
 pub use source::{Compressed, Format, Source};
 pub use tone::Tone;
 pub use trouble::Trouble;

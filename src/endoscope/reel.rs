@@ -4,7 +4,7 @@ use std::{
     collections::VecDeque,
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicU64, Ordering},
+        atomic::{AtomicBool, AtomicU64, Ordering},
     },
 };
 
@@ -18,6 +18,10 @@ const PICTURES_MOST: usize = 256;
 #[derive(Clone, Debug, Default)]
 pub struct Reel(Arc<Shared>);
 
+/// Looks now and then at the newest JPEG, beside a recording.
+#[derive(Clone, Debug)]
+pub struct Glimpse(Arc<Shared>);
+
 /// Takes the pictures out. Dropping it ends that.
 #[derive(Debug)]
 pub struct ReelEnd {
@@ -29,6 +33,9 @@ pub struct ReelEnd {
 struct Shared {
     waiting: Mutex<Waiting>,
     dropped: AtomicU64,
+    /// Whether somebody looks, and the newest picture since.
+    looked_at: AtomicBool,
+    newest: Mutex<Option<Compressed>>,
 }
 
 #[derive(Debug, Default)]
@@ -46,6 +53,10 @@ struct Waiting {
 impl Shared {
     fn waiting(&self) -> MutexGuard<'_, Waiting> {
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn newest(&self) -> MutexGuard<'_, Option<Compressed>> {
+        self.newest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -92,8 +103,16 @@ impl Reel {
         self.0.waiting().skips = true;
     }
 
+    /// For who looks at the newest picture now and then, whether a recording takes the pictures or not.
+    pub fn glimpse(&self) -> Glimpse {
+        Glimpse(Arc::clone(&self.0))
+    }
+
     /// Puts a picture in, unless there is no room, nobody takes it, or it is not compressed. Never waits for the other end.
     pub(crate) fn put(&self, picture: &Compressed) {
+        if self.0.looked_at.load(Ordering::Relaxed) && picture.format == Format::Jpeg {
+            *self.0.newest() = Some(picture.clone());
+        }
         let mut waiting = self.0.waiting();
         if waiting.taker.is_none() || waiting.rests || !waiting.understands(picture.format) {
             return;
@@ -106,6 +125,14 @@ impl Reel {
         }
         waiting.bytes += length;
         waiting.pictures.push_back(picture.clone());
+    }
+}
+
+impl Glimpse {
+    /// The newest picture since the last call. Only while somebody looks is one kept for the next call.
+    pub fn take(&self, looks: bool) -> Option<Compressed> {
+        self.0.looked_at.store(looks, Ordering::Relaxed);
+        self.0.newest().take()
     }
 }
 
@@ -166,6 +193,22 @@ mod tests {
         assert_eq!(std::iter::from_fn(|| end.take()).count(), PICTURES_MOST);
         reel.put(&picture(3));
         assert_eq!(end.take().unwrap().bytes.len(), 3);
+    }
+
+    #[test]
+    fn a_glimpse_is_of_the_newest_jpeg_and_takes_none_from_a_recording() {
+        let reel = Reel::default();
+        let (glimpse, end) = (reel.glimpse(), reel.end());
+        reel.put(&picture(1));
+        assert!(glimpse.take(true).is_none(), "nobody looked");
+        reel.put(&picture(2));
+        reel.put(&picture(3));
+        reel.put(&Compressed { format: Format::H264 { is_key: true }, ..picture(4) });
+        assert_eq!(glimpse.take(true).unwrap().bytes.len(), 3);
+        assert!(glimpse.take(false).is_none(), "it was taken");
+        reel.put(&picture(5));
+        assert!(glimpse.take(false).is_none());
+        assert_eq!(std::iter::from_fn(|| end.take()).count(), 5);
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! The endoscope's pictures on their way into a session.
 
-use nima_endoscope::{Address, Compressed, Feed, Format, Reel, ReelEnd, Standing};
+use std::time::{Duration, Instant};
+
+use nima_bridges::igtl::{Image, Pictures};
+use nima_endoscope::{Address, Compressed, Feed, Format, Glimpse, Reel, ReelEnd, Standing, jpeg};
 use nima_machine::config::RigConfig;
 use nima_session::{
     pictures::{Coding, PictureSource, Taken},
@@ -36,7 +39,28 @@ pub(crate) fn film(recorder: &Recorder, rig: &RigConfig, reel: &Reel) {
     }
 }
 
-/// Reads the pictures for a recording alone: nobody shows them.
+/// Hands the newest picture of a reel to a bridge, as pixels.
+#[derive(Debug)]
+pub(crate) struct OfReel(Glimpse);
+
+impl OfReel {
+    pub(crate) fn new(reel: &Reel) -> Self {
+        Self(reel.glimpse())
+    }
+}
+
+impl Pictures for OfReel {
+    fn newest(&mut self, is_wanted: bool) -> Option<(Image, Duration)> {
+        let Compressed { bytes, arrived, .. } = self.0.take(is_wanted).filter(|_| is_wanted)?;
+        // A damaged one is left out; the next one comes soon.
+        let jpeg::Picture { size_px, rgba } = jpeg::decode(&bytes).ok()?;
+        let [width, height] = size_px.map(u16::try_from);
+        let pixels = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+        Some((Image { size_px: [width.ok()?, height.ok()?], colours: 3, pixels }, arrived.elapsed()))
+    }
+}
+
+/// Reads the pictures for a recording, or for who watches: nobody shows them here.
 #[derive(Debug)]
 pub(crate) struct Filming {
     feed: Option<Feed>,
@@ -45,9 +69,9 @@ pub(crate) struct Filming {
 }
 
 impl Filming {
-    /// Begins, if the pictures of this rig are to be recorded.
-    pub(crate) fn start(recorder: &Recorder, rig: &RigConfig) -> Option<Self> {
-        let endoscope = rig.endoscope.as_ref().filter(|endoscope| endoscope.record)?;
+    /// Begins to put the pictures of this rig into this reel; the recording, if one is given, takes them if they are to be recorded.
+    pub(crate) fn start(recorder: Option<&Recorder>, rig: &RigConfig, reel: &Reel) -> Option<Self> {
+        let endoscope = rig.endoscope.as_ref()?;
         let size_px = endoscope.camera.map(|camera| camera.size_px);
         let started = endoscope.url.parse::<Address>().map_err(|error| error.to_string());
         let started =
@@ -57,16 +81,17 @@ impl Filming {
             Err(why) => (None, Some(why)),
         };
         if let Some(feed) = &feed {
-            let reel = Reel::default();
             feed.record_to(reel.clone());
-            film(recorder, rig, &reel);
+            if let Some(recorder) = recorder {
+                film(recorder, rig, reel);
+            }
         }
         Some(Self { feed, refused })
     }
 
     /// Why no pictures are recorded now.
     pub(crate) fn trouble(&self) -> Option<String> {
-        let lost = || match self.feed.as_ref()?.standing(std::time::Instant::now()) {
+        let lost = || match self.feed.as_ref()?.standing(Instant::now()) {
             Standing::Lost(trouble) => Some(format!("{trouble}: {}", trouble.cure())),
             _ => None,
         };

@@ -52,7 +52,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "CLASS")]
     scheduling: Option<SchedulingClass>,
     /// Save a screenshot of every view (PNG) in this folder, then close
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["exit_after", "calibrate", "role", "live", "share"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["exit_after", "calibrate", "role", "live", "share", "igtl", "lsl"])]
     pictures: Option<PathBuf>,
     /// Write the loop's timing and errors (JSON) to this file when the window closes
     #[arg(long, value_name = "FILE")]

@@ -14,6 +14,7 @@ use std::{
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_core::{calibration::gravity::Drift, impedance::Mode};
+use nima_endoscope::Reel;
 use nima_machine::{
     config::{RigConfig, SchedulingClass},
     messages::{Command, Tick},
@@ -76,7 +77,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     compare: bool,
     /// Run on a virtual clock, as fast as this computer can
-    #[arg(long = "virtual", conflicts_with_all = ["live", "share", "follower"])]
+    #[arg(long = "virtual", conflicts_with_all = ["live", "share", "igtl", "lsl", "follower"])]
     virtual_clock: bool,
     /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
     #[arg(long, value_name = "CLASS")]
@@ -171,13 +172,14 @@ pub(super) fn run_with(
             plan.scene.name
         );
     }
-    let servers = arguments.watching.start()?;
+    let (servers, reel) = (arguments.watching.start()?, Reel::default());
     let to = Destination {
         file: arguments.record.as_deref(),
         second: arguments.second_place.as_deref(),
-        audiences: servers.audiences(),
+        audiences: servers.audiences(&plan, &reel),
     };
-    let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock, arguments.seconds)?;
+    let pictures = (&reel, servers.show_pictures());
+    let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock, arguments.seconds, pictures)?;
     let mut summary = if arguments.virtual_clock {
         let (assembly, watched) = plan.watched()?;
         start.watch_objects(&plan, watched, &recording);

@@ -267,7 +267,10 @@ impl ConsoleApp {
         let rig = self.in_force.with_checked(rig);
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
         let started = match (&mut self.studies.trial, self.simulated_speed) {
-            (Some(trial), speed) => trial.start(&plan, speed, self.sessions.reel()),
+            (Some(trial), speed) => {
+                let audiences = self.sessions.blind_audiences(&plan, &trial.name());
+                trial.start(&plan, speed, (self.sessions.reel(), audiences))
+            }
             (None, Some(speed)) => nima_world::start_watched(&plan, speed).map_err(|error| error.to_string()),
             (None, None) => start_recorded(&plan, &mut self.sessions, line).map_err(|error| error.to_string()),
         };

@@ -14,7 +14,7 @@ use nima_machine::{messages::Scheduling, runtime::Tap};
 use nima_recording::store::utc_now;
 use nima_session::{
     objects::ObjectSource,
-    outlet::Destination,
+    outlet::{Audience, Destination},
     outlook::{Outlook, WARN_BEFORE},
     recorder::{Note, NoteKind, Recorder},
     shelf::{MOST_BYTES, Shelf, keep},
@@ -118,7 +118,7 @@ impl Sessions {
             shelf.place(&started, &plan.rig.name).map_err(|error| text::sessions::no_folder(shelf.folder(), &error))
         };
         let begin = |path: PathBuf, second: Option<PathBuf>| {
-            let audiences = self.servers.audiences();
+            let audiences = self.servers.audiences(plan, &self.reel);
             let to = Destination { file: Some(&path), second: second.as_deref(), audiences };
             let (tap, recorder) = recording::begin(to, plan, "real").map_err(|error| chain(&error))?;
             pictures::film(&recorder, &plan.rig, &self.reel);
@@ -145,6 +145,11 @@ impl Sessions {
                 None
             }
         }
+    }
+
+    /// Those who may be told of a trial of a blind study, which is called this.
+    pub(crate) fn blind_audiences(&self, plan: &Plan, trial: &str) -> Vec<Box<dyn Audience>> {
+        self.servers.blind_audiences(plan, trial)
     }
 
     /// Where the endoscope's pictures are to be put for the recording.

@@ -1,10 +1,20 @@
 //! Texts: the cause of each fault, and what the operator can do.
 
-use nima_core::safety::Implausible;
+use nima_core::safety::{Implausible, State};
 use nima_devices::Loss;
-use nima_machine::messages::{FarStop, Fault};
+use nima_machine::messages::{FarStop, Fault, LoopState};
 
 use super::Remedy;
+
+/// What is wrong in a state, and what to do, beside a code for another program; nothing in a state in which all is well.
+pub(crate) fn trouble_of(state: LoopState) -> String {
+    match state {
+        State::Faulted(fault) => format!("{}. {}", fault.cause(), fault.cure()),
+        State::Stopped => "Stopped. Release the stop, then engage again".to_owned(),
+        State::Disconnected => "A device is missing or sends nothing. See Devices".to_owned(),
+        State::Idle | State::Ready | State::Engaged | State::Clutched => String::new(),
+    }
+}
 
 impl Remedy for Fault {
     fn cause(self) -> &'static str {

@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod anonymous;
+mod bridges;
 mod calibrate_camera;
 mod calibrate_correspondence;
 mod calibrate_gravity;

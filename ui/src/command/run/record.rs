@@ -7,6 +7,7 @@ use std::{
 };
 
 use anyhow::Context as _;
+use nima_endoscope::Reel;
 use nima_machine::runtime::Tap;
 use nima_session::{
     objects::ObjectSource,
@@ -17,7 +18,11 @@ use nima_session::{
 use nima_world::Plan;
 use serde::Serialize;
 
-use crate::{pictures::Filming, recording::begin, words::disk_full_in};
+use crate::{
+    pictures::{Filming, are_recorded},
+    recording::begin,
+    words::disk_full_in,
+};
 
 /// A recording, if one was asked for. Without a file there are only those who watch.
 #[derive(Default)]
@@ -61,12 +66,14 @@ const fn is_none(count: &u64) -> bool {
 }
 
 impl Recording {
-    /// Begins it; the tap is for the loop. A run on the real clock ends after `seconds`.
+    /// Begins it; the tap is for the loop. A run on the real clock ends after `seconds`. The endoscope's pictures come through `reel`, where
+    /// they are recorded, or somebody `watches` them.
     pub(super) fn begin(
         to: Destination<'_>,
         plan: &Plan,
         is_virtual: bool,
         seconds: Option<f64>,
+        (reel, watches): (&Reel, bool),
     ) -> anyhow::Result<(Option<Tap>, Self)> {
         if to.file.is_none() && to.audiences.is_empty() {
             return Ok((None, Self::default()));
@@ -77,7 +84,9 @@ impl Recording {
         let outlook = file.as_deref().map(|file| Outlook::new(file, recorder.progress().bytes, now));
         let ends = seconds.and_then(|seconds| now.checked_add(Duration::from_secs_f64(seconds)));
         // On the virtual clock pictures would belong to no moment.
-        let filming = file.as_ref().filter(|_| !is_virtual).and_then(|_| Filming::start(&recorder, &plan.rig));
+        let films = file.is_some() && are_recorded(&plan.rig);
+        let into = films.then_some(&recorder);
+        let filming = (!is_virtual && (films || watches)).then(|| Filming::start(into, &plan.rig, reel)).flatten();
         Ok((Some(tap), Self { recorder: Some((recorder, file)), outlook, ends, filming, told: [false; 8] }))
     }
 
@@ -121,7 +130,7 @@ impl Recording {
             full(WARN_AGAIN..WARN_BEFORE),
             full(Duration::ZERO..WARN_AGAIN),
             (progress.pictures_dropped > 0).then(missing),
-            no_picture.map(|why| format!("the endoscope's picture is not recorded now, the run goes on: {why}")),
+            no_picture.map(|why| format!("the endoscope's picture does not come now, the run goes on: {why}")),
         ];
         let is_new = |(words, told): (Option<String>, &mut bool)| {
             let words = words.filter(|_| !*told)?;

@@ -10,8 +10,11 @@ use nima_machine::{
     runtime::{self, Assembly, Clock},
 };
 use nima_score::TaskFile;
-use nima_session::{outlet::Destination, recorder::Recorder};
-use nima_user_study::{Progress, Running, Study};
+use nima_session::{
+    outlet::{Audience, Destination},
+    recorder::Recorder,
+};
+use nima_user_study::{Phase, Progress, Running, Study, TrialId};
 use nima_world::{Plan, Watched};
 
 use super::Hand;
@@ -80,14 +83,25 @@ impl Trial {
         }
     }
 
-    /// Starts its loop, recorded where the study wants it; in simulated time if there is a `speed`.
+    /// What who watches a study may know of it: who makes it, and its number; not under which condition.
+    pub(in crate::console) fn name(&self) -> String {
+        let TrialId { phase, number, attempt } = self.running.trial();
+        let practice = if phase == Phase::Practice { " practice" } else { "" };
+        let again = if attempt > 1 { format!(" attempt {attempt}") } else { String::new() };
+        format!("{}{practice} {number}{again}", self.participant)
+    }
+
+    /// Starts its loop, recorded where the study wants it, and for `audiences`, who must not learn its condition; in simulated time if there is
+    /// a `speed`.
     pub(in crate::console) fn start(
         &mut self,
         plan: &Plan,
         speed: Option<f64>,
-        reel: &Reel,
+        (reel, audiences): (&Reel, Vec<Box<dyn Audience>>),
     ) -> Result<Started, String> {
-        let recorded = self.running.session().map(|file| recording::begin(Destination::file(file), plan, "real"));
+        let to = Destination { file: self.running.session(), audiences, ..Destination::default() };
+        let is_heard = to.file.is_some() || !to.audiences.is_empty();
+        let recorded = is_heard.then(|| recording::begin(to, plan, "real"));
         let (tap, recorder) = recorded.transpose().map_err(|error| chain(&error))?.unzip();
         self.recorder = recorder;
         if let Some(recorder) = &self.recorder {

@@ -1,0 +1,368 @@
+//! What a message says.
+
+use super::{
+    Image, Matrix, Tool, Turned, Unit, Wrong,
+    wire::{Cursor, put_f32s, put_name},
+};
+
+/// Kinds of data, with their names in messages and in requests for them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// One pose.
+    Transform,
+    /// A place, and how it is turned.
+    Position,
+    /// A bundle of poses.
+    Tracking,
+    /// The same with quaternions.
+    Turned,
+    /// Values of a sensor.
+    Sensor,
+    /// How a device is.
+    Status,
+    /// A text.
+    Text,
+    /// A picture.
+    Image,
+    /// What a program can do.
+    Capability,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Transform,
+        Self::Position,
+        Self::Tracking,
+        Self::Turned,
+        Self::Sensor,
+        Self::Status,
+        Self::Text,
+        Self::Image,
+        Self::Capability,
+    ];
+
+    /// As the type of a message.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Transform => "TRANSFORM",
+            Self::Position => "POSITION",
+            Self::Tracking => "TDATA",
+            Self::Turned => "QTDATA",
+            Self::Sensor => "SENSOR",
+            Self::Status => "STATUS",
+            Self::Text => "STRING",
+            Self::Image => "IMAGE",
+            Self::Capability => "CAPABILITY",
+        }
+    }
+
+    /// In requests, whose names have 12 bytes too.
+    const fn short(self) -> &'static str {
+        match self {
+            Self::Transform => "TRANS",
+            Self::Capability => "CAPABIL",
+            other => other.name(),
+        }
+    }
+}
+
+/// What a request asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Verb {
+    /// Once.
+    Get,
+    /// Again and again.
+    Start,
+    /// No more.
+    Stop,
+}
+
+impl Verb {
+    const ALL: [Self; 3] = [Self::Get, Self::Start, Self::Stop];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Get => "GET_",
+            Self::Start => "STT_",
+            Self::Stop => "STP_",
+        }
+    }
+}
+
+const ANSWER: &str = "RTS_";
+
+/// How often a bundle is wanted, and in which frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stream {
+    /// Time between two, ms; 0 leaves it to the server.
+    pub interval_ms: u32,
+    /// The frame; empty leaves it to the server.
+    pub frame: String,
+}
+
+/// A place, and how it is turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Position {
+    /// Where, mm.
+    pub place_mm: [f32; 3],
+    /// A quaternion, its scalar last; `None` if it is not told.
+    pub turn: Option<[f32; 4]>,
+}
+
+/// Values of a sensor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensor {
+    /// The sensor's own.
+    pub status: u8,
+    /// Of all values.
+    pub unit: Unit,
+    /// The values, at most 255.
+    pub values: Vec<f64>,
+}
+
+/// Codes of a status that are used here; others are kept as numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StatusCode(pub u16);
+
+impl StatusCode {
+    /// All is well.
+    pub const OK: Self = Self(1);
+    /// Stopped in an emergency.
+    pub const PANIC: Self = Self(3);
+    /// Not known here.
+    pub const NOT_FOUND: Self = Self(4);
+    /// No room for another client.
+    pub const BUSY: Self = Self(6);
+    /// Nothing comes any more.
+    pub const TIMEOUT: Self = Self(7);
+    /// A request that cannot be read.
+    pub const ILLEGAL: Self = Self(12);
+    /// Not ready.
+    pub const NOT_READY: Self = Self(13);
+    /// It is not there.
+    pub const ABSENT: Self = Self(16);
+    /// The hardware has failed.
+    pub const HARDWARE: Self = Self(18);
+    /// It ends.
+    pub const ENDING: Self = Self(19);
+}
+
+/// How a device is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Status {
+    /// In general.
+    pub code: StatusCode,
+    /// In particular.
+    pub subcode: i64,
+    /// One word for it, at most 20 bytes.
+    pub name: String,
+    /// A sentence.
+    pub text: String,
+}
+
+/// A text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Text {
+    /// The number of its character set in the list of IANA: 3 ASCII, 106 UTF-8.
+    pub encoding: u16,
+    /// Its bytes, at most 65 535.
+    pub bytes: Vec<u8>,
+}
+
+impl Text {
+    const ASCII: u16 = 3;
+    const UTF_8: u16 = 106;
+
+    /// Of this text; what is too long is cut off.
+    pub fn of(text: &str) -> Self {
+        let mut end = text.len().min(usize::from(u16::MAX));
+        while !text.is_char_boundary(end) {
+            end -= 1;
+        }
+        let text = &text[..end];
+        let encoding = if text.is_ascii() { Self::ASCII } else { Self::UTF_8 };
+        Self { encoding, bytes: text.as_bytes().to_vec() }
+    }
+}
+
+/// What a message says.
+#[derive(Clone, Debug, PartialEq)]
+#[expect(missing_docs, reason = "the types say it")]
+pub enum Content {
+    Transform(Matrix),
+    Position(Position),
+    Tracking(Vec<Tool>),
+    Turned(Vec<Turned>),
+    Sensor(Sensor),
+    Status(Status),
+    Text(Text),
+    Image(Image),
+    /// Types of messages that a program knows.
+    Capability(Vec<String>),
+    /// A request; how often, where the kind has that.
+    Request(Verb, Kind, Option<Stream>),
+    /// What became of a request for data of this kind: 0 if it is carried out.
+    Answer(Kind, u8),
+    /// Of a type that is not read here.
+    Other(String),
+}
+
+const NAME: usize = 20;
+const TYPE: usize = 12;
+const FRAME: usize = 32;
+
+impl Content {
+    /// Its type, in the header.
+    pub fn kind(&self) -> String {
+        let known = match self {
+            Self::Transform(_) => Kind::Transform,
+            Self::Position(_) => Kind::Position,
+            Self::Tracking(_) => Kind::Tracking,
+            Self::Turned(_) => Kind::Turned,
+            Self::Sensor(_) => Kind::Sensor,
+            Self::Status(_) => Kind::Status,
+            Self::Text(_) => Kind::Text,
+            Self::Image(_) => Kind::Image,
+            Self::Capability(_) => Kind::Capability,
+            Self::Request(verb, kind, _) => return verb.name().to_owned() + kind.short(),
+            Self::Answer(kind, _) => return ANSWER.to_owned() + kind.short(),
+            Self::Other(kind) => return kind.clone(),
+        };
+        known.name().to_owned()
+    }
+
+    /// Adds its bytes.
+    pub(super) fn put(&self, bytes: &mut Vec<u8>) {
+        match self {
+            Self::Transform(matrix) => matrix.put(bytes),
+            Self::Position(Position { place_mm, turn }) => {
+                put_f32s(bytes, *place_mm);
+                put_f32s(bytes, turn.iter().flatten().copied());
+            }
+            Self::Tracking(tools) => tools.iter().for_each(|tool| tool.put(bytes)),
+            Self::Turned(tools) => tools.iter().for_each(|tool| tool.put(bytes)),
+            Self::Sensor(Sensor { status, unit, values }) => {
+                let values = &values[..values.len().min(usize::from(u8::MAX))];
+                bytes.extend([values.len() as u8, *status]);
+                bytes.extend(unit.0.to_be_bytes());
+                for value in values {
+                    bytes.extend(value.to_be_bytes());
+                }
+            }
+            Self::Status(Status { code, subcode, name, text }) => {
+                bytes.extend(code.0.to_be_bytes());
+                bytes.extend(subcode.to_be_bytes());
+                put_name(bytes, name, NAME);
+                bytes.extend(text.bytes().filter(|byte| *byte != 0));
+                bytes.push(0);
+            }
+            Self::Text(Text { encoding, bytes: text }) => {
+                let text = &text[..text.len().min(usize::from(u16::MAX))];
+                bytes.extend(encoding.to_be_bytes());
+                bytes.extend((text.len() as u16).to_be_bytes());
+                bytes.extend(text);
+            }
+            Self::Image(image) => image.put(bytes),
+            Self::Capability(types) => types.iter().for_each(|name| put_name(bytes, name, TYPE)),
+            Self::Request(_, _, None) | Self::Other(_) => {}
+            Self::Request(_, _, Some(Stream { interval_ms, frame })) => {
+                bytes.extend(interval_ms.to_be_bytes());
+                put_name(bytes, frame, FRAME);
+            }
+            Self::Answer(_, status) => bytes.push(*status),
+        }
+    }
+
+    /// What the content of a message of this type says.
+    pub(super) fn take(name: &str, content: &[u8]) -> Result<Self, Wrong> {
+        if let Some(kind) = Kind::ALL.into_iter().find(|kind| kind.name() == name) {
+            return Self::data(kind, content);
+        }
+        let of = |beginning: &str| {
+            let rest = name.strip_prefix(beginning)?;
+            Kind::ALL.into_iter().find(|kind| kind.short() == rest)
+        };
+        for verb in Verb::ALL {
+            if let Some(kind) = of(verb.name()) {
+                return Self::request(verb, kind, content);
+            }
+        }
+        match (of(ANSWER), content.first()) {
+            (Some(kind), Some(status)) => Ok(Self::Answer(kind, *status)),
+            (Some(_), None) => Err(Wrong::Short),
+            (None, _) => Ok(Self::Other(name.to_owned())),
+        }
+    }
+
+    fn request(verb: Verb, kind: Kind, content: &[u8]) -> Result<Self, Wrong> {
+        let has_rate = verb == Verb::Start && matches!(kind, Kind::Tracking | Kind::Turned);
+        if !has_rate || content.is_empty() {
+            return Ok(Self::Request(verb, kind, None));
+        }
+        let mut from = Cursor(content);
+        let stream = Stream { interval_ms: from.u32()?, frame: from.name(FRAME)? };
+        Ok(Self::Request(verb, kind, Some(stream)))
+    }
+
+    fn data(kind: Kind, content: &[u8]) -> Result<Self, Wrong> {
+        let bytes = content.len();
+        let fits = |fits: bool| {
+            if fits { Ok(()) } else { Err(Wrong::Length { kind: kind.name().to_owned(), bytes }) }
+        };
+        let mut from = Cursor(content);
+        Ok(match kind {
+            Kind::Transform => {
+                fits(bytes == Matrix::BYTES)?;
+                Self::Transform(Matrix::take(&mut from)?)
+            }
+            Kind::Position => {
+                fits([12, 24, 28].contains(&bytes))?;
+                let place_mm = from.f32s()?;
+                let turn = match bytes {
+                    28 => Some(from.f32s()?),
+                    // The short form has no scalar: what is left of the length 1.
+                    24 => Some(from.f32s().map(with_scalar)?),
+                    _ => None,
+                };
+                Self::Position(Position { place_mm, turn })
+            }
+            Kind::Tracking => {
+                fits(bytes.is_multiple_of(Tool::BYTES))?;
+                let count = bytes / Tool::BYTES;
+                Self::Tracking((0..count).map(|_| Tool::take(&mut from)).collect::<Result<_, _>>()?)
+            }
+            Kind::Turned => {
+                fits(bytes.is_multiple_of(Turned::BYTES))?;
+                let count = bytes / Turned::BYTES;
+                Self::Turned((0..count).map(|_| Turned::take(&mut from)).collect::<Result<_, _>>()?)
+            }
+            Kind::Sensor => {
+                let [count, status] = from.array()?;
+                fits(bytes == 10 + 8 * usize::from(count))?;
+                let unit = Unit(from.u64()?);
+                let values = (0..count).map(|_| from.f64()).collect::<Result<_, _>>()?;
+                Self::Sensor(Sensor { status, unit, values })
+            }
+            Kind::Status => {
+                let (code, subcode) = (StatusCode(from.u16()?), from.u64()?.cast_signed());
+                let (name, rest) = (from.name(NAME)?, from.0.len());
+                Self::Status(Status { code, subcode, name, text: from.name(rest)? })
+            }
+            Kind::Text => {
+                let (encoding, length) = (from.u16()?, from.u16()?);
+                fits(bytes == 4 + usize::from(length))?;
+                Self::Text(Text { encoding, bytes: from.0.to_vec() })
+            }
+            Kind::Image => Self::Image(Image::take(content)?),
+            Kind::Capability => {
+                fits(bytes.is_multiple_of(TYPE))?;
+                Self::Capability((0..bytes / TYPE).map(|_| from.name(TYPE)).collect::<Result<_, _>>()?)
+            }
+        })
+    }
+}
+
+fn with_scalar([x, y, z]: [f32; 3]) -> [f32; 4] {
+    [x, y, z, (1.0 - x * x - y * y - z * z).max(0.0).sqrt()]
+}

@@ -1,0 +1,143 @@
+//! A message: its header, what comes with it in version 3 of the protocol, and its content.
+
+use super::{
+    Content, Wrong,
+    crc::crc64,
+    wire::{Cursor, put_name},
+};
+
+/// What stands before every body.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Header {
+    /// 1 in versions 1 and 2 of the protocol, 2 in version 3.
+    pub version: u16,
+    /// The type of the message.
+    pub kind: String,
+    /// The name of the device.
+    pub device: String,
+    /// When, ns since 1970 (UTC); 0 if it is not told.
+    pub time_ns: u64,
+    /// Bytes that follow. Anybody may write any number here.
+    pub body_bytes: u64,
+    /// Checksum of the body.
+    pub crc: u64,
+}
+
+const TYPE: usize = 12;
+const DEVICE: usize = 20;
+/// Of the part that version 3 puts before the content.
+const EXTENDED: usize = 12;
+
+impl Header {
+    /// Bytes of one.
+    pub const BYTES: usize = 58;
+
+    /// Reads one.
+    ///
+    /// # Errors
+    /// [`Wrong`] if the bytes are none.
+    pub fn read(bytes: &[u8]) -> Result<Self, Wrong> {
+        let mut from = Cursor(bytes);
+        let version = from.u16()?;
+        if !(1..=2).contains(&version) {
+            return Err(Wrong::Version(version));
+        }
+        let kind = from.bytes(TYPE)?.iter().take_while(|byte| **byte != 0);
+        let kind = kind.map(|byte| if byte.is_ascii_graphic() { char::from(*byte) } else { '?' }).collect();
+        let device = from.name(DEVICE)?;
+        let (seconds, fraction) = (u64::from(from.u32()?), u64::from(from.u32()?));
+        let time_ns = seconds * 1_000_000_000 + ((fraction * 1_000_000_000 + (1 << 31)) >> 32);
+        Ok(Self { version, kind, device, time_ns, body_bytes: from.u64()?, crc: from.u64()? })
+    }
+}
+
+/// A message.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Message {
+    /// The name of the device, at most 20 bytes.
+    pub device: String,
+    /// When, ns since 1970 (UTC).
+    pub time_ns: u64,
+    /// What it says.
+    pub content: Content,
+}
+
+impl Message {
+    /// Of this device and time (ns since 1970, UTC).
+    pub fn new(device: &str, time_ns: u64, content: Content) -> Self {
+        Self { device: device.to_owned(), time_ns, content }
+    }
+
+    /// Its bytes, as every version of the protocol reads them.
+    pub fn encode(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        self.put(&mut bytes);
+        bytes
+    }
+
+    /// Adds its bytes.
+    pub fn put(&self, bytes: &mut Vec<u8>) {
+        let begin = bytes.len();
+        bytes.extend(1_u16.to_be_bytes());
+        put_name(bytes, &self.content.kind(), TYPE);
+        put_name(bytes, &self.device, DEVICE);
+        bytes.extend(stamp(self.time_ns).to_be_bytes());
+        bytes.extend([0; 16]);
+        let body = begin + Header::BYTES;
+        self.content.put(bytes);
+        let (length, crc) = ((bytes.len() - body) as u64, crc64(&bytes[body..]));
+        bytes[body - 16..body - 8].copy_from_slice(&length.to_be_bytes());
+        bytes[body - 8..body].copy_from_slice(&crc.to_be_bytes());
+    }
+
+    /// Reads the body that belongs to a header. Metadata are left out.
+    ///
+    /// # Errors
+    /// [`Wrong`] if it is damaged or no message of its type.
+    pub fn read(header: &Header, body: &[u8]) -> Result<Self, Wrong> {
+        if body.len() as u64 != header.body_bytes {
+            return Err(Wrong::Short);
+        }
+        if crc64(body) != header.crc {
+            return Err(Wrong::Checksum);
+        }
+        let content = if header.version == 1 { body } else { within(body)? };
+        let content = Content::take(&header.kind, content)?;
+        Ok(Self { device: header.device.clone(), time_ns: header.time_ns, content })
+    }
+}
+
+/// The content in a body of version 3: behind the extended header, before the metadata.
+fn within(body: &[u8]) -> Result<&[u8], Wrong> {
+    let mut from = Cursor(body);
+    let (extended, index) = (usize::from(from.u16()?), usize::from(from.u16()?));
+    let values = from.u32()? as usize;
+    let end = body.len().checked_sub(index).and_then(|rest| rest.checked_sub(values)).ok_or(Wrong::Short)?;
+    if extended < EXTENDED {
+        return Err(Wrong::Value { kind: "header".to_owned(), what: "the length of the extended header" });
+    }
+    let content = body.get(extended..end).ok_or(Wrong::Short)?;
+    metadata(&body[end..], index, values)?;
+    Ok(content)
+}
+
+/// Whether metadata fit their own counts: a list of lengths, then keys and values.
+fn metadata(region: &[u8], index: usize, values: usize) -> Result<(), Wrong> {
+    if index == 0 && values == 0 {
+        return Ok(());
+    }
+    let mut from = Cursor(region);
+    let count = usize::from(from.u16()?);
+    let mut told = 0_u64;
+    for _ in 0..count {
+        let (key, _, value) = (from.u16()?, from.u16()?, from.u32()?);
+        told += u64::from(key) + u64::from(value);
+    }
+    if index == 2 + 8 * count && told == values as u64 { Ok(()) } else { Err(Wrong::Short) }
+}
+
+/// Seconds in the upper half, their fraction in the lower.
+fn stamp(time_ns: u64) -> u64 {
+    let (seconds, rest_ns) = (time_ns / 1_000_000_000, time_ns % 1_000_000_000);
+    (seconds << 32) | ((rest_ns << 32) / 1_000_000_000)
+}

@@ -1,0 +1,260 @@
+//! A server that tells clients what a loop does. Nothing that a client sends reaches the loop.
+//!
+//! | thread | does |
+//! |---|---|
+//! | the recorder's | [`Watching`] copies a moment into a bounded queue when a client is due, or a state has changed; never waits |
+//! | hub | makes messages of it for each client, into its [`Mailbox`], where a newer bundle takes the place of the one before |
+//! | listener | takes clients in, up to [`MOST_CLIENTS`] |
+//! | reader, writer | of each client: hear its requests, no faster than they should be; send, and give the client up that takes nothing |
+
+mod audience;
+mod client;
+mod hub;
+mod mailbox;
+mod moment;
+mod picture;
+#[cfg(test)]
+mod tests;
+
+use std::{
+    fmt, io,
+    net::{SocketAddr, TcpListener, TcpStream},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    thread::{Builder, JoinHandle, sleep},
+    time::Duration,
+};
+
+use crossbeam_channel::{Receiver, Sender, bounded};
+use nalgebra::Vector3;
+use nima_machine::{messages::LoopState, rig::SIDES};
+use nima_session::outlet::Audience;
+
+pub use self::picture::Pictures;
+use self::{audience::Watching, client::Client, hub::Hub, moment::Told};
+
+/// The port that the programs of this protocol use.
+pub const PORT: u16 = 18_944;
+/// The device of the endoscope's pictures.
+pub const IMAGE_DEVICE: &str = "endoscope";
+/// Clients at once.
+const MOST_CLIENTS: usize = 8;
+/// What waits for the hub, at most: far more than comes while it is held up for a moment.
+const QUEUE: usize = 256;
+/// How often the listener looks for clients, and how long it rests after each.
+const LISTEN_EVERY: Duration = Duration::from_millis(20);
+const AFTER_CLIENT: Duration = Duration::from_millis(5);
+
+/// A sentence for a state: what is wrong and what to do, or nothing.
+pub type StateWords = fn(LoopState) -> String;
+
+/// What is known of a loop before it begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outline {
+    /// The trocar of each side, m (`world`), through which its shaft goes; `None` where it is not known.
+    pub trocars_m: [Option<Vector3<f64>>; SIDES],
+}
+
+/// Why nobody can listen.
+#[derive(Debug, thiserror::Error)]
+pub enum IgtlError {
+    /// The address cannot be used.
+    #[error(
+        "OpenIGTLink: cannot listen at {address}: {source}; end the program that uses this port, or name another one"
+    )]
+    Listen {
+        /// The address.
+        address: SocketAddr,
+        /// Why.
+        source: io::Error,
+    },
+    /// The operating system gives no thread.
+    #[error("OpenIGTLink: cannot start a thread: {0}; end other programs, then try again")]
+    Thread(#[source] io::Error),
+}
+
+/// A server that runs until it is dropped, for one loop after the other.
+pub struct Server {
+    shared: Arc<Shared>,
+    address: SocketAddr,
+    threads: Vec<JoinHandle<()>>,
+}
+
+/// What the threads share.
+struct Shared {
+    told: Sender<Told>,
+    clients: Mutex<Vec<Arc<Client>>>,
+    /// The loop's time (s, as bits) from which on a client wants something; infinite without one.
+    due: AtomicU64,
+    /// Moments that found no room in the queue.
+    dropped: AtomicU64,
+    ends: AtomicBool,
+    words: StateWords,
+    pictures: picture::Desk,
+}
+
+impl Shared {
+    fn clients(&self) -> MutexGuard<'_, Vec<Arc<Client>>> {
+        self.clients.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn due_s(&self) -> f64 {
+        f64::from_bits(self.due.load(Ordering::Relaxed))
+    }
+
+    fn set_due(&self, due_s: f64) {
+        self.due.store(due_s.to_bits(), Ordering::Relaxed);
+    }
+
+    /// Somebody wants something with the next tick.
+    fn hurry(&self) {
+        let _clients = self.clients();
+        self.set_due(f64::NEG_INFINITY);
+    }
+
+    fn is_ending(&self) -> bool {
+        self.ends.load(Ordering::Acquire)
+    }
+}
+
+impl Server {
+    /// Listens at this address; with port 0 at any free port. `words` are for the text of a status.
+    ///
+    /// # Errors
+    /// [`IgtlError`] if the address is not this computer's or the port is in use.
+    ///
+    /// ```
+    /// let server = nima_bridges::igtl::Server::start("127.0.0.1:0".parse()?, |_| String::new())?;
+    /// assert_eq!(server.clients(), 0);
+    /// assert!(std::net::TcpStream::connect(server.address()).is_ok());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn start(address: SocketAddr, words: StateWords) -> Result<Self, IgtlError> {
+        let refused = |source| IgtlError::Listen { address, source };
+        let listener = TcpListener::bind(address).map_err(refused)?;
+        listener.set_nonblocking(true).map_err(refused)?;
+        let address = listener.local_addr().map_err(refused)?;
+        let (told, hears) = bounded(QUEUE);
+        let shared = Arc::new(Shared {
+            told,
+            clients: Mutex::default(),
+            due: AtomicU64::new(f64::INFINITY.to_bits()),
+            dropped: AtomicU64::new(0),
+            ends: AtomicBool::new(false),
+            words,
+            pictures: picture::Desk::default(),
+        });
+        let mut server = Self { shared, address, threads: Vec::new() };
+        server.begin("igtl-hub", move |shared| Hub::new(shared).run(&hears))?;
+        server.begin("igtl-listener", move |shared| listen(&listener, &shared))?;
+        server.begin("igtl-pictures", |shared| picture::serve(&shared))?;
+        Ok(server)
+    }
+
+    fn begin(&mut self, name: &str, run: impl FnOnce(Arc<Shared>) + Send + 'static) -> Result<(), IgtlError> {
+        let shared = Arc::clone(&self.shared);
+        let thread = Builder::new().name(name.to_owned()).spawn(move || run(shared)).map_err(IgtlError::Thread)?;
+        self.threads.push(thread);
+        Ok(())
+    }
+
+    /// Where it listens.
+    pub const fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Clients that are connected now.
+    pub fn clients(&self) -> usize {
+        self.shared.clients().iter().filter(|client| !client.is_gone()).count()
+    }
+
+    /// Moments that clients did not get, because this computer was too busy.
+    pub fn dropped(&self) -> u64 {
+        self.shared.dropped.load(Ordering::Relaxed)
+    }
+
+    /// For the recorder of the next loop, of which this is known.
+    pub fn audience(&self, outline: Outline) -> Box<dyn Audience> {
+        Box::new(Watching::new(Arc::clone(&self.shared), outline))
+    }
+
+    /// From now on clients that ask for pictures get those of this source, or none.
+    pub fn show(&self, source: Option<Box<dyn Pictures>>) {
+        self.shared.pictures.put(source);
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.shared.ends.store(true, Ordering::Release);
+        for client in self.shared.clients().iter() {
+            client.leave();
+        }
+        for thread in self.threads.drain(..) {
+            thread.join().ok();
+        }
+    }
+}
+
+impl fmt::Debug for Server {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Server").field("address", &self.address).finish_non_exhaustive()
+    }
+}
+
+impl fmt::Debug for Shared {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Shared").field("dropped", &self.dropped).finish_non_exhaustive()
+    }
+}
+
+/// Takes clients in until the server ends, and waits for their threads.
+fn listen(listener: &TcpListener, shared: &Arc<Shared>) {
+    let mut threads: Vec<JoinHandle<()>> = Vec::new();
+    while !shared.is_ending() {
+        match listener.accept() {
+            Ok((stream, _)) => {
+                take_in(stream, shared, &mut threads);
+                sleep(AFTER_CLIENT);
+            }
+            // Nobody, or the operating system has no room for another connection now.
+            Err(_) => sleep(LISTEN_EVERY),
+        }
+        threads.retain(|thread| !thread.is_finished());
+    }
+    for client in shared.clients().iter() {
+        client.leave();
+    }
+    for thread in threads {
+        thread.join().ok();
+    }
+}
+
+/// A client that cannot be served is closed.
+fn take_in(stream: TcpStream, shared: &Arc<Shared>, threads: &mut Vec<JoinHandle<()>>) {
+    let mut clients = shared.clients();
+    clients.retain(|client| !client.is_gone());
+    if clients.len() >= MOST_CLIENTS {
+        drop(clients);
+        return client::refuse(&stream, MOST_CLIENTS);
+    }
+    let Ok(client) = Client::new(stream) else { return };
+    let client = Arc::new(client);
+    clients.push(Arc::clone(&client));
+    shared.set_due(f64::NEG_INFINITY);
+    drop(clients);
+    let begin = |name: &str, run: Box<dyn FnOnce() + Send>| Builder::new().name(name.to_owned()).spawn(run);
+    let writer = Arc::clone(&client);
+    let (reader, hurried) = (Arc::clone(&client), Arc::clone(shared));
+    let writes = begin("igtl-writer", Box::new(move || writer.write()));
+    let reads = begin("igtl-reader", Box::new(move || reader.read(|| hurried.hurry(), &hurried.pictures)));
+    if writes.is_err() || reads.is_err() {
+        client.leave();
+    }
+    threads.extend([writes, reads].into_iter().flatten());
+}
+
+/// What the hub hears.
+type Hears = Receiver<Told>;

@@ -1,0 +1,67 @@
+//! On the recorder's thread: what the hub must know, and no more.
+
+use std::sync::{Arc, atomic::Ordering};
+
+use nima_machine::{
+    messages::{Event, LoopState, Tick},
+    rig::SIDES,
+};
+use nima_recording::session::Encoding;
+use nima_session::outlet::Audience;
+
+use super::{
+    Outline, Shared,
+    moment::{Arm, Moment, Told},
+};
+
+/// Watches one loop.
+#[derive(Debug)]
+pub(super) struct Watching {
+    shared: Arc<Shared>,
+    outline: Outline,
+    states: [Option<LoopState>; SIDES],
+}
+
+impl Watching {
+    pub(super) const fn new(shared: Arc<Shared>, outline: Outline) -> Self {
+        Self { shared, outline, states: [None; SIDES] }
+    }
+
+    /// Whether it has arrived.
+    fn tell(&self, told: Told) -> bool {
+        let arrived = self.shared.told.try_send(told).is_ok();
+        if !arrived {
+            self.shared.dropped.fetch_add(1, Ordering::Relaxed);
+        }
+        arrived
+    }
+}
+
+impl Audience for Watching {
+    fn begins(&mut self, _program: &str, started_ns: u64) {
+        self.tell(Told::Begins(started_ns, self.outline));
+    }
+
+    fn channel(&mut self, _topic: &str, _encoding: &Encoding) {}
+
+    fn message(&mut self, _channel: usize, _log_time_ns: u64, _data: &[u8]) {}
+
+    fn tick(&mut self, t_s: f64, ticks: &[Option<Tick>; SIDES], _events: &[Event]) {
+        let states = ticks.each_ref().map(|tick| tick.as_ref().map(|tick| tick.state));
+        let has_changed = states != self.states;
+        if !has_changed && t_s < self.shared.due_s() {
+            return;
+        }
+        let arms = ticks.each_ref().map(|tick| tick.as_ref().map(Arm::of));
+        // A change that found no room is told with the next tick.
+        if self.tell(Told::Moment(Moment { t_s, arms })) {
+            self.states = states;
+        }
+    }
+}
+
+impl Drop for Watching {
+    fn drop(&mut self) {
+        self.tell(Told::Ends);
+    }
+}

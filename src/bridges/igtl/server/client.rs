@@ -1,0 +1,176 @@
+//! A client: what it wants, the thread that hears it, and the one that writes to it.
+
+mod requests;
+mod wants;
+
+use std::{
+    fmt, io,
+    io::{ErrorKind, Read as _, Write as _},
+    net::{Shutdown, TcpStream},
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::sleep,
+    time::{Duration, SystemTime, UNIX_EPOCH},
+};
+
+use socket2::SockRef;
+
+pub(super) use self::wants::EARLY_S;
+use self::{requests::Requests, wants::Wants};
+use super::{
+    super::{Content, Kind, Message, Status, StatusCode, Verb, Wrong},
+    mailbox::Mailbox,
+    moment::BUNDLE,
+    picture::Desk,
+};
+
+/// A client that takes nothing for so long is given up.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// Bytes on their way, at most: little, so that a slow client gets what is new.
+const SEND_BUFFER: usize = 1 << 16;
+/// So much is read of a client in this time, at most: 200 kB/s, more than 3000 requests a second. The rest waits on its side.
+const CHUNK: usize = 1024;
+const READ_EVERY: Duration = Duration::from_millis(5);
+/// The only frame.
+const WORLD: &str = "world";
+
+pub(super) struct Client {
+    stream: TcpStream,
+    pub(super) mailbox: Mailbox,
+    wants: Mutex<Wants>,
+    gone: AtomicBool,
+}
+
+impl Client {
+    pub(super) fn new(stream: TcpStream) -> io::Result<Self> {
+        stream.set_nonblocking(false)?;
+        stream.set_nodelay(true)?;
+        stream.set_write_timeout(Some(PATIENCE))?;
+        SockRef::from(&stream).set_send_buffer_size(SEND_BUFFER)?;
+        Ok(Self { stream, mailbox: Mailbox::default(), wants: Mutex::default(), gone: AtomicBool::new(false) })
+    }
+
+    pub(super) fn wants(&self) -> MutexGuard<'_, Wants> {
+        self.wants.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn is_gone(&self) -> bool {
+        self.gone.load(Ordering::Acquire)
+    }
+
+    /// Ends the connection, and with it both threads.
+    pub(super) fn leave(&self) {
+        self.gone.store(true, Ordering::Release);
+        // It may have ended on the other side.
+        self.stream.shutdown(Shutdown::Both).ok();
+        self.mailbox.end();
+    }
+
+    /// Writes what comes until the connection ends.
+    pub(super) fn write(&self) {
+        while let Some(bytes) = self.mailbox.next() {
+            if (&self.stream).write_all(&bytes).is_err() {
+                break;
+            }
+        }
+        self.leave();
+    }
+
+    /// Hears requests until the connection ends. `hurry` lets the loop's next tick be told.
+    pub(super) fn read(&self, hurry: impl Fn(), desk: &Desk) {
+        let mut requests = Requests::default();
+        let mut chunk = [0; CHUNK];
+        while !self.is_gone() {
+            match (&self.stream).read(&mut chunk) {
+                Ok(count) if count > 0 => {
+                    let heard = requests.take(&chunk[..count], |message| self.hear(message, &hurry, desk));
+                    if heard.is_err() {
+                        break;
+                    }
+                    sleep(READ_EVERY);
+                }
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Ok(_) | Err(_) => break,
+            }
+        }
+        self.leave();
+    }
+
+    fn hear(&self, message: Result<Message, Wrong>, hurry: &impl Fn(), desk: &Desk) {
+        match message {
+            Ok(Message { content: Content::Request(verb, kind, stream), .. }) => match verb {
+                Verb::Get => self.once(kind, hurry, desk),
+                Verb::Start => {
+                    let known_frame = stream.as_ref().is_none_or(|stream| ["", WORLD].contains(&stream.frame.as_str()));
+                    let can = known_frame && kind != Kind::Capability && (kind != Kind::Image || desk.is_taken());
+                    if can {
+                        self.wants().start(kind, stream.map(|stream| stream.interval_ms));
+                        hurry();
+                    }
+                    self.answer(Content::Answer(kind, u8::from(!can)));
+                }
+                Verb::Stop => {
+                    self.wants().stop(kind);
+                    self.answer(Content::Answer(kind, 0));
+                }
+            },
+            // Who listens here cannot tell this program anything.
+            Ok(_) => {}
+            Err(error) => self.answer(refusal(StatusCode::ILLEGAL, &error.to_string())),
+        }
+    }
+
+    fn once(&self, kind: Kind, hurry: &impl Fn(), desk: &Desk) {
+        match kind {
+            Kind::Capability => self.answer(Content::Capability(capabilities())),
+            Kind::Image if !desk.is_taken() => {
+                self.answer(refusal(StatusCode::NOT_FOUND, "no picture of an endoscope is read here"));
+            }
+            kind => {
+                self.wants().ask(kind);
+                hurry();
+            }
+        }
+    }
+
+    fn answer(&self, content: Content) {
+        self.mailbox.tell(Message::new(BUNDLE, now_ns(), content).encode());
+    }
+}
+
+impl fmt::Debug for Client {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Client").field("wants", &self.wants).field("gone", &self.gone).finish_non_exhaustive()
+    }
+}
+
+/// Closes a connection for which there is no room, and says so.
+pub(super) fn refuse(mut stream: &TcpStream, most: usize) {
+    let text = format!("{most} clients are connected already: end one of them");
+    let bytes = Message::new(BUNDLE, now_ns(), refusal(StatusCode::BUSY, &text)).encode();
+    stream.set_nonblocking(true).ok();
+    // A new connection has room for this; if not, there is nobody to tell.
+    stream.write_all(&bytes).ok();
+    stream.shutdown(Shutdown::Write).ok();
+}
+
+pub(super) fn refusal(code: StatusCode, text: &str) -> Content {
+    Content::Status(Status { code, subcode: 0, name: String::new(), text: text.to_owned() })
+}
+
+/// What can be had here.
+fn capabilities() -> Vec<String> {
+    let told = Kind::ALL.map(|kind| kind.name().to_owned());
+    let asked = [Verb::Get, Verb::Start, Verb::Stop].into_iter().flat_map(|verb| {
+        let has = move |kind: &Kind| verb == Verb::Get || *kind != Kind::Capability;
+        Kind::ALL.into_iter().filter(has).map(move |kind| Content::Request(verb, kind, None).kind())
+    });
+    told.into_iter().chain(asked).collect()
+}
+
+/// Now, ns since 1970.
+pub(super) fn now_ns() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64)
+}

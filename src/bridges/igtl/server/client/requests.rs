@@ -1,0 +1,102 @@
+//! Messages in what a client sends, piece by piece.
+
+use super::super::super::{Header, Message, Wrong};
+
+/// Longest body that is read; a request has 36 bytes. What is longer is passed over.
+const LONGEST: u64 = 4096;
+
+/// The message that is coming.
+#[derive(Debug, Default)]
+pub(super) struct Requests {
+    buffer: Vec<u8>,
+    /// Bytes of a long body that are still to come.
+    passed_over: u64,
+}
+
+impl Requests {
+    /// Takes the next bytes, and hands over the messages that have become whole with them.
+    ///
+    /// # Errors
+    /// [`Wrong`] if a header is none: where the next message begins is then unknown.
+    pub(super) fn take(&mut self, mut bytes: &[u8], mut hear: impl FnMut(Result<Message, Wrong>)) -> Result<(), Wrong> {
+        loop {
+            let skipped = bytes.len().min(usize::try_from(self.passed_over).unwrap_or(usize::MAX));
+            self.passed_over -= skipped as u64;
+            bytes = &bytes[skipped..];
+            if !self.fill(&mut bytes, Header::BYTES) {
+                return Ok(());
+            }
+            let header = Header::read(&self.buffer)?;
+            if header.body_bytes > LONGEST {
+                self.passed_over = header.body_bytes;
+                self.buffer.clear();
+                continue;
+            }
+            if !self.fill(&mut bytes, Header::BYTES + header.body_bytes as usize) {
+                return Ok(());
+            }
+            hear(Message::read(&header, &self.buffer[Header::BYTES..]));
+            self.buffer.clear();
+        }
+    }
+
+    /// Whether so many bytes are there.
+    fn fill(&mut self, bytes: &mut &[u8], length: usize) -> bool {
+        let wanted = length.saturating_sub(self.buffer.len()).min(bytes.len());
+        let (taken, rest) = bytes.split_at(wanted);
+        self.buffer.extend(taken);
+        *bytes = rest;
+        self.buffer.len() >= length
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        super::super::super::{Content, Kind, Stream, Text, Verb},
+        *,
+    };
+
+    fn request() -> Message {
+        let stream = Stream { interval_ms: 20, frame: "world".to_owned() };
+        Message::new("", 0, Content::Request(Verb::Start, Kind::Tracking, Some(stream)))
+    }
+
+    #[test]
+    fn messages_become_whole_however_they_are_cut_and_long_ones_are_passed_over() {
+        let long = Message::new("", 0, Content::Text(Text::of(&"x".repeat(20_000)))).encode();
+        let all = [request().encode(), long, request().encode(), request().encode()].concat();
+        for size in [1, 7, 58, 59, 1024, 50_000] {
+            let (mut requests, mut heard) = (Requests::default(), Vec::new());
+            for chunk in all.chunks(size) {
+                requests.take(chunk, |message| heard.push(message)).unwrap();
+                assert!(requests.buffer.len() < Header::BYTES + LONGEST as usize);
+            }
+            assert_eq!(heard, vec![Ok(request()); 3], "in pieces of {size}");
+        }
+    }
+
+    #[test]
+    fn bytes_that_are_no_header_end_the_conversation_and_a_body_that_is_wrong_does_not() {
+        let mut requests = Requests::default();
+        assert_eq!(requests.take(&[b'G'; 58], |_| panic!()), Err(Wrong::Version(0x4747)));
+        let mut damaged = request().encode();
+        damaged[Header::BYTES] ^= 1;
+        let (mut requests, mut heard) = (Requests::default(), Vec::new());
+        let bytes = [damaged, request().encode()].concat();
+        requests.take(&bytes, |message| heard.push(message)).unwrap();
+        assert_eq!(heard, [Err(Wrong::Checksum), Ok(request())]);
+    }
+
+    #[test]
+    fn a_length_that_nobody_can_send_takes_no_memory() {
+        let mut head = request().encode()[..Header::BYTES].to_vec();
+        head[Header::BYTES - 16..Header::BYTES - 8].fill(0xFF);
+        let mut requests = Requests::default();
+        requests.take(&head, |_| panic!()).unwrap();
+        for _ in 0..100 {
+            requests.take(&[0; 4096], |_| panic!()).unwrap();
+        }
+        assert!(requests.buffer.capacity() < 1000);
+    }
+}

@@ -1,0 +1,156 @@
+//! Makes messages of what the loop does, for each client.
+
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+use crossbeam_channel::RecvTimeoutError;
+use nima_machine::{messages::LoopState, rig::SIDES};
+
+use super::{
+    super::{Content, Kind, Message, StatusCode},
+    Hears, Outline, Shared,
+    client::{Client, EARLY_S, now_ns, refusal},
+    moment::{BUNDLE, Moment, Told, Writer},
+};
+
+/// How often is looked for clients that are gone, and for states that are due.
+const LOOK_EVERY: Duration = Duration::from_millis(100);
+/// Every client is told this often how the loop is.
+const STATUS_EVERY: Duration = Duration::from_secs(1);
+/// A loop that tells nothing for so long does not run, although a client wants something of every tick that is due.
+const SILENT: Duration = Duration::from_secs(2);
+
+pub(super) struct Hub {
+    shared: Arc<Shared>,
+    outline: Outline,
+    started_ns: u64,
+    newest: Option<Moment>,
+    heard: Instant,
+    looked: Instant,
+}
+
+impl Hub {
+    pub(super) fn new(shared: Arc<Shared>) -> Self {
+        let now = Instant::now();
+        Self { shared, outline: Outline::default(), started_ns: 0, newest: None, heard: now, looked: now }
+    }
+
+    /// Until the server ends.
+    pub(super) fn run(mut self, hears: &Hears) {
+        while !self.shared.is_ending() {
+            match hears.recv_timeout(LOOK_EVERY) {
+                Ok(Told::Begins(started_ns, outline)) => {
+                    (self.started_ns, self.outline, self.newest) = (started_ns, outline, None);
+                    self.shared.hurry();
+                }
+                Ok(Told::Moment(moment)) => self.moment(moment),
+                Ok(Told::Ends) => {
+                    self.newest = None;
+                    self.tell_all();
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+            let now = Instant::now();
+            if now.duration_since(self.looked) >= LOOK_EVERY {
+                self.looked = now;
+                self.look_after(now);
+            }
+        }
+    }
+
+    fn time_ns(&self, t_s: f64) -> u64 {
+        self.started_ns.saturating_add_signed((t_s * 1e9).round() as i64)
+    }
+
+    /// The loop did this.
+    fn moment(&mut self, moment: Moment) {
+        let has_changed = self.newest.as_ref().map(states) != Some(states(&moment));
+        self.newest = Some(moment);
+        self.heard = Instant::now();
+        if has_changed {
+            self.tell_all();
+        }
+        let writer = Writer { moment: &moment, outline: &self.outline, time_ns: self.time_ns(moment.t_s) };
+        let clients = self.shared.clients();
+        let mut due_s = f64::INFINITY;
+        for client in clients.iter().filter(|client| !client.is_gone()) {
+            let mut wants = client.wants();
+            if wants.asks() {
+                let asked = wants.take_asked();
+                let mut bytes = Vec::new();
+                asked.of_moment().for_each(|kind| writer.put(kind, &mut bytes));
+                if asked.has(Kind::Status) {
+                    writer.put_status(self.shared.words, &mut bytes);
+                }
+                client.mailbox.tell(bytes);
+            }
+            if let Some(kinds) = wants.due(moment.t_s) {
+                let mut bytes = Vec::new();
+                kinds.of_moment().for_each(|kind| writer.put(kind, &mut bytes));
+                if !bytes.is_empty() {
+                    client.mailbox.bundle(bytes);
+                }
+            }
+            due_s = due_s.min(wants.due_s);
+        }
+        // With the clients at hand, so that what somebody wants meanwhile is not forgotten.
+        self.shared.set_due(due_s - EARLY_S);
+    }
+
+    fn look_after(&self, now: Instant) {
+        let mut clients = self.shared.clients();
+        clients.retain(|client| !client.is_gone());
+        if clients.is_empty() {
+            self.shared.set_due(f64::INFINITY);
+        }
+        let is_silent = self.newest.is_none() || now.duration_since(self.heard) > SILENT;
+        for client in clients.iter() {
+            let mut wants = client.wants();
+            let asked = is_silent && wants.asks();
+            if asked {
+                wants.take_asked();
+            }
+            if asked || wants.hears_states() && wants.status_due.is_none_or(|due| now >= due) {
+                wants.status_due = Some(now + STATUS_EVERY);
+                drop(wants);
+                self.tell(client, is_silent);
+            }
+        }
+    }
+
+    /// How the loop is, for all who want to know.
+    fn tell_all(&self) {
+        for client in self.shared.clients().iter() {
+            let mut wants = client.wants();
+            if wants.hears_states() {
+                wants.status_due = Some(Instant::now() + STATUS_EVERY);
+                drop(wants);
+                self.tell(client, self.newest.is_none());
+            }
+        }
+    }
+
+    fn tell(&self, client: &Client, is_silent: bool) {
+        let bytes = match &self.newest {
+            Some(moment) if !is_silent => {
+                let writer = Writer { moment, outline: &self.outline, time_ns: self.time_ns(moment.t_s) };
+                let mut bytes = Vec::new();
+                writer.put_status(self.shared.words, &mut bytes);
+                bytes
+            }
+            _ => Message::new(BUNDLE, now_ns(), no_loop()).encode(),
+        };
+        client.mailbox.tell(bytes);
+    }
+}
+
+fn no_loop() -> Content {
+    refusal(StatusCode::NOT_READY, "nothing is told now: no loop runs, or a trial of a blind study does")
+}
+
+fn states(moment: &Moment) -> [Option<LoopState>; SIDES] {
+    moment.arms.map(|arm| arm.map(|arm| arm.state))
+}

@@ -1,0 +1,119 @@
+//! What waits for a client: little, and the newest.
+
+use std::{
+    collections::VecDeque,
+    sync::{Condvar, Mutex, MutexGuard, PoisonError},
+};
+
+/// Answers and states that wait, at most; then the oldest is lost.
+const MOST_TOLD: usize = 64;
+
+/// Between the hub and a client's writer. Neither waits for the other: the lock is held while something is put in or taken out.
+#[derive(Debug, Default)]
+pub(super) struct Mailbox {
+    mail: Mutex<Mail>,
+    comes: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct Mail {
+    told: VecDeque<Vec<u8>>,
+    bundle: Option<Vec<u8>>,
+    picture: Option<Vec<u8>>,
+    /// Bundles and pictures that a newer one has replaced, and answers that were lost.
+    replaced: u64,
+    ends: bool,
+}
+
+impl Mailbox {
+    fn mail(&self) -> MutexGuard<'_, Mail> {
+        self.mail.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Adds an answer or a state.
+    pub(super) fn tell(&self, bytes: Vec<u8>) {
+        let mut mail = self.mail();
+        if mail.told.len() >= MOST_TOLD {
+            mail.told.pop_front();
+            mail.replaced += 1;
+        }
+        mail.told.push_back(bytes);
+        self.comes.notify_one();
+    }
+
+    /// The newest bundle.
+    pub(super) fn bundle(&self, bytes: Vec<u8>) {
+        let mut mail = self.mail();
+        mail.replaced += u64::from(mail.bundle.replace(bytes).is_some());
+        self.comes.notify_one();
+    }
+
+    /// The newest picture.
+    pub(super) fn picture(&self, bytes: Vec<u8>) {
+        let mut mail = self.mail();
+        mail.replaced += u64::from(mail.picture.replace(bytes).is_some());
+        self.comes.notify_one();
+    }
+
+    /// Whether a picture still waits: another one would be made for nothing.
+    pub(super) fn has_picture(&self) -> bool {
+        self.mail().picture.is_some()
+    }
+
+    /// How much a newer one has replaced.
+    #[cfg(test)]
+    pub(super) fn replaced(&self) -> u64 {
+        self.mail().replaced
+    }
+
+    /// Nothing more is wanted.
+    pub(super) fn end(&self) {
+        self.mail().ends = true;
+        self.comes.notify_one();
+    }
+
+    /// What is next; waits for it. `None` at the end.
+    pub(super) fn next(&self) -> Option<Vec<u8>> {
+        let mut mail = self.mail();
+        loop {
+            if mail.ends {
+                return None;
+            }
+            let next = mail.told.pop_front().or_else(|| mail.bundle.take()).or_else(|| mail.picture.take());
+            if next.is_some() {
+                return next;
+            }
+            mail = self.comes.wait(mail).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_bundle_takes_the_place_of_the_one_before_and_answers_keep_their_order() {
+        let mailbox = Mailbox::default();
+        for number in 0..10 {
+            mailbox.bundle(vec![number]);
+            mailbox.picture(vec![100 + number]);
+            mailbox.tell(vec![50 + number]);
+        }
+        assert!(mailbox.has_picture() && mailbox.replaced() == 18);
+        let taken: Vec<u8> = (0..12).filter_map(|_| mailbox.next()).flatten().collect();
+        assert_eq!(taken, [50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 9, 109]);
+        mailbox.end();
+        assert_eq!(mailbox.next(), None);
+    }
+
+    #[test]
+    fn a_client_that_takes_nothing_costs_no_more_memory() {
+        let mailbox = Mailbox::default();
+        for number in 0..10_000_u32 {
+            mailbox.tell(number.to_be_bytes().to_vec());
+        }
+        assert_eq!(mailbox.mail().told.len(), MOST_TOLD);
+        assert_eq!(mailbox.next(), Some((10_000 - MOST_TOLD as u32).to_be_bytes().to_vec()));
+    }
+}

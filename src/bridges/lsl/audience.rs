@@ -1,0 +1,127 @@
+//! On the recorder's thread: what happened becomes a mark with a stamp.
+
+use std::sync::Arc;
+
+use nima_machine::{
+    messages::{Event, Tick},
+    rig::SIDES,
+};
+use nima_recording::{messages::foxglove::Log, session::Encoding};
+use nima_session::outlet::Audience;
+use prost::Message as _;
+
+use super::{
+    About, Shared,
+    clock::LoopClock,
+    marks::{Follower, happening},
+};
+
+/// Topics of a session, and the name of the operator's lines in its log.
+const HAPPENINGS: &str = "happenings";
+const LOG: &str = "log";
+const OPERATORS: &str = "mark";
+
+/// What of a session is heard beside its ticks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Topic {
+    Happenings,
+    Log,
+    Other,
+}
+
+/// Marks that wait until the clock is known, at most.
+const MOST_EARLY: usize = 1024;
+
+/// Marks one session.
+#[derive(Debug)]
+pub(super) struct Marking {
+    shared: Arc<Shared>,
+    trial: Option<String>,
+    follower: Follower,
+    clock: LoopClock,
+    channels: Vec<Topic>,
+    started_ns: u64,
+    /// Time of the last tick, s.
+    last_s: Option<f64>,
+    /// What happened before the clock was known, at these times of the loop, s.
+    early: Vec<(f64, String)>,
+}
+
+impl Marking {
+    pub(super) fn new(shared: Arc<Shared>, about: About) -> Self {
+        let About { contact_n, trial, words } = about;
+        let (clock, channels, early) = (LoopClock::default(), Vec::new(), Vec::new());
+        let follower = Follower::new(contact_n, words);
+        Self { shared, trial, follower, clock, channels, started_ns: 0, last_s: None, early }
+    }
+
+    /// At this time of the loop, s. The order of time is the caller's.
+    fn mark(&mut self, t_s: f64, what: String) {
+        match self.clock.settled(t_s) {
+            Some(at_s) => self.shared.mark(at_s, what),
+            None if self.early.len() < MOST_EARLY => self.early.push((t_s, what)),
+            None => {}
+        }
+    }
+
+    /// Sends what waited.
+    fn catch_up(&mut self) {
+        for (t_s, what) in std::mem::take(&mut self.early) {
+            if let Some(at_s) = self.clock.at(t_s) {
+                self.shared.mark(at_s, what);
+            }
+        }
+    }
+}
+
+impl Audience for Marking {
+    fn begins(&mut self, _program: &str, started_ns: u64) {
+        self.started_ns = started_ns;
+    }
+
+    fn channel(&mut self, topic: &str, _encoding: &Encoding) {
+        self.channels.push(match topic {
+            HAPPENINGS => Topic::Happenings,
+            LOG => Topic::Log,
+            _ => Topic::Other,
+        });
+    }
+
+    fn message(&mut self, channel: usize, log_time_ns: u64, data: &[u8]) {
+        let what = match self.channels.get(channel) {
+            Some(Topic::Happenings) => happening(data),
+            // The operator's marks; all other lines are told by ticks.
+            Some(Topic::Log) => Log::decode(data).ok().filter(|log| log.name == OPERATORS).map(|log| log.message),
+            _ => None,
+        };
+        if let Some(what) = what {
+            let t_s = log_time_ns.saturating_sub(self.started_ns) as f64 * 1e-9;
+            self.mark(t_s, what);
+        }
+    }
+
+    fn tick(&mut self, t_s: f64, ticks: &[Option<Tick>; SIDES], _events: &[Event]) {
+        let is_first = self.last_s.replace(t_s).is_none();
+        self.clock.note(t_s, self.shared.lsl.local_clock());
+        if let Some(trial) = self.trial.as_ref().filter(|_| is_first) {
+            self.early.insert(0, (t_s, format!("trial begin {trial}")));
+        }
+        if self.clock.settled(t_s).is_some() && !self.early.is_empty() {
+            self.catch_up();
+        }
+        let mut marks = Vec::new();
+        self.follower.tick(ticks, |what| marks.push(what));
+        for what in marks {
+            self.mark(t_s, what);
+        }
+    }
+}
+
+impl Drop for Marking {
+    fn drop(&mut self) {
+        self.catch_up();
+        if let Some((trial, at_s)) = self.trial.take().zip(self.last_s.and_then(|t_s| self.clock.at(t_s))) {
+            self.shared.mark(at_s, format!("trial end {trial}"));
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The loop's time by the clock of LSL.
+
+/// The loop's clock may run this much slower than that of LSL.
+const DRIFT: f64 = 1e-3;
+
+/// The estimate is used when ticks have been seen for so long, s: the first ones are often late.
+const SETTLES_S: f64 = 0.2;
+
+/// Estimated from when ticks are known here: the least delay counts.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LoopClock {
+    /// The clock of LSL minus the loop's, s, and when it was last seen, s.
+    offset_s: Option<(f64, f64)>,
+    /// When it was first seen, s.
+    since_s: Option<f64>,
+}
+
+impl LoopClock {
+    /// A tick of this time (s) is known at this time of LSL, s.
+    pub(super) fn note(&mut self, t_s: f64, now_s: f64) {
+        let offset_s = now_s - t_s;
+        let least_s = self.offset_s.map_or(offset_s, |(least_s, at_s)| offset_s.min(least_s + DRIFT * (now_s - at_s)));
+        self.offset_s = Some((least_s, now_s));
+        self.since_s.get_or_insert(now_s);
+    }
+
+    /// The same, once the estimate can be relied on.
+    pub(super) fn settled(&self, t_s: f64) -> Option<f64> {
+        let (since_s, (_, now_s)) = (self.since_s?, self.offset_s?);
+        self.at(t_s).filter(|_| now_s - since_s >= SETTLES_S)
+    }
+
+    /// A time of the loop by the clock of LSL, s.
+    pub(super) fn at(&self, t_s: f64) -> Option<f64> {
+        self.offset_s.map(|(offset_s, _)| t_s + offset_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stamp_is_right_to_a_fraction_of_a_millisecond_however_late_ticks_are_known() {
+        let mut clock = LoopClock::default();
+        assert_eq!((clock.at(1.0), clock.settled(1.0)), (None, None));
+        for tick in 0..20_000_u32 {
+            let t_s = f64::from(tick) * 1e-3;
+            // The disk held the recorder up for half a second; usually a tick is known within 0.3 ms.
+            // The first ones wait for the file to be begun.
+            let late_s = match tick {
+                0..50 => 0.05 - t_s,
+                1000..1500 => 1.5 - t_s,
+                _ => f64::from(tick % 4) * 1e-4,
+            };
+            clock.note(t_s, 5000.0 + t_s + late_s);
+            let Some(at_s) = clock.settled(t_s) else { continue };
+            assert!(tick >= 150);
+            let error_s = at_s - 5000.0 - t_s;
+            assert!((-1e-9..6e-4).contains(&error_s), "tick {tick}: {error_s} s");
+        }
+        assert!(clock.settled(0.0).is_some());
+    }
+}

@@ -1,0 +1,78 @@
+//! What becomes a mark, and how it reads.
+//!
+//! A mark is a few words that a program can split at spaces: what, of which side, and numbers. Nothing in it tells how forces are rendered.
+
+use nima_core::safety::State;
+use nima_machine::{
+    messages::{Fault, LoopState, Tick},
+    rig::{SIDES, Side},
+};
+use serde_json::{Map, Value};
+
+/// Contact ends below this share of the force with which it begins.
+const CONTACT_ENDS: f64 = 0.5;
+/// The fields of a happening that stand first in its mark.
+const EVENT: &str = "event";
+const TIME: &str = "t_s";
+
+/// Follows the arms from tick to tick.
+#[derive(Debug)]
+pub(super) struct Follower {
+    contact_n: f64,
+    words: fn(Fault) -> &'static str,
+    states: [Option<LoopState>; SIDES],
+    contacts: [bool; SIDES],
+}
+
+impl Follower {
+    pub(super) const fn new(contact_n: f64, words: fn(Fault) -> &'static str) -> Self {
+        Self { contact_n, words, states: [None; SIDES], contacts: [false; SIDES] }
+    }
+
+    /// What has happened with these ticks.
+    pub(super) fn tick(&mut self, ticks: &[Option<Tick>; SIDES], mut mark: impl FnMut(String)) {
+        for tick in ticks.iter().flatten() {
+            let (side, place) = (tick.side, tick.side.index());
+            let before = self.states[place].replace(tick.state);
+            if before != Some(tick.state) {
+                self.change(side, before, tick.state, &mut mark);
+            }
+            let force_n = tick.measured_n.norm();
+            let was = self.contacts[place];
+            let least_n = if was { CONTACT_ENDS * self.contact_n } else { self.contact_n };
+            // A force that is not known is no contact.
+            let is = tick.state != State::Disconnected && force_n >= least_n;
+            self.contacts[place] = is;
+            if is != was {
+                mark(format!("contact {} {}", if is { "on" } else { "off" }, side.word()));
+            }
+        }
+    }
+
+    fn change(&self, side: Side, before: Option<LoopState>, to: LoopState, mark: &mut impl FnMut(String)) {
+        let side = side.word();
+        let coupled = |state: &LoopState| matches!(state, State::Engaged | State::Clutched);
+        match (before.as_ref().is_some_and(coupled), coupled(&to)) {
+            (false, true) => mark(format!("engage {side}")),
+            (true, false) => mark(format!("disengage {side}")),
+            _ => {}
+        }
+        match (before, to) {
+            (_, State::Faulted(fault)) => mark(format!("fault {side}: {}", (self.words)(fault))),
+            (_, State::Stopped) => mark(format!("stop {side}")),
+            (_, State::Clutched) => mark(format!("clutch on {side}")),
+            (Some(State::Clutched), _) => mark(format!("clutch off {side}")),
+            _ => {}
+        }
+    }
+}
+
+/// A happening of a session as a mark: `task ring_dropped in_view=false ring=2 side=left`.
+pub(super) fn happening(message: &[u8]) -> Option<String> {
+    let fields: Map<String, Value> = serde_json::from_slice(message).ok()?;
+    let event = fields.get(EVENT)?.as_str()?;
+    let told = fields.iter().filter(|(name, value)| ![EVENT, TIME].contains(&name.as_str()) && !value.is_null());
+    Some(told.fold(format!("task {event}"), |mark, (name, value)| {
+        mark + &format!(" {name}={}", value.as_str().map_or_else(|| value.to_string(), str::to_owned))
+    }))
+}

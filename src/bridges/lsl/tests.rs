@@ -1,0 +1,135 @@
+//! Marks of a loop, without the library; with it where it is installed (`NIMA_LIBLSL` names its file).
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+use nima_core::safety::State;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Fault, Tick},
+    rig::{Inputs, SIDES, Sensed},
+    teleop::{Calibrations, Loop, Timing},
+};
+
+use super::{
+    marks::{Follower, happening},
+    *,
+};
+
+const WORDS: fn(Fault) -> &'static str = |_| "something is wrong";
+
+/// Ticks of one arm that is engaged from 0.005 s, touches from 0.5 to 1 s, and is stopped from 1.5 to 1.6 s.
+fn ticks() -> Vec<[Option<Tick>; SIDES]> {
+    let rig = RigConfig::load("simulated").unwrap();
+    let mut control = Loop::new(&rig, &[Some(Calibrations::default()), None]).unwrap();
+    let inputs = Inputs { sensed: Sensed::AtTip(Vector3::zeros()), powered: true, ..Inputs::NOTHING };
+    let (_, [tick, _]) = control.step([Some(inputs), None], &Timing::default());
+    let tick = tick.unwrap();
+    (0..1800).map(|number| [Some(at(number, &tick)), None]).collect()
+}
+
+/// Such a tick by its number.
+fn at(number: u32, like: &Tick) -> Tick {
+    let mut tick = *like;
+    tick.index = u64::from(number);
+    tick.t_s = f64::from(number) * 1e-3;
+    tick.state = match number {
+        5..1500 => State::Engaged,
+        1500..1600 => State::Stopped,
+        _ => State::Idle,
+    };
+    // Around the limit the force trembles: a mark at every crossing would be many.
+    let tremble_n = if number.is_multiple_of(2) { 0.03 } else { -0.03 };
+    let touches = (0.5..1.0).contains(&tick.t_s);
+    let force_n = if touches { 0.2 + tremble_n + (tick.t_s - 0.5).min(1.0 - tick.t_s) } else { 0.0 };
+    tick.measured_n = Vector3::new(0.0, 0.0, force_n);
+    tick
+}
+
+#[test]
+fn a_session_gives_each_mark_once_at_its_tick() {
+    let (mut follower, mut marks) = (Follower::new(CONTACT_N, WORDS), Vec::new());
+    for (tick, shown) in ticks().iter().enumerate() {
+        follower.tick(shown, |what| marks.push((tick, what)));
+    }
+    let words: Vec<&str> = marks.iter().map(|(_, what)| what.as_str()).collect();
+    assert_eq!(words, ["engage right", "contact on right", "contact off right", "disengage right", "stop right"]);
+    let near = |place: usize, tick: usize| marks[place].0.abs_diff(tick) <= 60;
+    assert!(near(0, 5) && near(1, 500) && near(2, 1000) && near(3, 1500) && marks[3].0 == marks[4].0, "{marks:?}");
+}
+
+#[test]
+fn marks_tell_no_condition() {
+    // The same session with every number of the rendering changed gives the same marks.
+    let told = |change: &dyn Fn(&mut Tick)| {
+        let (mut follower, mut marks) = (Follower::new(CONTACT_N, WORDS), Vec::new());
+        for (tick, shown) in ticks().iter_mut().enumerate() {
+            shown.iter_mut().flatten().for_each(change);
+            follower.tick(shown, |what| marks.push((tick, what)));
+        }
+        marks
+    };
+    let plain = told(&|_| {});
+    let other = told(&|tick| {
+        tick.mode = nima_core::impedance::Mode::Literal;
+        tick.delay_s = 0.3;
+        tick.rendered_n = Vector3::repeat(9.0);
+        tick.asked_n = [Vector3::repeat(7.0); nima_core::impedance::SLOTS];
+        tick.gate_settings.gain = 0.0;
+    });
+    assert_eq!(plain, other);
+    assert!(plain.iter().all(|(_, what)| !what.contains(|c: char| c.is_ascii_digit())), "{plain:?}");
+}
+
+#[test]
+fn a_force_that_is_not_known_is_no_contact() {
+    let mut follower = Follower::new(CONTACT_N, WORDS);
+    let mut shown = ticks().swap_remove(1300);
+    shown[0].as_mut().unwrap().measured_n = Vector3::repeat(f64::NAN);
+    let mut marks = Vec::new();
+    follower.tick(&shown, |what| marks.push(what));
+    assert_eq!(marks, ["engage right"]);
+    let mut tick = shown[0].unwrap();
+    tick.state = State::Faulted(Fault::LinkSilent);
+    follower.tick(&[Some(tick), None], |what| marks.push(what));
+    assert_eq!(marks[1..], ["disengage right", "fault right: something is wrong"]);
+}
+
+#[test]
+fn happenings_are_told_with_their_fields_and_what_is_none_is_not() {
+    let dropped = br#"{"t_s": 12.25, "event": "ring_dropped", "ring": 2, "side": "left", "in_view": false}"#;
+    assert_eq!(happening(dropped).unwrap(), "task ring_dropped in_view=false ring=2 side=left");
+    let knocked = br#"{"t_s": 1.0, "event": "ring_knocked_off", "ring": 0, "side": null}"#;
+    assert_eq!(happening(knocked).unwrap(), "task ring_knocked_off ring=0");
+    for none in [&b""[..], b"[]", b"{}", br#"{"event": 3}"#] {
+        assert_eq!(happening(none), None);
+    }
+}
+
+#[test]
+fn a_library_that_is_missing_or_none_is_told_with_its_cure_in_one_line() {
+    let folder = std::env::temp_dir().join(format!("nima-lsl-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let text = folder.join("liblsl.so");
+    std::fs::write(&text, "no library").unwrap();
+    for (path, words) in [(folder.join("absent.so"), "is not installed"), (text, "cannot be used")] {
+        let error = Marker::start(Some(&path), "test", "here").unwrap_err().to_string();
+        assert!(error.contains(words) && error.contains("--lsl FILE") && error.contains(".so"), "{error}");
+        assert_eq!(error.lines().count(), 1);
+    }
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+/// The peer that reads the stream is `tests/peers/peer_lsl.py`; this is the library alone.
+#[test]
+fn the_installed_library_takes_the_marks_of_a_trial() {
+    let Some(path) = std::env::var_os("NIMA_LIBLSL") else { return };
+    let marker = Marker::start(Some(Path::new(&path)), "test", "here").unwrap();
+    let about = About { contact_n: CONTACT_N, trial: Some("P03 4".to_owned()), words: WORDS };
+    let mut audience = marker.audience(about);
+    for (tick, shown) in ticks().iter().enumerate() {
+        audience.tick(tick as f64 * 1e-3, shown, &[]);
+    }
+    drop(audience);
+    assert_eq!((marker.dropped(), marker.is_heard()), (0, false));
+}

@@ -65,6 +65,17 @@ finish_program() {
   chmod 755 "$3"
 }
 
+# What the packages say of glibc must hold for every function that the program takes from it.
+judge_glibc() {
+  local newest
+  newest=$(objdump -T "$1" | grep -o 'GLIBC_[0-9.]*' | sort -uV | tail -n 1)
+  if [ "$(printf '%s\n' GLIBC_2.28 "$newest" | sort -V | tail -n 1)" != GLIBC_2.28 ]; then
+    say "the program needs $newest, and the packages say 2.28"
+    return 1
+  fi
+  say "the program needs $newest and: $(objdump -p "$1" | awk '$1 == "NEEDED" { printf "%s ", $2 }')"
+}
+
 # Replaces @NAME@ by what is given as NAME=value.
 fill() {
   local text
@@ -149,6 +160,7 @@ make_packages() {
   rm -rf "$out"
   mkdir -p "$out"
   build_program "$target"
+  judge_glibc "$program"
   take_inventory "$target" "$inventory" "$package_target"
   stage "$target/stage-deb" "$program" "$inventory" zsh/vendor-completions
   make_deb "$target/stage-deb" "$out"

@@ -6,7 +6,6 @@
 # shellcheck shell=bash
 
 package_target=x86_64-unknown-linux-gnu
-windows_target=x86_64-pc-windows-gnu
 package_tools=(binutils dpkg python3 python3-venv xz-utils zstd)
 zig_version=0.15.2
 
@@ -64,6 +63,17 @@ take_inventory() {
 finish_program() {
   objcopy --strip-all --remove-section .comment --add-section ".dep-v0=$2/dep-v0" "$1" "$3"
   chmod 755 "$3"
+}
+
+# What the packages say of glibc must hold for every function that the program takes from it.
+judge_glibc() {
+  local newest
+  newest=$(objdump -T "$1" | grep -o 'GLIBC_[0-9.]*' | sort -uV | tail -n 1)
+  if [ "$(printf '%s\n' GLIBC_2.28 "$newest" | sort -V | tail -n 1)" != GLIBC_2.28 ]; then
+    say "the program needs $newest, and the packages say 2.28"
+    return 1
+  fi
+  say "the program needs $newest and: $(objdump -p "$1" | awk '$1 == "NEEDED" { printf "%s ", $2 }')"
 }
 
 # Replaces @NAME@ by what is given as NAME=value.
@@ -144,39 +154,13 @@ make_tar() {
     zstd --quiet --force -19 --single-thread -o "$out/$name.tar.zst"
 }
 
-# For Windows, where the standard library for it and a linker are at hand. Says what is missing, and is no failure then.
-windows_is_possible() {
-  command -v x86_64-w64-mingw32-gcc >/dev/null || { leave_out "Windows: the linker is missing (Debian's package gcc-mingw-w64-x86-64)"; return 1; }
-  rustup target list --installed 2>/dev/null | grep -qx "$windows_target" || rustup target add "$windows_target" >&2 ||
-    { leave_out "Windows: Rust's standard library for $windows_target is missing"; return 1; }
-  command -v makensis >/dev/null || leave_out "Windows: no installer, makensis is missing (Debian's package nsis)"
-}
-
-make_windows() {
-  local target=$1 out=$2 staged=$1/stage-windows/nima-console registry=${CARGO_HOME:-$HOME/.cargo} flags
-  flags=(-Clinker=x86_64-w64-mingw32-gcc -Clink-arg=-Wl,--no-insert-timestamp "--remap-path-prefix=$registry=/cargo" "--remap-path-prefix=$PWD=/nima"
-    "--remap-path-prefix=$target=/target")
-  CARGO_ENCODED_RUSTFLAGS=$(IFS=$'\x1f'; printf '%s' "${flags[*]}") CARGO_TARGET_DIR=$target CARGO_INCREMENTAL=0 \
-    timed cargo build --locked --profile packages --target "$windows_target" -p nima-console --bin nima || return
-  take_inventory "$target" "$target/inventory-windows" "$windows_target" || return
-  rm -rf "$staged"
-  mkdir -p "$staged"
-  x86_64-w64-mingw32-strip -o "$staged/nima.exe" "$target/$windows_target/packages/nima.exe"
-  cp README.md "$target"/inventory-windows/{third-party.txt,sbom.cdx.json} "$staged/"
-  cp LICENSE-MIT "$staged/LICENSE-MIT.txt"
-  cp LICENSE-APACHE "$staged/LICENSE-APACHE.txt"
-  settle "$staged"
-  python3 assets/package/archive.py "$staged" "$out/nima-console-$version-x86_64-windows.zip" "$SOURCE_DATE_EPOCH"
-  ! command -v makensis >/dev/null || makensis -V2 "-DOUT=$out/nima-console-$version-x86_64-windows-setup.exe" "-DSTAGED=$staged" "-DVERSION=$version" \
-    assets/package/windows/nima-console.nsi >&2
-}
-
 # All packages of the source in this folder, into $2; what is built goes to $1.
 make_packages() {
   local target=$1 out=$2 inventory=$1/inventory program=$1/$package_target/packages/nima
   rm -rf "$out"
   mkdir -p "$out"
   build_program "$target"
+  judge_glibc "$program"
   take_inventory "$target" "$inventory" "$package_target"
   stage "$target/stage-deb" "$program" "$inventory" zsh/vendor-completions
   make_deb "$target/stage-deb" "$out"
@@ -226,7 +210,7 @@ package() {
   # Not by `timed`, in which a failure would not end this.
   make_packages "$target/package-build" "$out"
   command -v rpmbuild >/dev/null || leave_out ".rpm: rpmbuild is missing (Debian's package rpm)"
-  leave_out "Windows: not built (docs/installing.md says what is missing)"
+  leave_out "Windows: not built (docs/installing.md, Laboratory notes)"
   leave_out "macOS and 64-bit ARM: not built, nothing here could run them"
   case $what in
     --twice) make_packages_again "$target/tools" "$out" ;;

@@ -10,7 +10,7 @@ chmod 700 "$XDG_RUNTIME_DIR"
 # Of a session: seconds, the largest rendered force (N), how often it rose above half of that, and when it first exceeded 0.1 N.
 force_of() {
   rm -f table.csv
-  nima export "$1" --out table.csv
+  nima export "$1" --out table.csv >/dev/null
   awk -F , '
     NR == 1 { for (i = 1; i <= NF; i++) column[$i] = i; next }
     {

@@ -344,6 +344,7 @@ impl ConsoleApp {
         ui.scope_builder(UiBuilder::new().scope_id(Id::unique("page")), |ui| self.page_layout(ui));
         self.top_bar.alarms.list_ui(ui.ctx(), room);
         self.settings.now.toured |= self.help.ui(ui.ctx(), room, !self.list.is_open);
+        self.welcome(ui.ctx(), room);
     }
 }
 

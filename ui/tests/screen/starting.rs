@@ -156,3 +156,63 @@ fn an_endoscope_is_tried_while_its_address_is_typed_and_written_without_editing_
     pick(&mut harness, "Take the endoscope out of the rig");
     assert!(!std::fs::read_to_string(&path).unwrap().contains("endoscope"));
 }
+
+/// The console as somebody sees it who has never started it.
+fn newcomer(folder: &Path, size: [f32; 2]) -> Harness<'static, ConsoleApp> {
+    let folder = folder.to_path_buf();
+    let mut harness = console_of("peg_transfer", size, move |app| app.with_settings(Kept::open(&folder)));
+    until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
+    harness
+}
+
+const WAYS: [(&str, &str); 3] = [
+    ("Go on with the simulated rig", "Next step"),
+    ("Watch the demonstration", "What you see"),
+    ("Choose or make a rig of your own", "1. Choose a rig"),
+];
+
+#[test]
+fn the_first_page_says_what_this_is_and_leads_three_ways() {
+    for (way, shown) in WAYS {
+        let folder = tempfile::tempdir().unwrap();
+        let mut harness = newcomer(folder.path(), SIZE);
+        for words in ["Haptic teleoperation in laparoscopy", "never use it on patients"] {
+            harness.get_by_label_contains(words);
+        }
+        press(&mut harness, way);
+        read(&mut harness, shown);
+        assert!(harness.query_by_label(way).is_none(), "{way}: the first page is closed");
+        until(&mut harness, "what runs goes on", |tick| tick.state == LoopState::Engaged);
+    }
+}
+
+#[test]
+fn the_first_page_comes_once_and_not_over_another_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = newcomer(folder.path(), SIZE);
+    harness.key_press(Key::F6);
+    harness.run_steps(2);
+    assert!(harness.query_by_label(WAYS[0].0).is_none(), "not over the start page");
+    harness.key_press(Key::F6);
+    harness.run_steps(2);
+    press(&mut harness, "Watch the demonstration");
+    harness.run_steps(2);
+    drop(harness);
+    let harness = newcomer(folder.path(), SIZE);
+    assert!(WAYS.iter().all(|(way, _)| harness.query_by_label(way).is_none()));
+}
+
+#[test]
+fn the_first_page_fits_the_smallest_window_below_the_stop() {
+    let folder = tempfile::tempdir().unwrap();
+    let size = [1100.0, 680.0];
+    let mut harness = newcomer(folder.path(), size);
+    harness.run_steps(3);
+    let stop = harness.get_by_role_and_label(Role::Button, "Stop").rect();
+    for (way, _) in WAYS {
+        let button = harness.get_by_role_and_label(Role::Button, way).rect();
+        assert!(button.top() > stop.bottom() && button.bottom() < size[1] && button.left() > 0.0, "{way}: {button:?}");
+    }
+    press(&mut harness, "Stop");
+    until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped);
+}

@@ -369,6 +369,7 @@ fn tour_and_glossary_fit_and_leave_the_stop_alone() {
     };
     let mut harness = begin(path.clone());
     until(&mut harness, "any tick", |_| true);
+    bench::press(&mut harness, "Go on with the simulated rig");
     for button in ["Next step", "Next step", "Step back", "Next step", "Next step"] {
         assert!(harness.query_by_role_and_label(accesskit::Role::Button, "Stop").is_some());
         bench::press(&mut harness, button);

@@ -53,7 +53,12 @@ impl ConsoleApp {
             self.in_force.tell(format!("{told}."));
         }
         if settings.is_first_run() {
-            self.help.begin_tour();
+            // Of what is simulated behind it the first page speaks; whoever names a rig of devices knows what this is.
+            if self.live.rig.devices.is_none() {
+                self.start.welcome.open();
+            } else {
+                self.help.begin_tour();
+            }
         }
         self.start.set_folder(settings.folder());
         self.settings = settings;

@@ -15,7 +15,8 @@ use crate::{
     console::{
         chain, keys,
         reader::Reader,
-        start::{Choice, Now, drawn_anew},
+        roles::Role,
+        start::{Choice, Now, Way, drawn_anew},
         text,
     },
     emulators::Emulators,
@@ -99,6 +100,22 @@ impl ConsoleApp {
                 self.open_start();
             }
         }
+    }
+
+    /// Over a view, a newcomer chooses between what runs, the demonstration and a rig of their own.
+    pub(super) fn welcome(&mut self, ctx: &egui::Context, room: egui::Rect) {
+        let covers = self.start.is_open || self.list.is_open || self.past.is_some() || self.has_study();
+        if covers || self.wizards.open.is_some() || self.checking.is_open() {
+            return;
+        }
+        match self.start.welcome.ui(ctx, room) {
+            None => return,
+            Some(Way::Simulated) => return self.help.begin_tour(),
+            Some(Way::Demo) => self.settings.now.role = Role::Demo,
+            Some(Way::Own) => self.open_start(),
+        }
+        // The tour is in the menu View.
+        self.settings.now.toured = true;
     }
 
     pub(super) fn open_start(&mut self) {

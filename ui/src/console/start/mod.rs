@@ -4,6 +4,7 @@ mod choices;
 mod endoscope;
 mod looking;
 mod making;
+mod welcome;
 
 use std::path::{Path, PathBuf};
 
@@ -17,6 +18,8 @@ use choices::{Entry, Lists};
 use endoscope::EndoscopeCard;
 pub(in crate::console) use looking::Looked;
 use looking::{Answers, PluggedIn};
+pub(in crate::console) use welcome::Way;
+use welcome::Welcome;
 
 use super::{
     live::Live,
@@ -34,6 +37,8 @@ pub struct StartPage {
     pub(super) is_open: bool,
     /// The page of user studies is wanted.
     pub(super) wants_studies: bool,
+    /// What a newcomer sees first.
+    pub(super) welcome: Welcome,
     chosen: Choice,
     folder: Option<PathBuf>,
     lists: Lists,
@@ -66,6 +71,7 @@ impl StartPage {
         Self {
             is_open: false,
             wants_studies: false,
+            welcome: Welcome::default(),
             chosen,
             folder: None,
             lists: Lists::default(),

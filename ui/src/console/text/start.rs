@@ -39,6 +39,21 @@ pub(in crate::console) const NO_THREAD: &str = "the system gives no thread for t
 pub(in crate::console) const NO_FOLDER: &str = "There is no folder for your files: set NIMA_DATA_DIR";
 pub(in crate::console) const NAME_FIRST: &str = "Give it a name of letters, digits, blanks, dashes or underscores";
 
+pub(in crate::console) const WELCOME_WINDOW: &str = "Welcome";
+pub(in crate::console) const WELCOME: &str = "Haptic teleoperation in laparoscopy";
+pub(in crate::console) const WELCOME_WHAT: &str = "A surgeon moves a handle, and a robot arm moves the instrument. This console measures the force at its tip, \
+     predicts it across the delay of the link, limits it, and gives it back to the hand. What moves behind this window is simulated.";
+pub(in crate::console) const WELCOME_NOT: &str =
+    "For research and teaching only. It is not a medical device: never use it on patients.";
+pub(in crate::console) const WELCOME_SIMULATED: &str = "Go on with the simulated rig";
+pub(in crate::console) const WELCOME_SIMULATED_ABOUT: &str = "It runs already. A tour of four steps shows the screen.";
+pub(in crate::console) const WELCOME_DEMO: &str = "Watch the demonstration";
+pub(in crate::console) const WELCOME_DEMO_ABOUT: &str =
+    "It explains the forces chapter by chapter, then it is your turn";
+pub(in crate::console) const WELCOME_OWN: &str = "Choose or make a rig of your own";
+pub(in crate::console) const WELCOME_OWN_ABOUT: &str =
+    "Your devices, the paper's rig emulated, or another scene. It starts idle, and only you engage it.";
+
 pub(in crate::console) const ENDOSCOPE: &str = "Endoscope of this rig";
 pub(in crate::console) const ENDOSCOPE_HOVER: &str =
     "Where the surgeon's picture comes from. What is typed is tried at once";

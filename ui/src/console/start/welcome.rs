@@ -1,0 +1,63 @@
+//! What a newcomer sees first: what this is, what it may not be used for, and three ways to go on. The rig that runs is seen around it.
+
+use egui::{Align2, Button, Context, Label, Rect, RichText, Window, vec2};
+
+use crate::console::{
+    text::start as words,
+    theme,
+    widgets::{next_button, small},
+};
+
+/// The ways from here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::console) enum Way {
+    /// The demonstration, which explains itself.
+    Demo,
+    /// What runs.
+    Simulated,
+    /// The start page.
+    Own,
+}
+
+/// The first page; closed unless it is opened.
+#[derive(Debug, Default)]
+pub(in crate::console) struct Welcome {
+    is_open: bool,
+}
+
+impl Welcome {
+    /// Shows it from now on.
+    pub(in crate::console) const fn open(&mut self) {
+        self.is_open = true;
+    }
+
+    /// Draws it into `room`, which leaves the stop free; returns the way that was chosen, and is closed then.
+    pub(in crate::console) fn ui(&mut self, ctx: &Context, room: Rect) -> Option<Way> {
+        if !self.is_open {
+            return None;
+        }
+        let mut chosen = None;
+        let window = Window::new(words::WELCOME_WINDOW).title_bar(false).resizable(false).movable(false);
+        let window = window.constrain_to(room).anchor(Align2::CENTER_TOP, vec2(0.0, room.top() + 12.0));
+        window.fixed_size(vec2(460.0, 0.0)).show(ctx, |ui| {
+            ui.label(RichText::new(words::WELCOME).font(theme::strong(18.0)));
+            ui.add(Label::new(RichText::new(words::WELCOME_WHAT).font(theme::regular(15.0))).wrap());
+            ui.add(Label::new(RichText::new(words::WELCOME_NOT).font(theme::strong(15.0))).wrap());
+            ui.add_space(6.0);
+            for (way, name, about) in [
+                (Way::Simulated, words::WELCOME_SIMULATED, words::WELCOME_SIMULATED_ABOUT),
+                (Way::Demo, words::WELCOME_DEMO, words::WELCOME_DEMO_ABOUT),
+                (Way::Own, words::WELCOME_OWN, words::WELCOME_OWN_ABOUT),
+            ] {
+                let button = if way == Way::Simulated { next_button(name, true) } else { Button::new(name) };
+                if ui.add(button.min_size(vec2(ui.available_width(), 36.0))).clicked() {
+                    chosen = Some(way);
+                }
+                ui.add(Label::new(small(about)).wrap());
+                ui.add_space(4.0);
+            }
+        });
+        self.is_open = chosen.is_none();
+        chosen
+    }
+}

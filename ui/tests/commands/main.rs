@@ -14,6 +14,7 @@ mod endings;
 mod every_command;
 mod export;
 mod hostile_files;
+mod identify;
 mod installed;
 mod paper_rig;
 mod replay;

@@ -4,22 +4,27 @@
 //! For every sample at time t the force is rendered from data up to t - D and the motion at t, exactly as a leader
 //! behind a link of delay D would do, and compared with the force measured at t and with the delayed force f(t - D)
 //! (delayed DFR). Units are those of the recording (N and m, or Nm and rad).
+//!
+//! Where the leader's own motion was recorded too, the force is made of it, as the loop does with the handle's motion.
 
 mod figures;
+mod leader;
+mod summary;
 mod tally;
 
 use std::time::Instant;
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Identifier, Mode, ModeSet, Recipe, Settings, SettingsError},
+    impedance::{Identifier, Mode, ModeSet, OwnMotion, Parcel, Recipe, Sample, Settings, SettingsError},
     safety::{Chain, ChainSettings, Request},
 };
 use nima_recording::csv::Recording;
 
 pub use figures::{ErrorFigures, Figures, Reconstruction, Reconstructions, Spread, TickTime};
+pub use summary::{RatioFigures, Summary};
 
-use self::tally::Tally;
+use self::{leader::Leader, tally::Tally};
 
 /// Why a recording could not be replayed.
 #[derive(Debug, thiserror::Error)]
@@ -90,6 +95,23 @@ pub struct Options {
     pub literal: Recipe,
 }
 
+/// Motion and force over time, wherever they are kept.
+#[derive(Clone)]
+pub struct Motion<'a> {
+    /// What messages call it: `recording NAME has ...`.
+    pub name: String,
+    /// Which axes it contains; lane `i` of a sample is axis `axes[i]`.
+    pub axes: &'a [usize],
+    /// Samples per second, Hz.
+    pub rate_hz: f64,
+    /// Number of samples.
+    pub samples: usize,
+    /// The sample with this index; times rise, and numbers are finite.
+    pub sample: &'a dyn Fn(usize) -> Sample,
+    /// The leader's own motion in the same tick, mapped to the tip, m.
+    pub leader_m: Option<&'a dyn Fn(usize) -> Vector3<f64>>,
+}
+
 /// Replays `recording`; `each` is called with every row in order.
 ///
 /// # Errors
@@ -118,7 +140,82 @@ pub struct Options {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Row)) -> Result<Figures, ReplayError> {
-    let rate_hz = recording.rate_hz;
+    let sample = |i: usize| recording.samples[i];
+    let leader = recording.leader_m.as_ref().map(|leader_m| move |i: usize| leader_m[i]);
+    let motion = Motion {
+        name: recording.path.display().to_string(),
+        axes: &recording.axes,
+        rate_hz: recording.rate_hz,
+        samples: recording.samples.len(),
+        sample: &sample,
+        leader_m: leader.as_ref().map(|leader| leader as &dyn Fn(usize) -> Vector3<f64>),
+    };
+    replay_motion(&motion, options, |row, _| each(row))
+}
+
+/// The same for motion that is kept elsewhere; `each` is also given what the follower sends in that tick.
+///
+/// # Errors
+/// As [`replay`].
+pub fn replay_motion(
+    motion: &Motion<'_>,
+    options: &Options,
+    mut each: impl FnMut(&Row, &Parcel),
+) -> Result<Figures, ReplayError> {
+    let Motion { rate_hz, samples, sample, .. } = *motion;
+    let (settings, delay) = settings(motion, options)?;
+    let mut identifier = Identifier::new(&settings)?;
+    let leader = |at_m| Ok::<_, SettingsError>((Leader::new(&settings, delay)?, at_m));
+    let mut leader = motion.leader_m.map(leader).transpose()?;
+    let mut tally = Tally::default();
+    let mut gates = Chain::new(ChainSettings::default(), 1.0 / rate_hz);
+    let hole_s = HOLE_S.max(HOLE_PERIODS / rate_hz);
+    let mut begin = 0;
+    let mut last: Option<Sample> = None;
+    for i in 0..samples {
+        let now = sample(i);
+        let step_s = last.map_or(0.0, |last| now.t_s - last.t_s);
+        if step_s > hole_s {
+            begin = i;
+            last = None;
+            tally.hole(step_s);
+            identifier.reset();
+            gates.reset();
+            if let Some((leader, _)) = &mut leader {
+                leader.reset();
+            }
+        }
+        let start = Instant::now();
+        identifier.step(&now);
+        tally.tick.record(start.elapsed().as_secs_f64());
+        let report = identifier.report();
+        let rendered = match &mut leader {
+            Some((leader, at_m)) => leader.step(&at_m(i), identifier.parcel()).force(options.mode),
+            None => report.prediction(options.mode),
+        };
+        let held = i.checked_sub(delay).filter(|then| *then >= begin).map(|then| sample(then).force_n);
+        let speed_m_s = (now.position_m - last.unwrap_or(now).position_m).norm() * rate_hz;
+        let (_, gate) =
+            gates.step(&Request { force_n: rendered, age_s: 0.0, speed_m_s, hand_m: None, permitted: true });
+        let row = Row {
+            t_s: now.t_s,
+            measured: now.force_n,
+            rendered: rendered.filter(|_| held.is_some()),
+            held,
+            degree: usize::from(report.degree_of(options.mode)),
+            condition: report.condition,
+            gate: gate.first_closed(),
+        };
+        tally.add(&row, report);
+        each(&row, identifier.parcel());
+        last = Some(now);
+    }
+    Ok(tally.figures(motion, options.mode, &settings))
+}
+
+/// The settings of the identification, and the delay in samples.
+fn settings(motion: &Motion<'_>, options: &Options) -> Result<(Settings, usize), ReplayError> {
+    let rate_hz = motion.rate_hz;
     let mut settings = Settings {
         rate_hz,
         window_s: options.window_s,
@@ -126,7 +223,8 @@ pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Ro
         max_degree: options.max_degree,
         cross_talk: options.cross_talk,
         literal: options.literal,
-        axes: recording.axes.len(),
+        axes: motion.axes.len(),
+        own_motion: if motion.leader_m.is_some() { OwnMotion::Handle } else { OwnMotion::Follower },
         modes: ModeSet::default().with(options.mode),
         ..Settings::default()
     };
@@ -135,58 +233,26 @@ pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Ro
     settings.delay_s = delay as f64 / rate_hz;
     if delay == 0 && options.delay_s > 0.0 {
         return Err(ReplayError::ShortDelay {
-            path: recording.path.display().to_string(),
+            path: motion.name.clone(),
             delay_ms: options.delay_s * 1e3,
             rate_hz,
             least_ms: 0.5e3 / rate_hz,
         });
     }
-    let mut identifier = Identifier::new(&settings)?;
     let window = (options.window_s * rate_hz).round() as usize;
     let needed = window + delay + 1;
-    if recording.samples.len() < needed {
+    if motion.samples < needed {
         return Err(ReplayError::TooShort {
-            path: recording.path.display().to_string(),
-            found: recording.samples.len(),
+            path: motion.name.clone(),
+            found: motion.samples,
             needed,
             window_ms: options.window_s * 1e3,
             delay_ms: settings.delay_s * 1e3,
             rate_hz,
         });
     }
-    let mut tally = Tally::default();
-    let mut gates = Chain::new(ChainSettings::default(), 1.0 / rate_hz);
-    let hole_s = HOLE_S.max(HOLE_PERIODS / rate_hz);
-    let mut begin = 0;
-    for (i, sample) in recording.samples.iter().enumerate() {
-        let step_s = sample.t_s - recording.samples[i.saturating_sub(1)].t_s;
-        if step_s > hole_s {
-            begin = i;
-            tally.hole(step_s);
-            identifier.reset();
-            gates.reset();
-        }
-        let start = Instant::now();
-        identifier.step(sample);
-        tally.tick.record(start.elapsed().as_secs_f64());
-        let report = identifier.report();
-        let rendered = report.prediction(options.mode);
-        let held = i.checked_sub(delay).filter(|then| *then >= begin).map(|then| recording.samples[then].force_n);
-        let last_m = recording.samples[i.saturating_sub(1).max(begin)].position_m;
-        let speed_m_s = (sample.position_m - last_m).norm() * rate_hz;
-        let (_, gate) =
-            gates.step(&Request { force_n: rendered, age_s: 0.0, speed_m_s, hand_m: None, permitted: true });
-        let row = Row {
-            t_s: sample.t_s,
-            measured: sample.force_n,
-            rendered: rendered.filter(|_| held.is_some()),
-            held,
-            degree: usize::from(report.degree_of(options.mode)),
-            condition: report.condition,
-            gate: gate.first_closed(),
-        };
-        tally.add(&row, report);
-        each(&row);
-    }
-    Ok(tally.figures(recording, options.mode, &settings))
+    Ok((settings, delay))
 }
+
+#[cfg(test)]
+mod tests;

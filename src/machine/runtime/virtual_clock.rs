@@ -11,7 +11,7 @@ use super::{
 use crate::{
     messages::{Command, Scheduling, Tick},
     rig::{Rig, SIDES},
-    teleop::{Loop, Timing},
+    teleop::{Link, Loop, Timing},
 };
 
 /// Runs the loop for `seconds` of loop time. `each` is called with every tick of every side; it may return a command
@@ -64,7 +64,12 @@ fn run(assembly: Assembly, seconds: f64, each: &mut dyn FnMut(&Tick) -> Option<C
 }
 
 /// One tick of a loop with its rig at `now_s`, for several loops on one clock. Its events stay in the loop until the next one.
-pub fn tick(control: &mut Loop, rig: &mut impl Rig, now_s: f64, command: Option<Command>) -> [Option<Tick>; SIDES] {
+pub fn tick<L: Link>(
+    control: &mut Loop<L>,
+    rig: &mut impl Rig,
+    now_s: f64,
+    command: Option<Command>,
+) -> [Option<Tick>; SIDES] {
     let inputs = rig.read(now_s);
     control.clear_events();
     for command in command.into_iter().chain(std::iter::from_fn(|| rig.command())) {

@@ -1,4 +1,4 @@
-//! Mapping of a file's columns to quantities: `--map x=px_mm*0.001`.
+//! Mapping of a file's columns to quantities: `--map x=px_mm*0.001`, or of three at once: `--map xyz=px_mm,py_mm,pz_mm*0.001`.
 
 use std::collections::BTreeMap;
 
@@ -10,11 +10,22 @@ pub enum MappingError {
     #[error("--map {text}: write NAME=COLUMN or NAME=COLUMN*SCALE, for example x=px_mm*0.001")]
     Form { text: String },
     /// Unknown quantity.
-    #[error("--map {text}: there is no quantity \"{name}\"; use t, x, y, z, fx, fy or fz")]
+    #[error(
+        "--map {text}: there is no quantity \"{name}\"; use t, x, y, z, fx, fy, fz, lx, ly or lz (the leader's own motion), or xyz, fxyz or lxyz with three columns"
+    )]
     Name {
         text: String,
         /// The part before `=`.
         name: String,
+    },
+    /// Not three columns where all axes are mapped at once.
+    #[error("--map {text}: \"{name}\" takes three columns, for example {name}=A,B,C*0.001; {found} given")]
+    Three {
+        text: String,
+        /// The part before `=`.
+        name: String,
+        /// Number of columns.
+        found: usize,
     },
     /// The scale is zero or not a finite number.
     #[error("--map {text}: the scale \"{scale}\" is not a number other than zero")]
@@ -51,23 +62,43 @@ impl Source {
     }
 }
 
-/// Mapping from quantities (`x_m`, `fx_n`, `t_s`, ...) to columns; a quantity that is not mapped has the column of its
+/// Mapping from quantities (`x_m`, `fx_n`, `lx_m`, `t_s`, ...) to columns; a quantity that is not mapped has the column of its
 /// own name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mapping {
     sources: BTreeMap<&'static str, Source>,
 }
 
-/// Short and full name of every quantity.
-const QUANTITIES: [(&str, &str); 7] =
-    [("t", "t_s"), ("x", "x_m"), ("y", "y_m"), ("z", "z_m"), ("fx", "fx_n"), ("fy", "fy_n"), ("fz", "fz_n")];
+/// Short and full name of every quantity; those with `l` are the leader's own motion.
+const QUANTITIES: [(&str, &str); 10] = [
+    ("t", "t_s"),
+    ("x", "x_m"),
+    ("y", "y_m"),
+    ("z", "z_m"),
+    ("fx", "fx_n"),
+    ("fy", "fy_n"),
+    ("fz", "fz_n"),
+    ("lx", "lx_m"),
+    ("ly", "ly_m"),
+    ("lz", "lz_m"),
+];
+/// Names of three quantities at once.
+const TRIPLES: [(&str, [&str; 3]); 3] =
+    [("xyz", ["x_m", "y_m", "z_m"]), ("fxyz", ["fx_n", "fy_n", "fz_n"]), ("lxyz", ["lx_m", "ly_m", "lz_m"])];
+
+/// The full names of what a name on the command line means; none for a name that is not known.
+fn quantities(name: &str) -> Vec<&'static str> {
+    let one = QUANTITIES.iter().find(|(short, full)| *short == name || *full == name).map(|(_, full)| vec![*full]);
+    let three = || TRIPLES.iter().find(|(triple, _)| *triple == name).map(|(_, all)| all.to_vec());
+    one.or_else(three).unwrap_or_default()
+}
 
 impl Mapping {
-    /// Parses any number of texts `NAME=COLUMN[*SCALE]`.
+    /// Parses any number of texts `NAME=COLUMN[*SCALE]`, or `xyz=A,B,C[*SCALE]` with one scale for all three.
     ///
     /// # Errors
-    /// [`MappingError`] for a text of another form, a quantity that does not exist or is mapped twice, or a scale that
-    /// is not finite.
+    /// [`MappingError`] for a text of another form, a quantity that does not exist or is mapped twice, another number of columns than
+    /// three where three are needed, or a scale that is not finite.
     ///
     /// ```
     /// use nima_recording::csv::Mapping;
@@ -84,10 +115,11 @@ impl Mapping {
             let owned = || text.to_owned();
             let (name, source) = text.split_once('=').ok_or_else(|| MappingError::Form { text: owned() })?;
             let (name, source) = (name.trim(), source.trim());
-            let Some(&(_, full)) = QUANTITIES.iter().find(|(short, full)| *short == name || *full == name) else {
+            let names = quantities(name);
+            if names.is_empty() {
                 return Err(MappingError::Name { text: owned(), name: name.to_owned() });
-            };
-            let (column, scale) = match source.rsplit_once('*') {
+            }
+            let (columns, scale) = match source.rsplit_once('*') {
                 None => (source, 1.0),
                 Some((column, factor)) => {
                     let wrong = || MappingError::Scale { text: owned(), scale: factor.to_owned() };
@@ -98,11 +130,18 @@ impl Mapping {
                     (column.trim(), scale)
                 }
             };
-            if column.is_empty() {
+            let columns: Vec<&str> =
+                if names.len() == 1 { vec![columns] } else { columns.split(',').map(str::trim).collect() };
+            if columns.len() != names.len() {
+                return Err(MappingError::Three { text: owned(), name: name.to_owned(), found: columns.len() });
+            }
+            if columns.iter().any(|column| column.is_empty()) {
                 return Err(MappingError::Form { text: owned() });
             }
-            if sources.insert(full, Source { column: column.to_owned(), scale }).is_some() {
-                return Err(MappingError::Twice { text: owned(), name: name.to_owned() });
+            for (full, column) in names.into_iter().zip(columns) {
+                if sources.insert(full, Source { column: column.to_owned(), scale }).is_some() {
+                    return Err(MappingError::Twice { text: owned(), name: name.to_owned() });
+                }
             }
         }
         Ok(Self { sources })
@@ -111,6 +150,16 @@ impl Mapping {
     /// Whether the quantity is mapped.
     pub fn names(&self, quantity: &str) -> bool {
         self.sources.contains_key(quantity)
+    }
+
+    /// The quantities that are mapped, by their full names.
+    pub fn sources(&self) -> impl Iterator<Item = (&'static str, &Source)> {
+        self.sources.iter().map(|(quantity, source)| (*quantity, source))
+    }
+
+    /// Whether the leader's own motion is mapped.
+    pub fn names_leader(&self) -> bool {
+        ["lx_m", "ly_m", "lz_m"].into_iter().any(|quantity| self.names(quantity))
     }
 
     /// The column of a quantity.
@@ -129,6 +178,19 @@ mod tests {
         assert_eq!(mapping.source("x_m"), Source { column: "pos_follower_rad".into(), scale: 1.0 });
         assert_eq!(mapping.source("fx_n"), Source { column: "Fe".into(), scale: -2.5 });
         assert_eq!(mapping.source("z_m").column(), "z_m");
+    }
+
+    #[test]
+    fn three_axes_at_once_share_their_scale() {
+        let mapping = Mapping::parse(&["xyz=px_mm, py_mm,pz_mm*0.001", "fxyz=a,b,c", "lx=handle"]).unwrap();
+        assert_eq!(mapping.source("y_m"), Source { column: "py_mm".into(), scale: 0.001 });
+        assert_eq!(mapping.source("fz_n"), Source { column: "c".into(), scale: 1.0 });
+        assert!(mapping.names_leader() && !Mapping::parse(&["x=a"]).unwrap().names_leader());
+        let error = |texts: &[&str]| Mapping::parse(texts).unwrap_err();
+        assert!(matches!(error(&["xyz=a,b"]), MappingError::Three { found: 2, .. }));
+        assert!(matches!(error(&["lxyz=a,b,c,d"]), MappingError::Three { found: 4, .. }));
+        assert!(matches!(error(&["xyz=a,,c"]), MappingError::Form { .. }));
+        assert!(matches!(error(&["xyz=a,b,c", "y=d"]), MappingError::Twice { .. }));
     }
 
     #[test]

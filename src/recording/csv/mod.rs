@@ -1,6 +1,7 @@
 //! Reading recordings of motion and force (CSV).
 //!
-//! Columns: `t_s`; `x_m, y_m, z_m` with `fx_n, fy_n, fz_n`, one to three axes. Other names can be mapped to these. SI
+//! Columns: `t_s`; `x_m, y_m, z_m` with `fx_n, fy_n, fz_n`, one to three axes. Other names can be mapped to these, and the leader's own
+//! motion can be mapped beside them. SI
 //! units, or any consistent ones (rad and Nm of a lever). A missing column, a field that is not a number and a time
 //! that does not rise are errors that state their position. A file is read as a stream, so it may be a pipe, up to
 //! [`nima_files::TABLE_MAX`] bytes.
@@ -16,7 +17,7 @@ use nalgebra::Vector3;
 use nima_core::impedance::{AXES, Sample};
 use table::Table;
 
-pub use mapping::{Mapping, MappingError};
+pub use mapping::{Mapping, MappingError, Source};
 pub use pairs::read_pairs;
 pub use poses::read_poses;
 
@@ -96,6 +97,8 @@ pub struct Recording {
     pub rate_hz: f64,
     /// The samples; lanes beyond `axes.len()` are zero.
     pub samples: Vec<Sample>,
+    /// The leader's own motion, sample by sample, mapped to the tip, m; `None` where it was not recorded or not asked for.
+    pub leader_m: Option<Vec<Vector3<f64>>>,
 }
 
 impl Recording {
@@ -122,15 +125,19 @@ impl Recording {
         let mut table = Table::open(path)?;
         let time = table.column(&mapping.source("t_s"), "time", &cure("t"))?;
         let axes = axes(&table, mapping);
+        let has_leader = mapping.names_leader();
         let mut columns = Vec::with_capacity(axes.len());
         for &axis in &axes {
             let name = AXIS_NAMES[axis];
             let position = table.column(&mapping.source(&format!("{name}_m")), "position", &cure(name))?;
             let force_key = format!("f{name}");
             let force = table.column(&mapping.source(&format!("{force_key}_n")), "force", &cure(&force_key))?;
-            columns.push((position, force));
+            let leader_key = format!("l{name}");
+            let of_leader = mapping.source(&format!("{leader_key}_m"));
+            let leader = has_leader.then(|| table.column(&of_leader, "leader's motion", &cure(&leader_key)));
+            columns.push((position, force, leader.transpose()?));
         }
-        let mut samples = Vec::new();
+        let (mut samples, mut leader_m) = (Vec::new(), Vec::new());
         while table.advance()? {
             let t_s = table.number(&time)?;
             if let Some(&Sample { t_s: before_s, .. }) = samples.last()
@@ -138,14 +145,21 @@ impl Recording {
             {
                 return Err(RecordingError::Clock { path: path.to_owned(), line: table.line(), before_s, now_s: t_s });
             }
-            let (mut position_m, mut force_n) = (Vector3::zeros(), Vector3::zeros());
-            for (lane, (position, force)) in columns.iter().enumerate() {
+            let [mut position_m, mut force_n, mut handle_m] = [Vector3::zeros(); 3];
+            for (lane, (position, force, leader)) in columns.iter().enumerate() {
                 position_m[lane] = table.number(position)?;
                 force_n[lane] = table.number(force)?;
+                if let Some(leader) = leader {
+                    handle_m[lane] = table.number(leader)?;
+                }
             }
             samples.push(Sample { t_s, position_m, force_n });
+            if has_leader {
+                leader_m.push(handle_m);
+            }
         }
-        Self::of_samples(path, axes, samples)
+        let recording = Self::of_samples(path, axes, samples)?;
+        Ok(Self { leader_m: has_leader.then_some(leader_m), ..recording })
     }
 
     /// The same of samples that were read already; their times rise.
@@ -154,8 +168,8 @@ impl Recording {
     /// [`RecordingError::TooShort`] for fewer than three.
     pub fn of_samples(path: &Path, axes: Vec<usize>, samples: Vec<Sample>) -> Result<Self, RecordingError> {
         let too_short = |found| RecordingError::TooShort { path: path.to_owned(), found, needed: 3 };
-        let rate_hz = rate_hz(&samples).ok_or_else(|| too_short(samples.len()))?;
-        Ok(Self { path: path.to_owned(), axes, rate_hz, samples })
+        let rate_hz = rate_hz(samples.iter().map(|sample| sample.t_s)).ok_or_else(|| too_short(samples.len()))?;
+        Ok(Self { path: path.to_owned(), axes, rate_hz, samples, leader_m: None })
     }
 }
 
@@ -164,19 +178,25 @@ fn cure(key: &str) -> String {
     format!("name another with --map {key}=COLUMN")
 }
 
-/// The axes with a position or a force; if only one of the two exists, the other is reported as missing.
+/// The axes with a position or a force, or a leader's motion that is mapped; if only one of them exists, the other is reported as missing.
 fn axes(table: &Table, mapping: &Mapping) -> Vec<usize> {
     let has = |name: &str| mapping.names(name) || table.has(mapping.source(name).column());
     let found: Vec<usize> = (0..AXES)
-        .filter(|&axis| has(&format!("{}_m", AXIS_NAMES[axis])) || has(&format!("f{}_n", AXIS_NAMES[axis])))
+        .filter(|&axis| {
+            let name = AXIS_NAMES[axis];
+            has(&format!("{name}_m")) || has(&format!("f{name}_n")) || mapping.names(&format!("l{name}_m"))
+        })
         .collect();
     // If none exists, use x: the error then lists the columns that exist.
     if found.is_empty() { vec![0] } else { found }
 }
 
-/// One over the median time step, rounded to eight digits so that steps of 0.001 s give 1000 Hz.
-fn rate_hz(samples: &[Sample]) -> Option<f64> {
-    let mut steps: Vec<f64> = samples.windows(2).map(|pair| pair[1].t_s - pair[0].t_s).collect();
+/// The rate of these times (s): one over the median time step, rounded to eight digits so that steps of 0.001 s give 1000 Hz. `None` for
+/// fewer than three.
+pub fn rate_hz(times_s: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut before_s = None;
+    let mut steps: Vec<f64> =
+        times_s.filter_map(|t_s| before_s.replace(t_s).map(|before_s: f64| t_s - before_s)).collect();
     if steps.len() < 2 {
         return None;
     }
@@ -210,6 +230,17 @@ mod tests {
         let recording = read("t_s,px_mm,torque\n0,1,2\n1,2,3\n2,3,4\n", &["x=px_mm*0.001", "fx=torque*-1"]).unwrap();
         assert!((recording.samples[1].position_m.x - 0.002).abs() < 1e-15);
         assert!((recording.samples[1].force_n.x + 3.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_leaders_motion_is_read_where_it_is_mapped_and_only_there() {
+        let text = "t_s,x_m,y_m,fx_n,fy_n,hx_mm,hy_mm,lx_m\n0,1,2,3,4,5,6,9\n1,1,2,3,4,7,8,9\n2,1,2,3,4,9,10,9\n";
+        assert_eq!(read(text, &[]).unwrap().leader_m, None, "a column of that name alone says nothing");
+        let leader_m = read(text, &["lx=hx_mm*0.001", "ly=hy_mm*0.001"]).unwrap().leader_m.unwrap();
+        assert!((leader_m[1] - Vector3::new(0.007, 0.008, 0.0)).norm() < 1e-15 && leader_m.len() == 3);
+        let missing = read(text, &["lx=hx_mm"]).unwrap_err().to_string();
+        assert!(missing.contains("no column \"ly_m\" for leader's motion") && missing.contains("--map ly=COLUMN"));
+        assert!(read(text, &["lz=hx_mm"]).unwrap_err().to_string().contains("no column"), "an axis without a force");
     }
 
     #[test]

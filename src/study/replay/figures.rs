@@ -1,6 +1,6 @@
 //! The results of a replay.
 
-use nima_core::impedance::{MAX_DEGREE, Mode};
+use nima_core::impedance::{MAX_DEGREE, Mode, OwnMotion};
 use serde::Serialize;
 
 /// Mean, standard deviation, percentile and maximum of an error.
@@ -71,6 +71,8 @@ pub struct Figures {
     /// Axes, by name.
     pub axes: Vec<&'static str>,
     pub mode: Mode,
+    /// The motion of which the force is made: the follower's, or the handle's where the recording has it.
+    pub own_motion: OwnMotion,
     /// Window used, ms.
     pub window_ms: f64,
     /// Delay used, ms: the requested one rounded to whole samples.

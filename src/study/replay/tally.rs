@@ -5,10 +5,9 @@ use nima_core::{
     impedance::{MAX_DEGREE, Mode, Report, Settings},
     statistics::Percentiles,
 };
-use nima_recording::csv::Recording;
 
 use super::{
-    Row,
+    Motion, Row,
     figures::{ErrorFigures, Figures, Reconstruction, Reconstructions, Spread, TickTime},
 };
 
@@ -51,7 +50,7 @@ impl Tally {
         self.rejected += u64::from(row.rendered.is_none());
     }
 
-    pub(super) fn figures(mut self, recording: &Recording, mode: Mode, settings: &Settings) -> Figures {
+    pub(super) fn figures(mut self, motion: &Motion<'_>, mode: Mode, settings: &Settings) -> Figures {
         let compared = self.error.norms.len();
         let share = |count: u64| count as f64 / compared.max(1) as f64;
         let [degree_1, degree_2, degree_3, degree_4, degree_5] =
@@ -59,9 +58,10 @@ impl Tally {
         let tick = self.tick.quantiles();
         self.conditions.sort_unstable_by(f64::total_cmp);
         Figures {
-            samples: recording.samples.len(),
-            rate_hz: recording.rate_hz,
-            axes: recording.axes.iter().map(|&axis| nima_recording::csv::AXIS_NAMES[axis]).collect(),
+            samples: motion.samples,
+            rate_hz: motion.rate_hz,
+            own_motion: settings.own_motion,
+            axes: motion.axes.iter().map(|&axis| nima_recording::csv::AXIS_NAMES[axis]).collect(),
             mode,
             window_ms: tidy_ms(settings.window_s),
             delay_ms: tidy_ms(settings.delay_s),

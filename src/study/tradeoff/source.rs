@@ -36,7 +36,8 @@ impl Source {
                 samples.push(Sample { t_s, position_m: inputs.tip_m, force_n });
             }
         }
-        let recording = Recording { path: scene.name.clone().into(), axes: (0..AXES).collect(), rate_hz, samples };
+        let recording =
+            Recording { path: scene.name.clone().into(), axes: (0..AXES).collect(), rate_hz, samples, leader_m: None };
         Self { name: scene.name.clone(), unit: "N".to_owned(), recording }
     }
 
@@ -62,6 +63,7 @@ impl Source {
             axes: self.recording.axes.clone(),
             rate_hz: self.recording.rate_hz / every as f64,
             samples: self.recording.samples.iter().step_by(every).copied().collect(),
+            leader_m: self.recording.leader_m.as_ref().map(|all| all.iter().step_by(every).copied().collect()),
         }
     }
 }

@@ -24,7 +24,7 @@ fn source(seconds: f64, rate_hz: f64) -> Source {
             Sample { t_s, position_m: Vector3::new(x, 0.0, 0.0), force_n: Vector3::new(f, 0.0, 0.0) }
         })
         .collect();
-    Source::from_recording(Recording { path: "press.csv".into(), axes: vec![0], rate_hz, samples }, "N")
+    Source::from_recording(Recording { path: "press.csv".into(), axes: vec![0], rate_hz, samples, leader_m: None }, "N")
 }
 
 fn tiny() -> Plan {

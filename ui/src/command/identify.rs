@@ -1,30 +1,36 @@
-//! `nima identify`: runs the identification over a recording.
+//! `nima identify`: runs the identification over recordings.
 
 use std::{
     fmt::Write as _,
     io::{self, Write},
-    path::PathBuf,
+    path::{Path, PathBuf},
 };
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::Args;
-use nima_core::impedance::{Choice, MAX_DEGREE, Mode, Reading, Recipe};
+use nima_core::impedance::{Choice, MAX_DEGREE, Mode, OwnMotion, Reading, Recipe};
 use nima_files::write_atomically;
 use nima_machine::rig::Side;
 use nima_recording::csv::{AXIS_NAMES, Recording};
-use nima_study::replay::{Figures, Options, Row, replay};
-use serde::de::{DeserializeOwned, IntoDeserializer as _, value::Error};
+use nima_study::replay::{Figures, Options, Row, Summary, replay};
+use serde::{
+    Serialize,
+    de::{DeserializeOwned, IntoDeserializer as _, value::Error},
+};
 
 use super::{motion, output};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// CSV file with `t_s`, `x_m, y_m, z_m`, `fx_n, fy_n, fz_n` (one to three axes), or a recorded session (.mcap)
-    recording: PathBuf,
+    /// CSV files with `t_s`, `x_m, y_m, z_m`, `fx_n, fy_n, fz_n` (one to three axes), or recorded sessions (.mcap); of several
+    /// a summary is printed too
+    #[arg(required = true, value_name = "RECORDING")]
+    recordings: Vec<PathBuf>,
     /// Which arm of a session, right or left (needed if it has both)
     #[arg(long, value_name = "ARM", value_parser = motion::side)]
     arm: Option<Side>,
-    /// Other column names, with an optional factor: `x=px_mm*0.001`
+    /// Other column names, with an optional factor: `x=px_mm*0.001`, or of three axes at once: `xyz=px_mm,py_mm,pz_mm*0.001`,
+    /// `fxyz=...`. `lx`, `ly`, `lz` or `lxyz` name the leader's own motion, of which the force is then made
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
     map: Vec<String>,
     /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,
@@ -55,7 +61,7 @@ pub(super) struct Arguments {
     /// Ridge of literal and linear per row of the window, in columns divided by the workspace's scales; 0 for none
     #[arg(long, value_name = "R", default_value_t = 0.0, allow_negative_numbers = true)]
     ridge: f64,
-    /// Write one row per sample to this CSV file
+    /// Write one row per sample of the one recording to this CSV file
     /// (replaces a file, whose mode stays; follows a link; refuses the input, a device or a pipe)
     #[arg(long, value_name = "TRACE.csv")]
     out: Option<PathBuf>,
@@ -64,27 +70,49 @@ pub(super) struct Arguments {
     json: bool,
 }
 
+/// What is printed of several recordings.
+#[derive(Serialize)]
+struct Many<'a> {
+    recordings: Vec<One<'a>>,
+    summary: &'a Summary,
+}
+
+#[derive(Serialize)]
+struct One<'a> {
+    recording: &'a str,
+    #[serde(flatten)]
+    figures: &'a Figures,
+}
+
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let [recording] = &arguments.recordings[..] else { return run_many(arguments) };
     if let Some(out) = &arguments.out {
-        output::check(out, &[&arguments.recording])?;
+        output::check(out, &[recording])?;
     }
-    let recording = motion::read(&arguments.recording, &arguments.map, arguments.arm)?;
-    let options = Options {
-        mode: arguments.mode,
-        window_s: arguments.window_ms * 1e-3,
-        delay_s: arguments.delay_ms * 1e-3,
-        max_degree: arguments.max_degree,
-        cross_talk: arguments.cross_talk,
-        literal: Recipe {
-            reading: arguments.reading,
-            choice: arguments.choice,
-            constant: arguments.constant,
-            ridge: arguments.ridge,
-        },
-    };
+    let figures = identify(arguments, recording)?;
+    if arguments.json { output::json(&figures) } else { output::line(&in_words(&figures)) }
+}
+
+/// Every recording with the same options, and a summary.
+fn run_many(arguments: &Arguments) -> anyhow::Result<()> {
+    if arguments.out.is_some() {
+        bail!("--out writes the samples of one recording: give one, or leave --out away");
+    }
+    let one = |path: &PathBuf| Ok((path.display().to_string(), identify(arguments, path)?));
+    let all: Vec<(String, Figures)> = arguments.recordings.iter().map(one).collect::<anyhow::Result<_>>()?;
+    let summary = Summary::of(&all);
+    if !arguments.json {
+        return output::line(&many_in_words(&all, &summary));
+    }
+    let recordings = all.iter().map(|(recording, figures)| One { recording, figures }).collect();
+    output::json(&Many { recordings, summary: &summary })
+}
+
+fn identify(arguments: &Arguments, path: &Path) -> anyhow::Result<Figures> {
+    let recording = motion::read_with_leader(path, &arguments.map, arguments.arm)?;
     let mut trace = header(&recording);
     let keep = arguments.out.is_some();
-    let figures = replay(&recording, &options, |row| {
+    let figures = replay(&recording, &options(arguments), |row| {
         if keep {
             push_row(&mut trace, row, recording.axes.len());
         }
@@ -93,7 +121,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let fill = |file: &mut dyn Write| -> io::Result<()> { file.write_all(trace.as_bytes()) };
         write_atomically(out, fill).with_context(|| format!("cannot write the trace {}", out.display()))?;
     }
-    if arguments.json { output::json(&figures) } else { output::line(&in_words(&figures)) }
+    Ok(figures)
+}
+
+fn options(arguments: &Arguments) -> Options {
+    let &Arguments { mode, max_degree, cross_talk, reading, choice, constant, ridge, .. } = arguments;
+    let (window_s, delay_s) = (arguments.window_ms * 1e-3, arguments.delay_ms * 1e-3);
+    let literal = Recipe { reading, choice, constant, ridge };
+    Options { mode, window_s, delay_s, max_degree, cross_talk, literal }
 }
 
 /// A word of a rig file.
@@ -127,11 +162,41 @@ fn push_row(trace: &mut String, row: &Row, axes: usize) {
     writeln!(trace, ",{},{:e},{}", row.degree, row.condition, row.gate).ok();
 }
 
+/// The rendered force's error as a multiple of the held force's, if that has one.
+fn ratio_in_words(ratio: Option<f64>) -> String {
+    ratio.map_or_else(|| "none: the held force is exact".to_owned(), |ratio| format!("{ratio:.3}"))
+}
+
+fn ratio_of(figures: &Figures) -> Option<f64> {
+    (figures.hold.mae > 0.0).then(|| figures.error.mae / figures.hold.mae)
+}
+
+/// A line for each recording, and one for all.
+fn many_in_words(all: &[(String, Figures)], summary: &Summary) -> String {
+    let row = |name: &str, compared: usize, error: f64, hold: f64, ratio: Option<f64>| {
+        format!("{compared:>9}  {error:>9.5}  {hold:>9.5}  {:>7}  {name}\n", ratio_in_words(ratio))
+    };
+    let mut text = String::from("  samples      error       held    ratio  recording\n");
+    for (name, figures) in all {
+        let Figures { compared, error, hold, .. } = figures;
+        text += &row(name, *compared, error.mae, hold.mae, ratio_of(figures));
+    }
+    let Summary { compared, error_mae, hold_mae, ratio, holes, rejected, .. } = *summary;
+    text += &row(&format!("all {}", summary.recordings), compared, error_mae, hold_mae, ratio);
+    if let (Some(ratios), Some(worst)) = (&summary.ratios, &summary.worst) {
+        let median = ratios.median;
+        writeln!(text, "ratio: median {median:.3}, from {:.3} to {:.3} ({worst})", ratios.least, ratios.greatest).ok();
+    }
+    writeln!(text, "rejected {rejected}; holes {holes}").ok();
+    text.push_str("(mean errors at the horizon in units of the recordings; ratio: rendered force to held force)");
+    text
+}
+
 fn in_words(figures: &Figures) -> String {
-    let ratio = if figures.hold.mae > 0.0 {
-        format!("{:.3}", figures.error.mae / figures.hold.mae)
-    } else {
-        "none: the held force is exact".to_owned()
+    let ratio = ratio_in_words(ratio_of(figures));
+    let motion = match figures.own_motion {
+        OwnMotion::Follower => "",
+        OwnMotion::Handle => "; force from the leader's own motion",
     };
     let holes = match figures.holes {
         0 => String::new(),
@@ -143,7 +208,7 @@ fn in_words(figures: &Figures) -> String {
     let reconstruction = &figures.reconstruction;
     let [d1, d2, d3, d4, d5] = figures.degree_share.map(|share| share * 100.0);
     format!(
-        "{samples} samples at {rate:.1} Hz, axes {axes}; mode {mode}, window {window:.1} ms, delay {delay:.1} ms{holes}\n\
+        "{samples} samples at {rate:.1} Hz, axes {axes}; mode {mode}, window {window:.1} ms, delay {delay:.1} ms{motion}{holes}\n\
          error at the horizon   mean {:.5}   sd {:.5}   p95 {:.5}   max {:.5}\n\
          held force (DFR)       mean {:.5}   sd {:.5}   p95 {:.5}   max {:.5}\n\
          rendered / held        {ratio}\n\

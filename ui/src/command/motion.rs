@@ -10,8 +10,16 @@ use nima_session::plotted;
 /// First bytes of a session.
 const MAGIC: [u8; 5] = *b"\x89MCAP";
 
-/// Reads one; `map` is for tables, `arm` for sessions.
+/// Reads one; `map` is for tables, `arm` for sessions. The leader's own motion is refused: what is asked here makes nothing of it.
 pub(super) fn read(path: &Path, map: &[String], arm: Option<Side>) -> anyhow::Result<Recording> {
+    if Mapping::parse(map)?.names_leader() {
+        bail!("--map names the leader's own motion, which only nima identify uses: leave it away");
+    }
+    read_with_leader(path, map, arm)
+}
+
+/// The same with the leader's own motion, if it is mapped.
+pub(super) fn read_with_leader(path: &Path, map: &[String], arm: Option<Side>) -> anyhow::Result<Recording> {
     let mapping = Mapping::parse(map)?;
     if !is_session(path) {
         if arm.is_some() {

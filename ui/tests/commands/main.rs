@@ -15,6 +15,7 @@ mod endings;
 mod every_command;
 mod export;
 mod hostile_files;
+mod identify;
 mod installed;
 mod packages;
 mod paper_rig;

@@ -73,6 +73,6 @@ impl Conditions {
             samples.push(Sample { t_s: tick.t_s, position_m: tick.tip_m, force_n: tick.measured_n });
             None
         })?;
-        Ok(Recording { path: SCENE.into(), axes: (0..AXES).collect(), rate_hz: RATE_HZ, samples })
+        Ok(Recording { path: SCENE.into(), axes: (0..AXES).collect(), rate_hz: RATE_HZ, samples, leader_m: None })
     }
 }

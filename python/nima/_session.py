@@ -1,0 +1,168 @@
+"""Recorded sessions (MCAP)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from os import PathLike, fspath
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _nima
+from ._arrays import Floats
+from ._identification import Recording, read_recording
+
+
+@dataclass(frozen=True)
+class Ticks:
+    """What is plotted of an arm in ``n`` ticks; frame ``world``."""
+
+    t_s: Floats
+    """Time since the session began, shape (n,), s."""
+    time_ns: npt.NDArray[np.uint64]
+    """Time of its messages, shape (n,), ns since 1970 (UTC)."""
+    tip_m: Floats
+    """Position of the instrument's tip, shape (n, 3), m."""
+    leader_m: Floats
+    """Commanded position of the tip, shape (n, 3), m."""
+    measured_n: Floats
+    """Force at the tip, shape (n, 3), N."""
+    delayed_n: Floats
+    """The same as the link delivered it then, shape (n, 3), N."""
+    asked_n: Floats
+    """Force of the mode before the gates, shape (n, 3), N."""
+    rendered_n: Floats
+    """Force on the hand, after the gates, shape (n, 3), N."""
+    state: list[str]
+    """State of the arm in a word."""
+
+
+class Event(NamedTuple):
+    """A line of the session's log."""
+
+    t_s: float
+    level: str
+    part: str
+    words: str
+
+
+class Channel(NamedTuple):
+    """A channel of a session."""
+
+    topic: str
+    schema: str
+    messages: int | None
+
+
+class Attachment(NamedTuple):
+    """An attached file."""
+
+    name: str
+    media_type: str
+    size: int
+
+
+class Session:
+    """A recorded session. Chunks are read when they are asked for.
+
+    Parameters
+    ----------
+    path
+        Session file (.mcap), finished or cut short.
+
+    Raises
+    ------
+    OSError
+        The file cannot be read.
+    ValueError
+        It is no session, or damaged.
+    """
+
+    def __init__(self, path: str | PathLike[str]) -> None:
+        self._path = fspath(path)
+        self._native = _nima.Session(path)
+
+    @property
+    def arms(self) -> list[str]:
+        """The arms that are plotted: of ``right`` and ``left``."""
+        return self._native.arms
+
+    @property
+    def channels(self) -> list[Channel]:
+        """Topic, schema and number of messages of every channel (``None`` where the file does not say it)."""
+        return [Channel(*channel) for channel in self._native.channels]
+
+    @property
+    def attachments(self) -> list[Attachment]:
+        """Name, media type and size in bytes of every attached file: rig, scene, layouts."""
+        return [Attachment(*one) for one in self._native.attachments]
+
+    def attachment(self, name: str) -> bytes:
+        """The data of an attached file; :class:`ValueError` if there is none of this name."""
+        return self._native.attachment(name)
+
+    @property
+    def metadata(self) -> dict[str, dict[str, str]]:
+        """The tables of the file, by their names."""
+        return self._native.metadata
+
+    @property
+    def notes(self) -> list[str]:
+        """What is wrong with the file, one line each; nothing with a sound one."""
+        return self._native.notes
+
+    @property
+    def library(self) -> str:
+        """The program that wrote it."""
+        return self._native.library
+
+    @property
+    def begin_ns(self) -> int:
+        """When the session began, ns since 1970 (UTC)."""
+        return self._native.begin_ns
+
+    @property
+    def end_s(self) -> float:
+        """Its end, s since it began."""
+        return self._native.end_s
+
+    def ticks(self, arm: str | None = None, *, from_s: float | None = None, to_s: float | None = None) -> Ticks:
+        """What is plotted of an arm in every tick of a stretch (from ``from_s``, before ``to_s``, s since it began).
+
+        Raises
+        ------
+        ValueError
+            The session has no such arm, or two and ``arm`` chooses none; a stretch that is none; a damaged chunk.
+        """
+        return Ticks(**self._native.ticks(arm, from_s, to_s))
+
+    def plot(self, topic: str, *, from_s: float | None = None, to_s: float | None = None) -> dict[str, Floats]:
+        """The named numbers of a channel such as ``right/identification`` or ``timing``, each of shape (n,), and ``t_s``.
+
+        Raises
+        ------
+        ValueError
+            No such channel, one with other messages, a stretch that is none, or a damaged chunk.
+        """
+        return self._native.plot(topic, from_s, to_s)
+
+    def events(self, *, from_s: float | None = None, to_s: float | None = None) -> list[Event]:
+        """What happened: states, faults, commands, marks, alarms; the oldest first.
+
+        Raises
+        ------
+        ValueError
+            A stretch that is none, or a damaged chunk.
+        """
+        return [Event(*line) for line in self._native.events(from_s, to_s)]
+
+    def recording(self, arm: str | None = None) -> Recording:
+        """Motion and force of an arm, for :func:`nima.identify`; the same as ``nima identify SESSION.mcap``.
+
+        Raises
+        ------
+        ValueError
+            As :meth:`ticks`; a value that is not finite; fewer than three ticks.
+        """
+        return read_recording(self._path, arm=arm)

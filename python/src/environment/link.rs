@@ -1,0 +1,59 @@
+//! A link that can also deliver a force that somebody outside asks for.
+
+use nalgebra::Vector3;
+use nima_core::impedance::Parcel;
+use nima_machine::teleop::{Link, ProgrammedLink};
+
+/// The programmed link; while somebody outside renders, a parcel with that force in place of the newest one. In the mode `dfr` it is what the
+/// gates are asked for, and nothing passes around them.
+#[derive(Debug)]
+pub(super) struct OwnLink {
+    under: ProgrammedLink,
+    delay_s: f64,
+    /// The force that somebody outside asks for, N, and the parcel that it is in.
+    asked_n: Option<Vector3<f64>>,
+    own: Parcel,
+    turned: bool,
+    /// What the link itself delivered last, N.
+    pub(super) delayed_n: Option<Vector3<f64>>,
+}
+
+impl OwnLink {
+    pub(super) fn new(rate_hz: f64, delay_s: f64) -> Self {
+        let under = ProgrammedLink::new(rate_hz, delay_s);
+        let own = Parcel { fresh: true, ..Parcel::BLANK };
+        Self { under, delay_s, asked_n: None, own, turned: false, delayed_n: None }
+    }
+
+    /// From now on this force is asked for, N.
+    pub(super) const fn ask(&mut self, force_n: Vector3<f64>) {
+        self.asked_n = Some(force_n);
+    }
+}
+
+impl Link for OwnLink {
+    fn set_delay(&mut self, delay_s: f64) {
+        self.delay_s = delay_s;
+        self.under.set_delay(delay_s);
+    }
+
+    fn clear(&mut self) {
+        self.under.clear();
+    }
+
+    fn send(&mut self, parcel: &Parcel) {
+        self.under.send(parcel);
+    }
+
+    fn receive(&mut self, now_s: f64) -> Option<&Parcel> {
+        let delivered = self.under.receive(now_s);
+        self.delayed_n = delivered.map(|parcel| parcel.force_n);
+        let Some(asked_n) = self.asked_n else { return self.under.receive(now_s) };
+        // The watch for a line that is frozen takes numbers that repeat themselves to the last bit for one. This is no line: a force that a
+        // controller holds may repeat itself, so its last bit goes to and fro.
+        self.turned = !self.turned;
+        self.own.force_n = if self.turned { asked_n.map(f64::next_up) } else { asked_n };
+        self.own.t_s = now_s - self.delay_s;
+        Some(&self.own)
+    }
+}

@@ -1,0 +1,247 @@
+//! The simulated loop, step by step; see `nima.Environment`.
+
+mod handle;
+mod link;
+mod running;
+
+use nalgebra::Vector3;
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::RigConfig,
+    messages::LoopState,
+    rig::{GRIP_MAX_RAD, SIDES},
+    teleop::Calibrations,
+};
+use nima_world::{Plan, scene::Scene};
+use numpy::PyArray1;
+use pyo3::{prelude::*, types::PyDict};
+
+use self::running::{Action, Known, Running};
+use crate::errors::{guarded, value};
+
+/// What a controller outside controls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Control {
+    Nothing,
+    HandlePosition,
+    HandleForce,
+    RenderedForce,
+}
+
+impl Control {
+    const ALL: [(&'static str, Self); 4] = [
+        ("nothing", Self::Nothing),
+        ("handle_position", Self::HandlePosition),
+        ("handle_force", Self::HandleForce),
+        ("rendered_force", Self::RenderedForce),
+    ];
+
+    fn of(name: &str) -> PyResult<Self> {
+        let known = Self::ALL.into_iter().find(|(known, _)| *known == name).map(|(_, control)| control);
+        known.ok_or_else(|| {
+            value(format_args!("control is {name:?}; give one of {}", Self::ALL.map(|(known, _)| known).join(", ")))
+        })
+    }
+}
+
+/// A loop with its simulated world.
+#[pyclass(module = "nima._nima")]
+pub(crate) struct Simulation {
+    plan: Plan,
+    control: Control,
+    substeps: u32,
+    has_jaws: bool,
+    running: Option<Running>,
+}
+
+/// Most ticks of a step.
+const SUBSTEPS_MAX: u32 = 100_000;
+
+#[pymethods]
+impl Simulation {
+    /// Reads rig and scene, and checks them.
+    #[new]
+    #[pyo3(signature = (scene, rig, mode, delay_s, control, substeps))]
+    fn new(
+        scene: &str,
+        rig: &str,
+        mode: Option<&str>,
+        delay_s: Option<f64>,
+        control: &str,
+        substeps: u32,
+    ) -> PyResult<Self> {
+        let control = Control::of(control)?;
+        if !(1..=SUBSTEPS_MAX).contains(&substeps) {
+            return Err(value(format_args!("substeps is {substeps}; it must be 1 to {SUBSTEPS_MAX}")));
+        }
+        let scene = Scene::load(scene).map_err(value)?;
+        let mut rig = RigConfig::load(rig).map_err(value)?;
+        if rig.devices.is_some() || rig.desk.is_some() {
+            return Err(value(format_args!("rig \"{}\" has devices; give a simulated one", rig.name)));
+        }
+        let mode: Option<Mode> = mode.map(str::parse).transpose().map_err(value)?;
+        rig.mode = match (control, mode) {
+            (Control::RenderedForce, None) => Mode::Dfr,
+            (Control::RenderedForce, Some(mode)) => {
+                return Err(value(format_args!(
+                    "mode is {mode}, and control \"rendered_force\" renders itself: leave it away"
+                )));
+            }
+            (_, mode) => mode.unwrap_or(rig.mode),
+        };
+        rig.identification.compare &= control != Control::RenderedForce;
+        rig.delay_s = delay_s.unwrap_or(rig.delay_s);
+        rig.validate().map_err(value)?;
+        let calibrations: [Calibrations; SIDES] = Default::default();
+        let has_jaws = scene.objects.is_some();
+        let plan = Plan { rig, scene, calibrations, engage: true };
+        if !plan.may_engage() {
+            return Err(value(format_args!(
+                "scene \"{}\" cannot be engaged: its force is measured at the wrist, which needs calibrations; give a scene that measures at the tip",
+                plan.scene.name
+            )));
+        }
+        Ok(Self { plan, control, substeps, has_jaws, running: None })
+    }
+
+    /// Ticks per second.
+    #[getter]
+    fn rate_hz(&self) -> f64 {
+        self.plan.rig.rate_hz
+    }
+
+    /// Largest force of the gates, N.
+    #[getter]
+    fn ceiling_n(&self) -> f64 {
+        self.plan.rig.gates.ceiling_n
+    }
+
+    /// The delay of the link, s.
+    #[getter]
+    fn delay_s(&self) -> f64 {
+        self.plan.rig.delay_s
+    }
+
+    /// The mode in force.
+    #[getter]
+    fn mode(&self) -> &'static str {
+        self.plan.rig.mode.name()
+    }
+
+    /// Whether the instrument has jaws, whose opening is the last number of an action.
+    #[getter]
+    fn has_jaws(&self) -> bool {
+        self.has_jaws
+    }
+
+    /// Widest opening of the gripper, rad.
+    #[classattr]
+    const GRIP_MAX_RAD: f64 = GRIP_MAX_RAD;
+
+    /// Begins anew, and runs until the arm is engaged.
+    fn reset<'py>(&mut self, py: Python<'py>, seed: Option<u64>) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+        let mut plan = self.plan.clone();
+        if let Some(seed) = seed {
+            plan.scene.seed = seed;
+            plan.scene = plan.scene.drawn_anew(seed);
+        }
+        let begin = || -> PyResult<(Running, Known)> {
+            let mut running = Running::new(&plan).map_err(value)?;
+            let known = running.engage().map_err(value)?;
+            Ok((running, known))
+        };
+        let (running, known) = guarded(|| py.detach(begin))?;
+        self.running = Some(running);
+        Ok((observation(py, &known)?, info(py, &known)?))
+    }
+
+    /// One step: observation, what is known besides, and whether the loop still runs.
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        action: Vec<f64>,
+    ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, bool)> {
+        let (action, grip_rad) = self.action(&action)?;
+        let substeps = self.substeps;
+        let running = self.running.as_mut().ok_or_else(|| value("call reset before step"))?;
+        let known = guarded(|| Ok(py.detach(|| running.step(action, grip_rad, substeps))))?;
+        let known = known.ok_or_else(|| value("the scene has no right arm"))?;
+        Ok((observation(py, &known)?, info(py, &known)?, known.tick.state == LoopState::Engaged))
+    }
+
+    /// The score as JSON; `None` in a scene without a task, or if it was asked for already.
+    fn score(&mut self) -> PyResult<Option<String>> {
+        let score = self.running.as_mut().and_then(Running::end);
+        score.map(|score| serde_json::to_string(&score).map_err(value)).transpose()
+    }
+}
+
+impl Simulation {
+    fn action(&self, numbers: &[f64]) -> PyResult<(Action, Option<f64>)> {
+        let grips = self.has_jaws && matches!(self.control, Control::HandlePosition | Control::HandleForce);
+        let needed = if self.control == Control::Nothing { 0 } else { 3 + usize::from(grips) };
+        if numbers.len() != needed {
+            return Err(value(format_args!("the action has {} numbers, {needed} are needed", numbers.len())));
+        }
+        if let Some(number) = numbers.iter().find(|number| !number.is_finite()) {
+            return Err(value(format_args!("the action contains {number}; give finite numbers")));
+        }
+        let &[x, y, z, ..] = numbers else { return Ok((Action::Watch, None)) };
+        let vector = Vector3::new(x, y, z);
+        let action = match self.control {
+            Control::Nothing => Action::Watch,
+            Control::HandlePosition => Action::Place(vector),
+            Control::HandleForce => Action::Push(vector),
+            Control::RenderedForce => Action::Render(vector),
+        };
+        Ok((action, numbers.get(3).copied()))
+    }
+}
+
+fn array<'py>(py: Python<'py>, vector: &Vector3<f64>) -> Bound<'py, PyArray1<f64>> {
+    PyArray1::from_slice(py, vector.as_slice())
+}
+
+/// What a controller at the leader can know.
+fn observation<'py>(py: Python<'py>, known: &Known) -> PyResult<Bound<'py, PyDict>> {
+    let all = PyDict::new(py);
+    let vectors = [
+        ("handle_m", &known.handle_m),
+        ("handle_m_s", &known.handle_m_s),
+        ("command_m", &known.tick.leader_m),
+        ("delayed_tip_m", &known.delayed_tip_m),
+        ("delayed_n", &known.delayed_n),
+        ("rendered_n", &known.tick.rendered_n),
+    ];
+    for (name, vector) in vectors {
+        all.set_item(name, array(py, vector))?;
+    }
+    Ok(all)
+}
+
+/// What is known besides.
+fn info<'py>(py: Python<'py>, known: &Known) -> PyResult<Bound<'py, PyDict>> {
+    let tick = &known.tick;
+    let all = PyDict::new(py);
+    all.set_item("t_s", tick.t_s)?;
+    all.set_item("state", tick.state.word())?;
+    let fault = if let LoopState::Faulted(fault) = tick.state { Some(format!("{fault:?}")) } else { None };
+    all.set_item("fault", fault)?;
+    all.set_item("mode", tick.mode.name())?;
+    all.set_item("tip_m", array(py, &tick.tip_m))?;
+    all.set_item("measured_n", array(py, &tick.measured_n))?;
+    all.set_item("asked_n", array(py, &tick.asked_n[tick.mode.index()]))?;
+    all.set_item("gate", tick.gates.first_closed())?;
+    let Some(training) = &known.training else {
+        all.set_item("task", py.None())?;
+        return Ok(all);
+    };
+    let task = PyDict::new(py);
+    task.set_item("ended", training.ended)?;
+    task.set_item("share", training.share)?;
+    task.set_item("placed", training.placed)?;
+    task.set_item("dropped", training.dropped)?;
+    task.set_item("touches", training.touches)?;
+    all.set_item("task", task)?;
+    Ok(all)
+}

@@ -1,0 +1,213 @@
+//! A loop on its simulated worlds, stepped tick by tick.
+
+use std::collections::VecDeque;
+
+use nalgebra::Vector3;
+use nima_core::impedance::SettingsError;
+use nima_machine::{
+    messages::{Command, LoopState, Tick},
+    rig::{GRIP_MAX_RAD, GUIDE_MAX_M, Inputs, Side},
+    runtime,
+    teleop::Loop,
+};
+use nima_score::{Event, HandSample, Sample, Score, TaskKind};
+use nima_session::scored::{Trial, side_of};
+use nima_world::{Plan, Training, Watched, Worlds};
+
+use super::{
+    handle::{Handled, Holder},
+    link::OwnLink,
+};
+
+/// The side that a controller gets.
+pub(super) const SIDE: Side = Side::Right;
+/// Longest time until the pair is engaged, s.
+const ENGAGED_WITHIN_S: f64 = 5.0;
+
+/// What a controller outside does in a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Action {
+    /// Nothing: the scene's hand holds the handle, and a mode renders.
+    Watch,
+    /// Places the handle, m.
+    Place(Vector3<f64>),
+    /// Pushes the handle, N.
+    Push(Vector3<f64>),
+    /// Asks for this force in the hand, N, in place of a mode.
+    Render(Vector3<f64>),
+}
+
+/// What is known after a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Known {
+    pub(super) tick: Tick,
+    pub(super) handle_m: Vector3<f64>,
+    pub(super) handle_m_s: Vector3<f64>,
+    /// Position of the tip, one delay ago, m.
+    pub(super) delayed_tip_m: Vector3<f64>,
+    /// Force at the tip, one delay ago, N.
+    pub(super) delayed_n: Vector3<f64>,
+    pub(super) training: Option<Training>,
+}
+
+/// A run.
+pub(super) struct Running {
+    control: Loop<OwnLink>,
+    rig: Handled,
+    watched: Option<Watched>,
+    training: Option<Training>,
+    trial: Option<Trial>,
+    has_jaws: bool,
+    ticks: u64,
+    period_s: f64,
+    /// Tips until one delay ago, the oldest first, m.
+    tips_m: VecDeque<Vector3<f64>>,
+    handle_before_m: Option<Vector3<f64>>,
+    known: Option<Known>,
+}
+
+impl Running {
+    pub(super) fn new(plan: &Plan) -> Result<Self, SettingsError> {
+        let origin = plan.origin();
+        let control = Loop::over(&origin.rig, &origin.calibrations, OwnLink::new)?;
+        let (worlds, watched) = Worlds::watched(&plan.scene, plan.rig.rate_hz);
+        let period_s = 1.0 / plan.rig.rate_hz;
+        let rig = Handled::new(worlds, SIDE, plan.scene.leader, plan.scene.hand.mass_kg, period_s);
+        let (training, tips_m) = (None, VecDeque::new());
+        let has_jaws = plan.scene.task.as_ref().is_some_and(|task| task.kind == TaskKind::PegTransfer);
+        let trial = plan.scene.task.as_ref().map(Trial::new);
+        let (handle_before_m, known) = (None, None);
+        Ok(Self {
+            control,
+            rig,
+            watched,
+            training,
+            trial,
+            has_jaws,
+            ticks: 0,
+            period_s,
+            tips_m,
+            handle_before_m,
+            known,
+        })
+    }
+
+    /// Runs until the pair is engaged.
+    pub(super) fn engage(&mut self) -> Result<Known, String> {
+        let mut command = Some(Command::Engage);
+        while (self.ticks as f64) * self.period_s < ENGAGED_WITHIN_S {
+            let known = self.tick(command.take());
+            if let Some(known) = known.filter(|known| known.tick.state == LoopState::Engaged) {
+                return Ok(known);
+            }
+        }
+        let state = self.known.map_or("without an arm", |known| known.tick.state.word());
+        Err(format!("the scene cannot be engaged: after {ENGAGED_WITHIN_S} s its right arm is still in {state}"))
+    }
+
+    /// One step of so many ticks.
+    pub(super) fn step(&mut self, action: Action, grip_rad: Option<f64>, ticks: u32) -> Option<Known> {
+        self.take(action, ticks);
+        if let Some(grip_rad) = grip_rad {
+            self.obey(Command::Grip(SIDE, Some(grip_rad.clamp(0.0, GRIP_MAX_RAD))));
+        }
+        for _ in 0..ticks {
+            // The hand of the scene waits where the handle is, and the loop knows that the handle is led.
+            let guide = |at_m: Vector3<f64>| at_m.map(|x| x.clamp(-GUIDE_MAX_M, GUIDE_MAX_M));
+            let command = self.rig.at_m().map(|at_m| Command::Guide(SIDE, Some(guide(at_m))));
+            self.tick(command)?;
+        }
+        self.known
+    }
+
+    fn take(&mut self, action: Action, ticks: u32) {
+        let measured_m = self.rig.seen.map_or_else(Vector3::zeros, |seen: Inputs| seen.hand.position_m);
+        let at_m = self.rig.at_m().unwrap_or(measured_m);
+        match action {
+            Action::Watch => {}
+            Action::Place(to_m) => self.rig.holder = Holder::Placed { at_m, to_m, ticks },
+            Action::Push(force_n) => {
+                let speed_m_s = match self.rig.holder {
+                    Holder::Pushed { speed_m_s, .. } => speed_m_s,
+                    Holder::Scene | Holder::Placed { .. } => Vector3::zeros(),
+                };
+                self.rig.holder = Holder::Pushed { at_m, speed_m_s, force_n };
+            }
+            Action::Render(force_n) => {
+                if let Some(link) = self.control.link_mut(SIDE) {
+                    link.ask(force_n);
+                }
+            }
+        }
+    }
+
+    fn obey(&mut self, command: Command) {
+        self.control.obey(command, self.ticks as f64 * self.period_s);
+    }
+
+    fn tick(&mut self, command: Option<Command>) -> Option<Known> {
+        let now_s = self.ticks as f64 * self.period_s;
+        let ticks = runtime::tick(&mut self.control, &mut self.rig, now_s, command);
+        self.ticks += 1;
+        self.score(&ticks);
+        let tick = ticks[SIDE.index()]?;
+        let handle_m = self.rig.seen.map_or(tick.leader_m, |seen| seen.hand.position_m);
+        let before_m = self.handle_before_m.replace(handle_m).unwrap_or(handle_m);
+        self.tips_m.push_back(tick.tip_m);
+        while self.tips_m.len() > (tick.delay_s / self.period_s).round() as usize + 1 {
+            self.tips_m.pop_front();
+        }
+        let delivered_n = self.control.link_mut(SIDE).and_then(|link| link.delayed_n);
+        let known = Known {
+            tick,
+            handle_m,
+            handle_m_s: (handle_m - before_m) / self.period_s,
+            delayed_tip_m: self.tips_m.front().copied().unwrap_or(tick.tip_m),
+            delayed_n: delivered_n.unwrap_or_else(Vector3::zeros),
+            training: self.training,
+        };
+        self.known = Some(known);
+        Some(known)
+    }
+
+    /// Takes what is scored of a tick.
+    fn score(&mut self, ticks: &[Option<Tick>]) {
+        let moments: Vec<_> = self.watched.iter().flat_map(Watched::moments).collect();
+        self.training = moments.last().map(|moment| moment.training).or(self.training);
+        let happenings: Vec<_> = self.watched.iter().flat_map(Watched::happenings).collect();
+        if let Some(training) = &mut self.training {
+            training.ended |= happenings.iter().any(|happening| happening.event == Event::Ended);
+        }
+        let Some(trial) = &mut self.trial else { return };
+        for moment in moments.iter().filter(|_| self.has_jaws) {
+            for side in Side::ALL {
+                trial.opening(side, moment.t_s, moment.opening_rad[side.index()]);
+            }
+        }
+        for happening in &happenings {
+            trial.happening(happening);
+        }
+        let mut sample: Option<Sample> = None;
+        for tick in ticks.iter().flatten() {
+            let hand = HandSample {
+                tip_m: tick.tip_m,
+                jaw_rad: None,
+                force_n: tick.measured_n,
+                rendered_n: tick.rendered_n,
+                engaged: tick.state == LoopState::Engaged,
+                in_view: true,
+            };
+            let sample = sample.get_or_insert(Sample { t_s: tick.t_s, ..Sample::default() });
+            sample.hands[side_of(tick.side).index()] = Some(hand);
+        }
+        if let Some(sample) = &sample {
+            trial.sample(sample);
+        }
+    }
+
+    /// The score; it ends with this. `None` in a scene without a task.
+    pub(super) fn end(&mut self) -> Option<Score> {
+        let nobody_tells = self.watched.is_none();
+        self.trial.take().and_then(|trial| trial.end(nobody_tells))
+    }
+}

@@ -1,0 +1,35 @@
+//! Errors of the library as Python's: one line each.
+
+use std::{
+    fmt::Display,
+    fs::File,
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::Path,
+};
+
+use pyo3::{
+    PyErr, PyResult,
+    exceptions::{PyOSError, PyRuntimeError, PyValueError},
+};
+
+/// A value that cannot be used.
+pub(crate) fn value(error: impl Display) -> PyErr {
+    PyValueError::new_err(one_line(&error))
+}
+
+/// What is wrong with a file: the system's error where it cannot be opened, else what it contains.
+pub(crate) fn of_file(path: &Path, error: impl Display) -> PyErr {
+    let is_readable = File::open(path).is_ok() && path.is_file();
+    if is_readable { value(error) } else { PyOSError::new_err(one_line(&error)) }
+}
+
+fn one_line(error: &impl Display) -> String {
+    error.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Does `work`; a panic, which is a mistake of ours, is an ordinary error too.
+pub(crate) fn guarded<T>(work: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
+    let broken =
+        |_| Err(PyRuntimeError::new_err("a mistake inside nima; please report it with the call that led to it"));
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(broken)
+}

@@ -1,0 +1,88 @@
+//! One summary of several recordings.
+
+use serde::Serialize;
+
+use super::Figures;
+
+/// Spread of the ratio of both errors over the recordings.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct RatioFigures {
+    pub least: f64,
+    pub median: f64,
+    pub greatest: f64,
+}
+
+/// Several recordings that were replayed with the same options.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// How many.
+    pub recordings: usize,
+    /// Samples in all of them, and those that were compared.
+    pub samples: usize,
+    /// See `samples`.
+    pub compared: usize,
+    /// Mean norm of the rendered force's error over all compared samples, and the largest.
+    pub error_mae: f64,
+    /// See `error_mae`.
+    pub error_max: f64,
+    /// Mean norm of the held force's error over the same samples.
+    pub hold_mae: f64,
+    /// Both of these divided; `None` if the held force is exact.
+    pub ratio: Option<f64>,
+    /// The same for each recording; `None` if the held force is exact in every one.
+    pub ratios: Option<RatioFigures>,
+    /// Name of the recording with the greatest ratio.
+    pub worst: Option<String>,
+    /// Compared samples for which the mode had no valid force.
+    pub rejected: u64,
+    /// Holes in the recordings.
+    pub holes: u64,
+}
+
+impl Summary {
+    /// Of recordings with these names.
+    ///
+    /// ```
+    /// use nima_study::replay::Summary;
+    ///
+    /// let none = Summary::of(&[]);
+    /// assert_eq!((none.recordings, none.ratio), (0, None));
+    /// ```
+    pub fn of(all: &[(String, Figures)]) -> Self {
+        let sum = |of: fn(&Figures) -> f64| all.iter().map(|(_, figures)| of(figures)).sum::<f64>();
+        let count = |of: fn(&Figures) -> usize| all.iter().map(|(_, figures)| of(figures)).sum::<usize>();
+        let compared = count(|figures| figures.compared);
+        let weight = compared.max(1) as f64;
+        let error_mae = sum(|figures| figures.error.mae * figures.compared as f64) / weight;
+        let hold_mae = sum(|figures| figures.hold.mae * figures.compared as f64) / weight;
+        let mut ratios: Vec<(f64, &String)> = all
+            .iter()
+            .filter_map(|(name, figures)| Some((ratio(figures.error.mae, figures.hold.mae)?, name)))
+            .collect();
+        ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let spread = ratios.first().zip(ratios.last()).map(|(least, greatest)| RatioFigures {
+            least: least.0,
+            median: ratios[(ratios.len() - 1) / 2].0,
+            greatest: greatest.0,
+        });
+        Self {
+            recordings: all.len(),
+            samples: count(|figures| figures.samples),
+            compared,
+            error_mae,
+            error_max: all.iter().map(|(_, figures)| figures.error.max).fold(0.0, f64::max),
+            hold_mae,
+            ratio: ratio(error_mae, hold_mae),
+            ratios: spread,
+            worst: ratios.last().map(|(_, name)| (*name).clone()),
+            rejected: all.iter().map(|(_, figures)| figures.rejected).sum(),
+            holes: all.iter().map(|(_, figures)| figures.holes).sum(),
+        }
+    }
+}
+
+/// The rendered force's error as a multiple of the held force's.
+fn ratio(error: f64, hold: f64) -> Option<f64> {
+    (hold > 0.0).then(|| error / hold)
+}

@@ -1,0 +1,81 @@
+use nima_core::impedance::Baseline;
+
+use super::*;
+
+/// A hand that presses a soft spring, on three axes, with a hole if `hole` is where one begins.
+fn sample(i: usize, hole: Option<usize>) -> Sample {
+    let t_s = i as f64 * 1e-3 + if hole.is_some_and(|hole| i >= hole) { 1.0 } else { 0.0 };
+    let position_m = Vector3::new(0.01 * (9.0 * t_s).sin(), 0.004 * (7.0 * t_s).cos(), 0.006 * (11.0 * t_s).sin());
+    let force_n = position_m.map(|x| if x > 0.0 { 300.0 * x.powf(1.3) } else { 0.0 });
+    Sample { t_s, position_m, force_n }
+}
+
+const OPTIONS: Options = Options {
+    mode: Mode::Anchored,
+    window_s: 0.3,
+    delay_s: 0.04,
+    max_degree: 3,
+    cross_talk: false,
+    literal: Recipe {
+        reading: nima_core::impedance::Reading::Increments,
+        choice: nima_core::impedance::Choice::Window,
+        constant: false,
+        ridge: 0.0,
+    },
+};
+
+/// The rows of 1500 samples, with the leader where `leader` has it.
+fn rows(mode: Mode, hole: Option<usize>, leader: Option<&dyn Fn(usize) -> Vector3<f64>>) -> (Vec<Row>, Figures) {
+    let sample = |i: usize| sample(i, hole);
+    let motion = Motion {
+        name: "test".into(),
+        axes: &[0, 1, 2],
+        rate_hz: 1000.0,
+        samples: 1500,
+        sample: &sample,
+        leader_m: leader,
+    };
+    let mut all = Vec::new();
+    let figures = replay_motion(&motion, &Options { mode, ..OPTIONS }, |row, parcel| {
+        assert!((parcel.t_s - row.t_s).abs() < 1e-12, "the parcel of the same tick");
+        all.push(*row);
+    });
+    (all, figures.unwrap())
+}
+
+#[test]
+fn a_leader_that_makes_the_followers_motion_renders_what_the_follower_foretells() {
+    for hole in [None, Some(700)] {
+        let same = |i: usize| sample(i, hole).position_m;
+        for mode in [Mode::Dfr, Mode::Anchored, Mode::Literal, Mode::Linear, Mode::Baseline(Baseline::Kalman)] {
+            let ((alone, figures), (led, of_led)) = (rows(mode, hole, None), rows(mode, hole, Some(&same)));
+            for (alone, led) in alone.iter().zip(&led) {
+                assert_eq!((alone.rendered, alone.held), (led.rendered, led.held), "{mode} at {} s", alone.t_s);
+            }
+            assert_eq!(figures.error, of_led.error, "{mode}");
+            assert_eq!((figures.own_motion, of_led.own_motion), (OwnMotion::Follower, OwnMotion::Handle));
+        }
+    }
+}
+
+#[test]
+fn a_leader_elsewhere_changes_what_is_made_of_motion_and_nothing_else() {
+    let ahead = |i: usize| sample(i + 30, None).position_m;
+    let error = |mode, leader| rows(mode, None, leader).1.error.mae;
+    for mode in [Mode::Anchored, Mode::Matched, Mode::Best] {
+        assert!((error(mode, Some(&ahead)) - error(mode, None)).abs() > 1e-6, "{mode}");
+    }
+    assert!((error(Mode::Dfr, Some(&ahead)) - error(Mode::Dfr, None)).abs() <= 0.0, "reflection knows no motion");
+}
+
+#[test]
+fn several_recordings_are_one_in_proportion_to_their_samples() {
+    let named = |name: &str, mode| (name.to_owned(), rows(mode, None, None).1);
+    let (anchored, dfr) = (named("a.csv", Mode::Anchored), named("b.csv", Mode::Dfr));
+    let both = Summary::of(&[anchored.clone(), dfr.clone()]);
+    assert_eq!((both.recordings, both.samples, both.compared), (2, 3000, 2 * anchored.1.compared));
+    assert!((both.error_mae - 0.5 * (anchored.1.error.mae + dfr.1.error.mae)).abs() < 1e-12);
+    let ratios = both.ratios.unwrap();
+    assert!((ratios.greatest - 1.0).abs() < 1e-12 && ratios.least < 0.7 && ratios.median <= ratios.greatest);
+    assert_eq!(both.worst.as_deref(), Some("b.csv"));
+}

@@ -10,6 +10,7 @@ pub mod bota;
 pub mod discovery;
 #[expect(missing_docs, reason = "the names are the manufacturer's")]
 pub mod dynamixel;
+pub mod external;
 #[expect(missing_docs, reason = "the names are the manufacturer's")]
 pub mod force_dimension;
 mod health;

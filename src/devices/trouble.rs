@@ -60,6 +60,12 @@ pub enum Trouble {
     /// The port is open, but no byte arrives.
     #[error("{place} is open but sends nothing")]
     Silent { place: String },
+    /// The program of an external device has not sent anything.
+    #[error("no program of a device sends to {place}")]
+    NobodySends { place: String },
+    /// It sends, but shows that it hears no answer.
+    #[error("the program that sends to {place} does not hear the answers")]
+    Unheard { place: String },
     /// There is no route to the address.
     #[error("{place} cannot be reached")]
     Unreachable { place: String },
@@ -160,6 +166,13 @@ impl Trouble {
             }
             Self::WrongBaud { .. } => "Set the device's own speed as `baud` in the rig file.".to_owned(),
             Self::Silent { .. } => "Switch the device on, check its cable, and that it is set to send.".to_owned(),
+            Self::NobodySends { .. } => {
+                "Start your device's program and let it send to this address; see docs/external-device.md.".to_owned()
+            }
+            Self::Unheard { .. } => {
+                "Let it read the socket from which it sends, and let a firewall between the two pass both ways."
+                    .to_owned()
+            }
             Self::Unreachable { .. } => {
                 "Check the cable and that this computer has an address in the device's network.".to_owned()
             }

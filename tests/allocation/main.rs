@@ -8,6 +8,7 @@ mod bota;
 mod counting;
 mod device_rig;
 mod dynamixel;
+mod external;
 mod force_dimension;
 mod hid;
 mod kinematics;

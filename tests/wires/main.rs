@@ -6,6 +6,7 @@ mod connecting;
 mod device_faults;
 mod emulated_rig;
 mod endoscope;
+mod external;
 mod frames;
 mod killed;
 mod rig_diagnosis;

@@ -6,7 +6,7 @@ use super::{DeviceProbe, Found, Probe, SerialProbe, Speaks, TcpProbe};
 use crate::{
     Trouble,
     bota::{self, Transport},
-    force_dimension,
+    external, force_dimension,
     hid::{CapDriver, CapSettings, PedalDriver, PedalSettings},
     kinova, ndi,
 };
@@ -38,6 +38,9 @@ pub const KINDS: &[ProbeKind] = &[
         usage: "force-dimension[=SERIAL|emulated:ADDRESS:PORT]",
         make: force_dimension,
     },
+    ProbeKind { name: "external-handle", usage: "external-handle=ADDRESS:PORT[,FROM]", make: external_handle },
+    ProbeKind { name: "external-arm", usage: "external-arm=ADDRESS:PORT[,FROM]", make: external_arm },
+    ProbeKind { name: "external-sensor", usage: "external-sensor=ADDRESS:PORT[,FROM]", make: external_sensor },
 ];
 
 /// An invalid address on the command line.
@@ -141,6 +144,28 @@ fn force_dimension(place: &str) -> Result<Box<dyn Probe>, Trouble> {
         None => settings.serial = Some(place.parse().map_err(|_| refused())?),
     }
     Ok(super::probes::handle("force-dimension", settings))
+}
+
+fn external_handle(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    external("external-handle", external::Kind::Handle, place)
+}
+
+fn external_arm(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    external("external-arm", external::Kind::Arm, place)
+}
+
+fn external_sensor(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    external("external-sensor", external::Kind::Sensor, place)
+}
+
+fn external(name: &str, kind: external::Kind, place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    let refused = || wrong(name, place, "ADDRESS:PORT at which to listen, and of another computer its address: ,FROM");
+    let (listen, from) = place.split_once(',').map_or((place, None), |(listen, from)| (listen, Some(from)));
+    let usual = external::Settings::at(listen.parse().map_err(|_| refused())?);
+    let from = from.map(str::parse).transpose().map_err(|_| refused())?;
+    let settings = external::Settings { from, ..usual };
+    settings.check(kind)?;
+    Ok(super::probes::external(name, kind, settings))
 }
 
 /// The probe for `KIND` or `KIND=PLACE`; it is named after the whole text.

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::{DeviceProbe, Probe, Speaks};
-use crate::{bota, dynamixel, force_dimension, hid, kinova, ndi};
+use crate::{bota, dynamixel, external, force_dimension, hid, kinova, ndi};
 
 /// A first-generation sensor restarts whenever its line is opened.
 const START: Duration = Duration::from_secs(1);
@@ -46,4 +46,20 @@ pub fn tracker(name: &str, settings: ndi::Settings) -> Box<dyn Probe> {
 pub fn pedal(name: &str, settings: hid::PedalSettings) -> Box<dyn Probe> {
     let place = settings.source.clone();
     Box::new(DeviceProbe::new(name, place, Speaks::OnChange, move || hid::PedalDriver::open(&settings)))
+}
+
+/// Tests the program of an external device.
+pub fn external(name: &str, kind: external::Kind, settings: external::Settings) -> Box<dyn Probe> {
+    let place = settings.place();
+    match kind {
+        external::Kind::Handle => {
+            Box::new(DeviceProbe::new(name, place, Speaks::Always, move || external::Handle::open(&settings)))
+        }
+        external::Kind::Arm => {
+            Box::new(DeviceProbe::new(name, place, Speaks::Always, move || external::Arm::open(&settings)))
+        }
+        external::Kind::Sensor => {
+            Box::new(DeviceProbe::new(name, place, Speaks::Always, move || external::Sensor::open(&settings)))
+        }
+    }
 }

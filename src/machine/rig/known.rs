@@ -141,7 +141,7 @@ impl Settings {
         let is_named = |kind: PartKind| {
             Side::ALL.into_iter().all(|side| kind.of(side).is_some_and(|part| self.serial(part).is_some()))
         };
-        let arms = [right, left].into_iter().all(|set| set.arm.kinova().is_none()) || is_named(PartKind::Arm);
+        let arms = [right, left].into_iter().all(|set| set.arm.is_simulated()) || is_named(PartKind::Arm);
         let hands = right.handle.for_hand_of(Side::Right).hand() != left.handle.for_hand_of(Side::Left).hand();
         let markers = self.endoscope.is_none() || right.hand_eye().is_some() && left.hand_eye().is_some();
         hands && arms && markers && is_named(PartKind::Handle) && is_named(PartKind::Sensor)

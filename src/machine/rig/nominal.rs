@@ -34,8 +34,11 @@ impl Nominal {
         match part {
             Part::Handle(_) => {
                 nominal.rate_hz = set.map(|set| set.handle.rate_hz().min(loop_hz));
-                nominal.ranges[..3].fill(Some([-HANDLE_REACH_M, HANDLE_REACH_M]));
-                nominal.ranges[GRIPPER] = Some([0.0, GRIPPER_RAD]);
+                // How far the handle of a lab reaches is not known.
+                if set.is_some_and(|set| set.handle.force_dimension().is_some()) {
+                    nominal.ranges[..3].fill(Some([-HANDLE_REACH_M, HANDLE_REACH_M]));
+                    nominal.ranges[GRIPPER] = Some([0.0, GRIPPER_RAD]);
+                }
             }
             Part::Arm(_) => {
                 // It is asked once in every tick.

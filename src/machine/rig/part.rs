@@ -1,6 +1,6 @@
 //! The parts of a rig: what a device is used for, and where a rig file describes it.
 
-use super::{Settings, Side};
+use super::{SensorSettings, Settings, Side};
 
 /// What a device is used for in a rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -105,9 +105,9 @@ impl Part {
     /// Makes of it that the program knows.
     pub const fn makes(self) -> &'static [&'static str] {
         match self.kind() {
-            PartKind::Handle => &["Force Dimension"],
-            PartKind::Arm => &["Kinova", "simulated"],
-            PartKind::Sensor => &["Bota"],
+            PartKind::Handle => &["Force Dimension", "external"],
+            PartKind::Arm => &["Kinova", "simulated", "external"],
+            PartKind::Sensor => &["Bota", "external"],
             PartKind::Servos => &["DYNAMIXEL"],
             PartKind::Tracker => &["NDI"],
             PartKind::Pedal => &[],
@@ -116,11 +116,25 @@ impl Part {
 
     /// Its name and make in a rig with these devices: `right handle (Force Dimension)`.
     pub fn name_and_make(self, devices: &Settings) -> String {
-        let make = match self {
-            Self::Arm(side) if devices.arm(side).is_some_and(|set| set.arm.kinova().is_none()) => Some("simulated"),
-            _ => self.makes().first().copied(),
+        self.make(devices).map_or_else(|| self.name().to_owned(), |make| self.name_of_make(make))
+    }
+
+    /// Its make in a rig with these devices, one of [`Part::makes`].
+    fn make(self, devices: &Settings) -> Option<&'static str> {
+        let set = self.side().and_then(|side| devices.arm(side));
+        let chosen = match self {
+            Self::Handle(_) => set.map(|set| set.handle.maker()),
+            Self::Arm(_) => set.map(|set| set.arm.maker()),
+            Self::Sensor(_) => set.map(|set| set.sensor.maker()),
+            Self::TissueSensor => devices.tissue_sensor.as_ref().map(SensorSettings::maker),
+            Self::Servos(_) | Self::Tracker | Self::Pedal => None,
         };
-        make.map_or_else(|| self.name().to_owned(), |make| self.name_of_make(make))
+        chosen.or_else(|| self.makes().first().copied())
+    }
+
+    /// Whether the rig has the usual make here, the one that is looked for by itself.
+    pub(super) fn has_usual_make(self, devices: &Settings) -> bool {
+        self.make(devices) == self.makes().first().copied()
     }
 
     /// Its name with this make.

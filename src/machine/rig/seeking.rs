@@ -44,6 +44,10 @@ struct Trial {
 
 /// Looks for devices for this part: at what is plugged in, and at `place` if a person named one.
 pub fn seek(part: Part, devices: &Settings, plugged: &Plugged, place: &str) -> Vec<Sought> {
+    // An external device sends to the address of the rig file by itself, a simulated one is not plugged in.
+    if !part.has_usual_make(devices) {
+        return Vec::new();
+    }
     let ports = Ports::free(devices, plugged, place.trim());
     let trials = match part.kind() {
         PartKind::Handle => return handles(part, devices),

@@ -10,7 +10,7 @@ use nima_core::{
 use nima_devices::{TRACKED_TOOLS, Trouble, dynamixel, hid, ndi};
 use serde::{Deserialize, Serialize};
 
-use super::{Checked, Flaws, FollowerSettings, JawsSettings, LeaderSettings, SensorSettings};
+use super::{Checked, Flaws, FollowerSettings, JawsSettings, LeaderSettings, Part, SensorSettings};
 use crate::rig::{SIDES, Side};
 
 /// The devices of a rig. Each is optional; the parts of an arm pair are not.
@@ -211,6 +211,7 @@ impl Settings {
             set.arm.check().map_err(of("arm"))?;
             set.arm.check_emulated(self.emulated).map_err(of("arm"))?;
             set.sensor.check().map_err(of("sensor"))?;
+            set.sensor.check_emulated(self.emulated).map_err(of("sensor"))?;
             set.servos.as_ref().map_or(Ok(()), dynamixel::Settings::check).map_err(of("servos"))?;
         }
         if let (Some(right), Some(left)) = (&self.right, &self.left) {
@@ -226,6 +227,7 @@ impl Settings {
                 });
             }
         }
+        self.check_addresses()?;
         self.check_hand_eye()?;
         self.check_endoscope()?;
         self.flaws.check(self.emulated).map_err(|trouble| match trouble {
@@ -236,12 +238,39 @@ impl Settings {
         })?;
         let of = |part: &'static str| move |trouble| below(part, trouble);
         self.tissue_sensor.as_ref().map_or(Ok(()), SensorSettings::check).map_err(of("tissue_sensor"))?;
+        let emulated = |sensor: &SensorSettings| sensor.check_emulated(self.emulated);
+        self.tissue_sensor.as_ref().map_or(Ok(()), emulated).map_err(of("tissue_sensor"))?;
         self.tracker.as_ref().map_or(Ok(()), ndi::Settings::check).map_err(of("tracker"))?;
         self.pedal.as_ref().map_or(Ok(()), hid::PedalSettings::check).map_err(of("pedal"))
     }
 }
 
 impl Settings {
+    /// Every external device is listened for at an address of its own.
+    fn check_addresses(&self) -> Result<(), Trouble> {
+        let address = |part: Part| {
+            let set = part.side().and_then(|side| self.arm(side));
+            match part {
+                Part::Handle(_) => set?.handle.listens_at(),
+                Part::Arm(_) => set?.arm.listens_at(),
+                Part::Sensor(_) => set?.sensor.listens_at(),
+                Part::TissueSensor => self.tissue_sensor.as_ref()?.listens_at(),
+                Part::Servos(_) | Part::Tracker | Part::Pedal => None,
+            }
+        };
+        for (place, part) in Part::ALL.into_iter().enumerate() {
+            let Some(own) = address(part) else { continue };
+            if let Some(other) = Part::ALL[..place].iter().find(|other| address(**other) == Some(own)) {
+                return Err(Trouble::Setting {
+                    key: format!("{}.listen", part.key()),
+                    value: own.to_string(),
+                    allowed: format!("a port of its own, not that of the {}", other.name()),
+                });
+            }
+        }
+        Ok(())
+    }
+
     fn check_hand_eye(&self) -> Result<(), Trouble> {
         for side in Side::ALL {
             let Some(set) = self.arm(side) else { continue };

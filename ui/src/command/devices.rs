@@ -17,7 +17,8 @@ use super::output;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// A device to test; may be given several times: `spacemouse`, `pedal`, `force-dimension`, `kinova`, `ndi`, `dynamixel`, `bota-gen0`,
-    /// `bota-gen-a`, `bota-socket`, each with `=PLACE`; `serial=PORT@BAUD[,HEADER][,quiet]`, `tcp=HOST:PORT`
+    /// `bota-gen-a`, `bota-socket`, `external-handle`, `external-arm`, `external-sensor`, each with `=PLACE`;
+    /// `serial=PORT@BAUD[,HEADER][,quiet]`, `tcp=HOST:PORT`
     #[arg(long, value_name = "KIND[=PLACE]")]
     probe: Vec<String>,
     /// Test every device of a rig (name or file); close any console that uses them first

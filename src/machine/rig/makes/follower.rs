@@ -1,16 +1,18 @@
 //! Arms.
 
+use std::net::SocketAddr;
+
 use nima_core::kinematics::JointLimits;
 use nima_devices::{
     ClearFaults, Follower, Trouble,
     discovery::{DeviceProbe, Probe, Speaks, probes},
-    kinova, simulated_arm,
+    external, kinova, simulated_arm,
 };
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::Opener;
 
-/// The arm of a rig file. Both makes have the joints of a Gen3.
+/// The arm of a rig file. Every make has the joints of a Gen3.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FollowerSettings {
@@ -18,6 +20,8 @@ pub enum FollowerSettings {
     Kinova(kinova::Settings),
     /// `make = "simulated"`: no hardware.
     Simulated(simulated_arm::Settings),
+    /// `make = "external"`: a program of the lab over UDP.
+    External(external::Settings),
 }
 
 impl Serialize for FollowerSettings {
@@ -26,19 +30,20 @@ impl Serialize for FollowerSettings {
         match self {
             Self::Kinova(settings) => settings.serialize(serializer),
             Self::Simulated(settings) => settings.serialize(serializer),
+            Self::External(settings) => settings.serialize(serializer),
         }
     }
 }
 
 impl FollowerSettings {
     /// Its makes as a rig file names them, the usual one first.
-    pub(super) const MAKES: &[&str] = &["kinova", "simulated"];
+    pub(super) const MAKES: &[&str] = &["kinova", "simulated", "external"];
 
     /// Of an arm by Kinova.
     pub const fn kinova(&self) -> Option<&kinova::Settings> {
         match self {
             Self::Kinova(settings) => Some(settings),
-            Self::Simulated(_) => None,
+            Self::Simulated(_) | Self::External(_) => None,
         }
     }
 
@@ -46,13 +51,39 @@ impl FollowerSettings {
     pub const fn kinova_mut(&mut self) -> Option<&mut kinova::Settings> {
         match self {
             Self::Kinova(settings) => Some(settings),
-            Self::Simulated(_) => None,
+            Self::Simulated(_) | Self::External(_) => None,
         }
     }
 
     /// Its serial number in the rig file.
     pub(in crate::rig) fn serial(&self) -> Option<String> {
-        self.kinova().and_then(|settings| settings.serial_number.clone())
+        match self {
+            Self::Kinova(settings) => settings.serial_number.clone(),
+            Self::Simulated(_) => None,
+            Self::External(settings) => settings.serial_number.clone(),
+        }
+    }
+
+    /// Its make on the screen, one of [`Part::makes`](crate::rig::Part::makes).
+    pub(in crate::rig) const fn maker(&self) -> &'static str {
+        match self {
+            Self::Kinova(_) => "Kinova",
+            Self::Simulated(_) => "simulated",
+            Self::External(_) => "external",
+        }
+    }
+
+    /// Whether there is no hardware: such arms cannot be exchanged.
+    pub(in crate::rig) const fn is_simulated(&self) -> bool {
+        matches!(self, Self::Simulated(_))
+    }
+
+    /// The address at which an external one is listened for.
+    pub(in crate::rig) const fn listens_at(&self) -> Option<SocketAddr> {
+        match self {
+            Self::Kinova(_) | Self::Simulated(_) => None,
+            Self::External(settings) => Some(settings.listen),
+        }
     }
 
     /// Checks every setting.
@@ -63,6 +94,7 @@ impl FollowerSettings {
         match self {
             Self::Kinova(settings) => settings.check(),
             Self::Simulated(settings) => settings.check(),
+            Self::External(settings) => settings.check(external::Kind::Arm),
         }
     }
 
@@ -70,12 +102,9 @@ impl FollowerSettings {
     /// this arm moves, and a simulated arm has no such world.
     pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
         match self {
-            Self::Simulated(_) if rig_is_emulated => Err(Trouble::Setting {
-                key: "make".to_owned(),
-                value: "simulated".to_owned(),
-                allowed: "an emulated rig (emulated = true) emulates its arm: leave `make` out".to_owned(),
-            }),
-            _ => Ok(()),
+            Self::Kinova(_) => Ok(()),
+            Self::Simulated(_) => super::not_emulated("simulated", rig_is_emulated),
+            Self::External(_) => super::not_emulated("external", rig_is_emulated),
         }
     }
 
@@ -84,6 +113,7 @@ impl FollowerSettings {
         match self {
             Self::Kinova(settings) => settings.joint_limits(),
             Self::Simulated(settings) => settings.joint_limits(),
+            Self::External(settings) => settings.joint_limits(),
         }
     }
 
@@ -103,6 +133,11 @@ impl FollowerSettings {
                 open: Box::new(move || Ok(Box::new(simulated_arm::Driver::open(&settings)?))),
                 clear_faults: None,
             },
+            Self::External(settings) => Opener {
+                driver: format!("external arm, {}", settings.place()),
+                open: Box::new(move || Ok(Box::new(external::Arm::open(&settings)?))),
+                clear_faults: None,
+            },
         }
     }
 
@@ -113,6 +148,7 @@ impl FollowerSettings {
                 let open = move || simulated_arm::Driver::open(&settings);
                 Box::new(DeviceProbe::new(name, "this program".to_owned(), Speaks::Always, open))
             }
+            Self::External(settings) => probes::external(name, external::Kind::Arm, settings),
         }
     }
 }

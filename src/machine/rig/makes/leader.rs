@@ -1,9 +1,11 @@
 //! Handles.
 
+use std::net::SocketAddr;
+
 use nima_devices::{
     Leader, Trouble,
     discovery::{Probe, probes},
-    force_dimension,
+    external, force_dimension,
 };
 use serde::{Deserialize, Serialize, Serializer};
 
@@ -16,6 +18,8 @@ use crate::rig::Side;
 pub enum LeaderSettings {
     /// `make = "force_dimension"`, the default: omega.7.
     ForceDimension(force_dimension::Settings),
+    /// `make = "external"`: a program of the lab over UDP.
+    External(external::Settings),
 }
 
 impl Serialize for LeaderSettings {
@@ -23,24 +27,37 @@ impl Serialize for LeaderSettings {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::ForceDimension(settings) => settings.serialize(serializer),
+            Self::External(settings) => settings.serialize(serializer),
         }
     }
 }
 
 impl LeaderSettings {
     /// Its makes as a rig file names them, the usual one first.
-    pub(super) const MAKES: &[&str] = &["force_dimension"];
+    pub(super) const MAKES: &[&str] = &["force_dimension", "external"];
 
     /// The settings, if it is a handle by Force Dimension.
     pub const fn force_dimension(&self) -> Option<&force_dimension::Settings> {
-        let Self::ForceDimension(settings) = self;
-        Some(settings)
+        match self {
+            Self::ForceDimension(settings) => Some(settings),
+            Self::External(_) => None,
+        }
     }
 
     /// The settings, if it is a handle by Force Dimension.
     pub const fn force_dimension_mut(&mut self) -> Option<&mut force_dimension::Settings> {
-        let Self::ForceDimension(settings) = self;
-        Some(settings)
+        match self {
+            Self::ForceDimension(settings) => Some(settings),
+            Self::External(_) => None,
+        }
+    }
+
+    /// Its make on the screen, one of [`Part::makes`](crate::rig::Part::makes).
+    pub(in crate::rig) const fn maker(&self) -> &'static str {
+        match self {
+            Self::ForceDimension(_) => "Force Dimension",
+            Self::External(_) => "external",
+        }
     }
 
     /// Checks every setting.
@@ -50,13 +67,17 @@ impl LeaderSettings {
     pub fn check(&self) -> Result<(), Trouble> {
         match self {
             Self::ForceDimension(settings) => settings.check(),
+            Self::External(settings) => settings.check(external::Kind::Handle),
         }
     }
 
     /// Checks that the handle is emulated if and only if the rig is. A real handle must never be replaced by an
     /// emulated one unnoticed, and an emulated rig, which engages by itself, must never move a real one.
     pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
-        let Self::ForceDimension(settings) = self;
+        let settings = match self {
+            Self::ForceDimension(settings) => settings,
+            Self::External(_) => return super::not_emulated("external", rig_is_emulated),
+        };
         if settings.emulator.is_some() == rig_is_emulated {
             return Ok(());
         }
@@ -68,7 +89,8 @@ impl LeaderSettings {
 
     /// Checks that the settings tell the two handles apart.
     pub(in crate::rig) fn check_beside(&self, other: &Self) -> Result<(), Trouble> {
-        let (Self::ForceDimension(one), Self::ForceDimension(other)) = (self, other);
+        // External ones have addresses of their own, which are checked with those of all parts.
+        let (Self::ForceDimension(one), Self::ForceDimension(other)) = (self, other) else { return Ok(()) };
         if one.serial.is_some() && one.serial != other.serial {
             return Ok(());
         }
@@ -77,33 +99,46 @@ impl LeaderSettings {
         Err(Trouble::Setting { key: "serial".to_owned(), value, allowed })
     }
 
+    /// The address at which an external one is listened for.
+    pub(in crate::rig) const fn listens_at(&self) -> Option<SocketAddr> {
+        match self {
+            Self::ForceDimension(_) => None,
+            Self::External(settings) => Some(settings.listen),
+        }
+    }
+
     /// Rate of its readings, Hz.
     pub(in crate::rig) const fn rate_hz(&self) -> f64 {
-        let Self::ForceDimension(settings) = self;
-        settings.rate_hz
+        match self {
+            Self::ForceDimension(settings) => settings.rate_hz,
+            Self::External(settings) => settings.rate_hz,
+        }
     }
 
     /// These settings for the handle of a side: without a word in the file it must be made for that hand.
     #[must_use]
     pub(in crate::rig) fn for_hand_of(&self, side: Side) -> Self {
-        let Self::ForceDimension(mut settings) = self.clone();
-        settings.hand = settings.hand.or(Some(match side {
-            Side::Right => force_dimension::Hand::Right,
-            Side::Left => force_dimension::Hand::Left,
-        }));
-        Self::ForceDimension(settings)
+        let mut of_side = self.clone();
+        if let Self::ForceDimension(settings) = &mut of_side {
+            settings.hand = settings.hand.or(Some(match side {
+                Side::Right => force_dimension::Hand::Right,
+                Side::Left => force_dimension::Hand::Left,
+            }));
+        }
+        of_side
     }
 
     /// The hand that it must be made for, if the settings say so.
-    pub(in crate::rig) const fn hand(&self) -> Option<force_dimension::Hand> {
-        let Self::ForceDimension(settings) = self;
-        settings.hand
+    pub(in crate::rig) fn hand(&self) -> Option<force_dimension::Hand> {
+        self.force_dimension().and_then(|settings| settings.hand)
     }
 
     /// Its serial number in the rig file.
     pub(in crate::rig) fn serial(&self) -> Option<String> {
-        let Self::ForceDimension(settings) = self;
-        settings.serial.map(|serial| serial.to_string())
+        match self {
+            Self::ForceDimension(settings) => settings.serial.map(|serial| serial.to_string()),
+            Self::External(settings) => settings.serial_number.clone(),
+        }
     }
 
     pub(in crate::rig) fn opener(&self) -> Opener<Box<dyn Leader>> {
@@ -116,12 +151,18 @@ impl LeaderSettings {
                     clear_faults: None,
                 }
             }
+            Self::External(settings) => Opener {
+                driver: format!("external handle, {}", settings.place()),
+                open: Box::new(move || Ok(Box::new(external::Handle::open(&settings)?))),
+                clear_faults: None,
+            },
         }
     }
 
     pub(in crate::rig) fn probe(&self, name: &str) -> Box<dyn Probe> {
         match self.clone() {
             Self::ForceDimension(settings) => probes::handle(name, settings),
+            Self::External(settings) => probes::external(name, external::Kind::Handle, settings),
         }
     }
 }

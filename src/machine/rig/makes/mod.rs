@@ -30,6 +30,18 @@ pub(super) struct Opener<P> {
     pub(super) clear_faults: Option<ClearFaults>,
 }
 
+/// Refuses a make that an emulated rig cannot have: its devices belong to one world, in which this one is not.
+fn not_emulated(make: &str, rig_is_emulated: bool) -> Result<(), Trouble> {
+    if !rig_is_emulated {
+        return Ok(());
+    }
+    Err(Trouble::Setting {
+        key: "make".to_owned(),
+        value: make.to_owned(),
+        allowed: "an emulated rig (emulated = true) emulates every device: leave `make` out".to_owned(),
+    })
+}
+
 /// Where a rig file cannot be read, as bytes of its text, and why.
 pub(crate) type Misread = (Range<usize>, String);
 
@@ -115,7 +127,7 @@ mod tests {
     fn what_is_wrong_below_a_make_is_told_with_its_line() {
         let told = |text: &str| arm(text).unwrap_err();
         for wrong in ["host = \"10.0.0.1\"\nmake = \"acme\"", "host = \"10.0.0.1\"\nmake = 1"] {
-            assert_eq!(told(wrong), "2: make is one of: kinova, simulated");
+            assert_eq!(told(wrong), "2: make is one of: kinova, simulated, external");
         }
         let other = told(&format!("{SIMULATED}host = \"10.0.0.1\""));
         assert!(other.starts_with("3: unknown field `host`"), "{other}");

@@ -1,8 +1,11 @@
 //! Force-torque sensors.
 
+use std::net::SocketAddr;
+
 use nima_devices::{
     ForceSensor, Trouble, bota,
     discovery::{Probe, probes},
+    external,
 };
 use serde::{Deserialize, Serialize, Serializer};
 
@@ -14,6 +17,8 @@ use super::Opener;
 pub enum SensorSettings {
     /// `make = "bota"`, the default.
     Bota(bota::Settings),
+    /// `make = "external"`: a program of the lab over UDP.
+    External(external::Settings),
 }
 
 impl Serialize for SensorSettings {
@@ -21,29 +26,61 @@ impl Serialize for SensorSettings {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Bota(settings) => settings.serialize(serializer),
+            Self::External(settings) => settings.serialize(serializer),
         }
     }
 }
 
 impl SensorSettings {
     /// Its makes as a rig file names them, the usual one first.
-    pub(super) const MAKES: &[&str] = &["bota"];
+    pub(super) const MAKES: &[&str] = &["bota", "external"];
 
     /// Of a sensor by Bota.
     pub const fn bota(&self) -> Option<&bota::Settings> {
-        let Self::Bota(settings) = self;
-        Some(settings)
+        match self {
+            Self::Bota(settings) => Some(settings),
+            Self::External(_) => None,
+        }
     }
 
     /// The settings, if it is a sensor by Bota.
     pub const fn bota_mut(&mut self) -> Option<&mut bota::Settings> {
-        let Self::Bota(settings) = self;
-        Some(settings)
+        match self {
+            Self::Bota(settings) => Some(settings),
+            Self::External(_) => None,
+        }
     }
 
     /// Its serial number in the rig file.
     pub(in crate::rig) fn serial(&self) -> Option<String> {
-        self.bota().and_then(|settings| settings.serial_number.clone())
+        match self {
+            Self::Bota(settings) => settings.serial_number.clone(),
+            Self::External(settings) => settings.serial_number.clone(),
+        }
+    }
+
+    /// Its make on the screen, one of [`Part::makes`](crate::rig::Part::makes).
+    pub(in crate::rig) const fn maker(&self) -> &'static str {
+        match self {
+            Self::Bota(_) => "Bota",
+            Self::External(_) => "external",
+        }
+    }
+
+    /// Checks that an emulated rig has an emulated sensor.
+    pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
+        match self {
+            Self::Bota(_) => Ok(()),
+            Self::External(_) => super::not_emulated("external", rig_is_emulated),
+        }
+    }
+
+    /// The address at which an external one is listened for.
+    pub(in crate::rig) const fn listens_at(&self) -> Option<SocketAddr> {
+        match self {
+            Self::Bota(_) => None,
+            Self::External(settings) => Some(settings.listen),
+        }
     }
 
     /// Checks every setting.
@@ -53,28 +90,32 @@ impl SensorSettings {
     pub fn check(&self) -> Result<(), Trouble> {
         match self {
             Self::Bota(settings) => settings.check(),
+            Self::External(settings) => settings.check(external::Kind::Sensor),
         }
     }
 
     /// The device file through which it is reached, if it has one.
     pub(in crate::rig) const fn device_file(&mut self) -> Option<&mut String> {
-        let Self::Bota(settings) = self;
-        match settings.transport {
-            bota::Transport::Socket => None,
-            bota::Transport::Gen0 | bota::Transport::GenA => Some(&mut settings.port),
+        match self {
+            Self::Bota(bota::Settings { transport: bota::Transport::Socket, .. }) | Self::External(_) => None,
+            Self::Bota(settings) => Some(&mut settings.port),
         }
     }
 
     /// Rate of its readings, Hz.
     pub(in crate::rig) fn expected_hz(&self) -> f64 {
-        let Self::Bota(settings) = self;
-        settings.expected_hz()
+        match self {
+            Self::Bota(settings) => settings.expected_hz(),
+            Self::External(settings) => settings.rate_hz,
+        }
     }
 
     /// Whether its readings have an acceleration.
-    pub(in crate::rig) const fn is_inertial(&self) -> bool {
-        let Self::Bota(settings) = self;
-        settings.is_inertial()
+    pub(in crate::rig) fn is_inertial(&self) -> bool {
+        match self {
+            Self::Bota(settings) => settings.is_inertial(),
+            Self::External(settings) => settings.is_inertial(),
+        }
     }
 
     pub(in crate::rig) fn opener(&self) -> Opener<Box<dyn ForceSensor>> {
@@ -84,12 +125,18 @@ impl SensorSettings {
                 open: Box::new(move || Ok(Box::new(bota::Driver::open(&settings)?))),
                 clear_faults: None,
             },
+            Self::External(settings) => Opener {
+                driver: format!("external sensor, {}", settings.place()),
+                open: Box::new(move || Ok(Box::new(external::Sensor::open(&settings)?))),
+                clear_faults: None,
+            },
         }
     }
 
     pub(in crate::rig) fn probe(&self, name: &str) -> Box<dyn Probe> {
         match self.clone() {
             Self::Bota(settings) => probes::sensor(name, settings),
+            Self::External(settings) => probes::external(name, external::Kind::Sensor, settings),
         }
     }
 }

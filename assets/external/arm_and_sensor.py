@@ -1,0 +1,49 @@
+"""A simulated arm with the joints of a Gen3, and a force sensor at its tip that feels somebody push and let go.
+
+    python3 arm_and_sensor.py 127.0.0.1 47201 47202 [SECONDS]
+
+The first port is the arm's, the second the sensor's. The joints follow their commands with a lag of 10 Hz and hold when
+NIMA Console cannot be heard. At the end, or after Ctrl-C, it prints what it has counted as lines of JSON.
+"""
+
+import json
+import math
+import signal
+import sys
+
+from nima_device import ARM, SENSOR, Device, arm, every, sensor
+
+PERIOD_S = 1e-3
+# With the instrument in its trocar on the rig of docs/external-device.md.
+START_RAD = (2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.92)
+
+
+def main(address, arm_port, sensor_port, seconds="inf"):
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    the_arm = Device(ARM, address, int(arm_port), product="simulated arm", serial="A-1")
+    the_sensor = Device(SENSOR, address, int(sensor_port), product="pushed sensor", serial="S-1")
+    joint_rad, command, last_s = list(START_RAD), None, 0.0
+    try:
+        for t_s in every(PERIOD_S, float(seconds)):
+            step_s, last_s = max(t_s - last_s, 1e-6), t_s
+            share = 1.0 - math.exp(-math.tau * 10.0 * step_s)
+            speed_rad_s = [0.0] * len(joint_rad)
+            if command and command.on:
+                for joint, target_rad in enumerate(command.target_rad):
+                    way_rad = (target_rad - joint_rad[joint]) * share
+                    joint_rad[joint] += way_rad
+                    speed_rad_s[joint] = way_rad / step_s
+            command = the_arm.exchange(arm(joint_rad, joint_rad_s=speed_rad_s, on=bool(command and command.on)))
+            the_sensor.exchange(sensor((0.0, 0.0, 1.0 + 0.5 * math.sin(3.0 * t_s))))
+    except KeyboardInterrupt:
+        pass
+    for name, device in (("arm", the_arm), ("sensor", the_sensor)):
+        counters = {name: getattr(device, name) for name in ("sent", "taken", "stale", "damaged", "silences")}
+        print(json.dumps({"device": name, **counters}))
+        device.close()
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 4:
+        sys.exit(f"usage: {sys.argv[0]} ADDRESS ARM-PORT SENSOR-PORT [SECONDS]")
+    main(*sys.argv[1:])

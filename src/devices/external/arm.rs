@@ -1,0 +1,178 @@
+//! An external arm with the joints of a Gen3.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+};
+
+use super::{
+    codec::{Datagram, status},
+    line::Line,
+    opening,
+    settings::{Kind, Settings},
+};
+use crate::{
+    ARM_JOINTS, ArmReading, Device, Follower, Health, Identity, Lever, Stamped, Trouble, kinova::limits::Guard,
+};
+
+/// Numbers of an arm beyond these are impossible: rad, rad/s, Nm.
+const ANGLE_MAX_RAD: f64 = 100.0;
+const SPEED_MAX_RAD_S: f64 = 50.0;
+const TORQUE_MAX_NM: f64 = 1e4;
+
+/// Whether it follows commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mode {
+    Resting,
+    /// Asked to follow; it has not told yet that it does.
+    Asked,
+    Servoing,
+    /// Slows down before it is switched off.
+    Braking,
+}
+
+/// An open external arm.
+pub struct Arm {
+    line: Line,
+    guard: Guard,
+    mode: Mode,
+    joint_rad: Option<[f64; ARM_JOINTS]>,
+    last_s: Option<f64>,
+    /// Set when the lever was pulled.
+    pulled: Arc<AtomicBool>,
+}
+
+impl Arm {
+    /// Waits for the device's program, up to half a second.
+    ///
+    /// # Errors
+    /// [`Trouble`] if a setting is invalid, the port is in use, or no program of an arm sends and hears.
+    pub fn open(settings: &Settings) -> Result<Self, Trouble> {
+        Ok(Self::on(opening::open(Kind::Arm, settings)?, settings))
+    }
+
+    /// The same over an open line, with time stamps from 0 on.
+    #[cfg(test)]
+    pub(super) fn over(datagrams: Box<dyn crate::transport::Datagrams>, settings: &Settings) -> Result<Self, Trouble> {
+        settings.check(Kind::Arm)?;
+        Ok(Self::on(opening::meet(datagrams, Kind::Arm, settings, 0)?, settings))
+    }
+
+    fn on(line: Line, settings: &Settings) -> Self {
+        let guard = Guard::new(settings.joint_limits());
+        Self { line, guard, mode: Mode::Resting, joint_rad: None, last_s: None, pulled: Arc::default() }
+    }
+
+    /// What the arm tells of itself: an arm that has stopped following is not made to follow again by itself.
+    fn follow(&mut self, on: bool) {
+        self.mode = match (self.mode, on) {
+            (Mode::Asked, true) => Mode::Servoing,
+            (Mode::Servoing | Mode::Braking, false) => Mode::Resting,
+            (mode, _) => mode,
+        };
+    }
+
+    fn advance(&mut self, elapsed_s: f64) {
+        if self.mode != Mode::Resting {
+            self.guard.step(elapsed_s);
+        }
+        if self.mode == Mode::Braking && self.guard.is_still() {
+            self.mode = Mode::Resting;
+        }
+    }
+}
+
+/// The reading in a datagram, if its numbers are possible; whether it servoes is decided by the driver.
+fn reading(datagram: &Datagram) -> Option<ArmReading> {
+    let of = |first: usize| -> [f64; ARM_JOINTS] { std::array::from_fn(|joint| datagram.numbers[first + joint]) };
+    let value = ArmReading {
+        joint_rad: of(0),
+        joint_rad_s: of(ARM_JOINTS),
+        joint_nm: of(2 * ARM_JOINTS),
+        servoing: datagram.has(status::ON),
+    };
+    let within = |values: &[f64; ARM_JOINTS], limit: f64| values.iter().all(|value| value.abs() <= limit);
+    let possible = within(&value.joint_rad, ANGLE_MAX_RAD)
+        && within(&value.joint_rad_s, SPEED_MAX_RAD_S)
+        && within(&value.joint_nm, TORQUE_MAX_NM);
+    possible.then_some(value)
+}
+
+impl Device for Arm {
+    type Reading = ArmReading;
+
+    fn poll(&mut self, now_s: f64) -> Option<Stamped<ArmReading>> {
+        if self.pulled.swap(false, Ordering::AcqRel) {
+            self.leave_servoing();
+        }
+        let newest = self.line.receive(now_s, reading);
+        if let Some((stamped, _)) = &newest {
+            self.joint_rad = Some(stamped.value.joint_rad);
+            self.follow(stamped.value.servoing);
+        }
+        if now_s.is_finite() {
+            let elapsed_s = self.last_s.replace(now_s).map_or(0.0, |last_s| now_s - last_s);
+            self.advance(elapsed_s);
+        }
+        let on = self.mode != Mode::Resting;
+        let held_rad = self.joint_rad.unwrap_or_default();
+        let command_rad = if on { *self.guard.command_rad() } else { held_rad };
+        self.line.tell(on, &command_rad);
+        let (mut stamped, _) = newest?;
+        stamped.value.servoing = self.mode == Mode::Servoing;
+        Some(stamped)
+    }
+
+    fn about(&self) -> (&Health, &Identity) {
+        self.line.about()
+    }
+}
+
+impl Follower for Arm {
+    fn enter_servoing(&mut self) {
+        // Nobody knows where to hold an arm that has not told where it is.
+        if let (Mode::Resting, Some(joint_rad)) = (self.mode, &self.joint_rad) {
+            self.guard.seed(joint_rad);
+            self.mode = Mode::Asked;
+        }
+    }
+
+    fn leave_servoing(&mut self) {
+        match self.mode {
+            Mode::Asked => self.mode = Mode::Resting,
+            Mode::Servoing => {
+                self.guard.brake();
+                self.mode = Mode::Braking;
+            }
+            Mode::Resting | Mode::Braking => {}
+        }
+    }
+
+    fn command_rad(&self) -> [f64; ARM_JOINTS] {
+        *self.guard.command_rad()
+    }
+
+    fn aim(&mut self, target_rad: &[f64; ARM_JOINTS]) -> bool {
+        let Some(measured_rad) = self.joint_rad.filter(|_| self.mode == Mode::Servoing) else { return false };
+        if !target_rad.iter().all(|rad| rad.is_finite()) {
+            return false;
+        }
+        let taken = self.guard.aim(target_rad, &measured_rad).is_ok();
+        if !taken {
+            self.line.refuse_command();
+            self.leave_servoing();
+        }
+        taken
+    }
+
+    fn attach(&self, lever: &Lever) {
+        let pulled = Arc::clone(&self.pulled);
+        lever.attach(move || pulled.store(true, Ordering::Release));
+    }
+}
+
+impl Drop for Arm {
+    fn drop(&mut self) {
+        self.line.leave();
+    }
+}

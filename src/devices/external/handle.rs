@@ -1,0 +1,145 @@
+//! An external haptic handle.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+};
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use super::{
+    codec::{Datagram, status},
+    line::Line,
+    opening,
+    settings::{Kind, Settings},
+};
+use crate::{Device, HandleReading, Health, Identity, Leader, Lever, Stamped, Trouble};
+
+/// Numbers of a handle beyond these are impossible: m, m/s, rad.
+const POSITION_MAX_M: f64 = 2.0;
+const SPEED_MAX_M_S: f64 = 20.0;
+const GRIPPER_MAX_RAD: f64 = 3.2;
+/// How far the length of a quaternion may be from 1.
+const UNIT_WITHIN: f64 = 0.01;
+
+/// An open external handle.
+pub struct Handle {
+    line: Line,
+    /// Force is wanted; the lever clears it from another thread.
+    wanted: Arc<AtomicBool>,
+    /// What the device has told of its force and was not asked for yet.
+    reported: Option<bool>,
+    forces_max_n: (f64, f64),
+    /// A command was sent since the last poll.
+    told: bool,
+}
+
+impl Handle {
+    /// Waits for the device's program, up to half a second.
+    ///
+    /// # Errors
+    /// [`Trouble`] if a setting is invalid, the port is in use, or no program of a handle sends and hears.
+    pub fn open(settings: &Settings) -> Result<Self, Trouble> {
+        Ok(Self::on(opening::open(Kind::Handle, settings)?, settings))
+    }
+
+    /// The same over an open line, with time stamps from 0 on.
+    #[cfg(test)]
+    pub(super) fn over(datagrams: Box<dyn crate::transport::Datagrams>, settings: &Settings) -> Result<Self, Trouble> {
+        settings.check(Kind::Handle)?;
+        Ok(Self::on(opening::meet(datagrams, Kind::Handle, settings, 0)?, settings))
+    }
+
+    fn on(line: Line, settings: &Settings) -> Self {
+        let forces_max_n = settings.forces_max_n();
+        Self { line, wanted: Arc::default(), reported: None, forces_max_n, told: false }
+    }
+
+    fn is_wanted(&self) -> bool {
+        self.wanted.load(Ordering::Acquire)
+    }
+}
+
+fn within(values: &[f64], limit: f64) -> bool {
+    values.iter().all(|value| value.abs() <= limit)
+}
+
+/// The reading in a datagram, if its numbers are possible.
+fn reading(datagram: &Datagram) -> Option<HandleReading> {
+    let (position_m, velocity_m_s) = (datagram.three(0), datagram.three(7));
+    let [w, i, j, k] = std::array::from_fn(|at| datagram.numbers[3 + at]);
+    let gripper_rad = datagram.numbers[10];
+    let orientation = if datagram.has(status::HAS_ORIENTATION) {
+        let turn = Quaternion::new(w, i, j, k);
+        let is_unit = (turn.norm() - 1.0).abs() <= UNIT_WITHIN;
+        Some(is_unit.then(|| UnitQuaternion::from_quaternion(turn))?)
+    } else {
+        None
+    };
+    let (has_velocity, has_gripper) = (datagram.has(status::HAS_VELOCITY), datagram.has(status::HAS_GRIPPER));
+    let possible = within(&position_m, POSITION_MAX_M)
+        && (!has_velocity || within(&velocity_m_s, SPEED_MAX_M_S))
+        && (!has_gripper || within(&[gripper_rad], GRIPPER_MAX_RAD));
+    possible.then(|| HandleReading {
+        position_m: position_m.into(),
+        orientation,
+        gripper_rad: has_gripper.then_some(gripper_rad),
+        velocity_m_s: has_velocity.then(|| velocity_m_s.into()),
+        buttons: datagram.buttons,
+    })
+}
+
+impl Device for Handle {
+    type Reading = HandleReading;
+
+    fn poll(&mut self, now_s: f64) -> Option<Stamped<HandleReading>> {
+        let newest = self.line.receive(now_s, reading);
+        // Where the loop sets no force the program is still answered, with none.
+        if !std::mem::take(&mut self.told) {
+            self.line.tell(self.is_wanted(), &[]);
+        }
+        let (stamped, status) = newest?;
+        self.reported = Some(status & status::ON != 0);
+        Some(stamped)
+    }
+
+    fn about(&self) -> (&Health, &Identity) {
+        self.line.about()
+    }
+}
+
+impl Leader for Handle {
+    fn switch_force(&mut self, on: bool) {
+        self.wanted.store(on, Ordering::Release);
+    }
+
+    fn set_force(&mut self, force_n: Vector3<f64>, gripper_n: f64) {
+        let (force_max_n, gripper_max_n) = self.forces_max_n;
+        let is_finite = force_n.iter().chain([&gripper_n]).all(|x| x.is_finite());
+        let on = self.is_wanted();
+        let (force_n, gripper_n) = if is_finite && on {
+            // Axis by axis first, so that the squares of large numbers stay finite.
+            let cut_n = force_n.map(|axis| axis.clamp(-force_max_n, force_max_n));
+            (cut_n.cap_magnitude(force_max_n), gripper_n.clamp(-gripper_max_n, gripper_max_n))
+        } else {
+            (Vector3::zeros(), 0.0)
+        };
+        self.line.tell(on, &[force_n.x, force_n.y, force_n.z, gripper_n]);
+        self.told = true;
+    }
+
+    fn force_change(&mut self) -> Option<bool> {
+        self.reported.take()
+    }
+
+    fn attach(&self, lever: &Lever) {
+        let wanted = Arc::clone(&self.wanted);
+        lever.attach(move || wanted.store(false, Ordering::Release));
+    }
+}
+
+impl Drop for Handle {
+    fn drop(&mut self) {
+        self.line.leave();
+    }
+}

@@ -1,0 +1,290 @@
+//! The line to the program of an external device: order and age of what comes, watchdog, and answers.
+//!
+//! Nothing here waits or allocates. The age of a reading is bounded without a common clock: a reading is fresh if its
+//! sender had heard a command that is itself not older than the limit.
+
+use super::{
+    codec::{BYTES_MAX, Datagram, Message, status},
+    opening::Met,
+    settings::{Kind, Settings},
+};
+use crate::{Health, Identity, Loss, Stamped, Standing, transport::Datagrams};
+
+/// Most datagrams that are read in one tick: 64 ms of a device at 1 kHz, and some 0.1 ms of work.
+pub const READS_MAX: usize = 64;
+/// Damaged or impossible datagrams in a row after which the device is lost.
+const BAD_MAX: u32 = 10;
+/// Commands whose time is kept: the oldest age that is told at 10 kHz is 25 ms.
+const SENT: usize = 256;
+/// Time stamps of the loop begin so long after those of opening, us.
+const OPENING_US: u64 = 1_000_000;
+
+/// When the newest commands were sent, on our clock, us.
+#[derive(Debug)]
+struct Sent {
+    times_us: [u64; SENT],
+    count: usize,
+}
+
+impl Sent {
+    const fn add(&mut self, time_us: u64) {
+        self.times_us[self.count % SENT] = time_us;
+        self.count += 1;
+    }
+
+    /// The newest command that was sent at or before this time, if it is still known.
+    fn newest_until(&self, time_us: u64) -> Option<u64> {
+        let kept = self.count.min(SENT);
+        let mut newest_first = (1..=kept).map(|back| self.times_us[(self.count - back) % SENT]);
+        newest_first.find(|sent_us| *sent_us <= time_us)
+    }
+}
+
+/// The line to one device.
+pub(super) struct Line {
+    datagrams: Box<dyn Datagrams>,
+    kind: Kind,
+    session: u32,
+    /// Of the newest datagram that was taken.
+    heard: Option<(u32, u64)>,
+    /// Ours of the newest command.
+    sequence: u32,
+    sent: Sent,
+    silence_s: f64,
+    age_max_us: u64,
+    watchdog_us: u32,
+    /// Our time stamps are after this.
+    begins_us: u64,
+    now_us: u64,
+    first_s: Option<f64>,
+    bad_in_a_row: u32,
+    buffer: [u8; BYTES_MAX + 1],
+    health: Health,
+    identity: Identity,
+}
+
+/// What a datagram turned out to be.
+enum Taken<R> {
+    Reading(R),
+    /// Late, repeated, out of order, or of another program.
+    Stale,
+    Damaged,
+    Refused,
+    Fault(u16),
+}
+
+impl Line {
+    /// The line to the program that was met in opening.
+    pub(super) fn new(
+        datagrams: Box<dyn Datagrams>,
+        kind: Kind,
+        settings: &Settings,
+        met: &Met,
+        identity: Identity,
+    ) -> Self {
+        Self {
+            datagrams,
+            kind,
+            session: met.newest.session,
+            heard: Some((met.newest.sequence, met.newest.time_us)),
+            sequence: met.sequence,
+            sent: Sent { times_us: [0; SENT], count: 0 },
+            silence_s: settings.silence_ms * 1e-3,
+            age_max_us: (settings.age_max_ms * 1e3) as u64,
+            watchdog_us: (settings.watchdog_ms * 1e3) as u32,
+            begins_us: met.begins_us,
+            now_us: met.begins_us + OPENING_US,
+            first_s: None,
+            bad_in_a_row: 0,
+            buffer: [0; BYTES_MAX + 1],
+            health: Health::opening(),
+            identity,
+        }
+    }
+
+    pub(super) const fn about(&self) -> (&Health, &Identity) {
+        (&self.health, &self.identity)
+    }
+
+    pub(super) const fn is_lost(&self) -> bool {
+        matches!(self.health.standing, Standing::Lost(_))
+    }
+
+    /// Reads what has arrived and gives the newest fresh reading; `read` makes it of a datagram, or refuses its numbers.
+    pub(super) fn receive<R>(
+        &mut self,
+        now_s: f64,
+        read: impl Fn(&Datagram) -> Option<R>,
+    ) -> Option<(Stamped<R>, u16)> {
+        if self.is_lost() || !now_s.is_finite() {
+            return None;
+        }
+        let first_s = *self.first_s.get_or_insert(now_s);
+        self.now_us = self.begins_us + OPENING_US + ((now_s - first_s).max(0.0) * 1e6) as u64;
+        let known_us = self.sent.newest_until(self.now_us.saturating_sub(self.age_max_us));
+        let must_know_us = known_us.unwrap_or(self.begins_us + 1);
+        let (mut newest, mut is_backlog) = (None, true);
+        for _ in 0..READS_MAX {
+            let count = match self.datagrams.receive(&mut self.buffer) {
+                Ok(Some(count)) => count,
+                Ok(None) => {
+                    is_backlog = false;
+                    break;
+                }
+                Err(loss) => {
+                    self.health.lose(loss);
+                    return None;
+                }
+            };
+            let decoded = Datagram::decode(&self.buffer[..count]);
+            let taken = decoded.map_or(Taken::Damaged, |datagram| self.judge(&datagram, must_know_us, &read));
+            newest = self.count(taken, now_s).or(newest);
+            if self.is_lost() {
+                return None;
+            }
+        }
+        // What is read from the middle of a queue is old, whatever it says of itself.
+        if is_backlog && newest.take().is_some() {
+            self.health.out_of_order += 1;
+        }
+        if now_s - self.health.newest_s.unwrap_or(first_s) > self.silence_s {
+            self.health.lose(Loss::Silent);
+            return None;
+        }
+        newest.map(|(value, status, time_us)| {
+            let device_s = Some(time_us as f64 * 1e-6);
+            (Stamped { device_s, arrival_s: now_s, value }, status)
+        })
+    }
+
+    fn judge<R>(
+        &mut self,
+        datagram: &Datagram,
+        must_know_us: u64,
+        read: &impl Fn(&Datagram) -> Option<R>,
+    ) -> Taken<(R, u16, u64)> {
+        if datagram.message != Message::Reading(self.kind) {
+            return Taken::Damaged;
+        }
+        if datagram.session != self.session {
+            return Taken::Stale;
+        }
+        if let Some((sequence, time_us)) = self.heard {
+            let ahead = datagram.sequence.wrapping_sub(sequence);
+            // More than half of the range ahead is behind. A sender whose clock stands still repeats itself.
+            if ahead == 0 || ahead > u32::MAX / 2 || datagram.time_us <= time_us {
+                return Taken::Stale;
+            }
+            self.health.lost += u64::from(ahead - 1);
+        }
+        self.heard = Some((datagram.sequence, datagram.time_us));
+        // A time that is still to come is that of an earlier opening.
+        if !(must_know_us..=self.now_us).contains(&datagram.echo_us) {
+            return Taken::Stale;
+        }
+        if datagram.has(status::FAULT) {
+            return Taken::Fault(datagram.fault);
+        }
+        if self.kind.is_driven() && !is_watched(datagram, self.watchdog_us) {
+            return Taken::Refused;
+        }
+        read(datagram).map_or(Taken::Refused, |value| Taken::Reading((value, datagram.status, datagram.time_us)))
+    }
+
+    fn count<R>(&mut self, taken: Taken<R>, now_s: f64) -> Option<R> {
+        let loss = match taken {
+            Taken::Reading(reading) => {
+                self.bad_in_a_row = 0;
+                self.health.accept(now_s);
+                return Some(reading);
+            }
+            Taken::Stale => {
+                self.health.out_of_order += 1;
+                return None;
+            }
+            Taken::Fault(code) => {
+                self.health.lose(Loss::Device { code: code.into() });
+                return None;
+            }
+            Taken::Damaged => {
+                self.health.damaged += 1;
+                Loss::Corrupt
+            }
+            Taken::Refused => {
+                self.health.refused += 1;
+                Loss::Implausible
+            }
+        };
+        self.bad_in_a_row += 1;
+        if self.bad_in_a_row >= BAD_MAX {
+            self.health.lose(loss);
+        }
+        None
+    }
+
+    /// Sends a command: whether the device may be on, and its numbers. A device that is lost is told nothing.
+    pub(super) fn tell(&mut self, on: bool, numbers: &[f64]) {
+        if self.is_lost() {
+            return;
+        }
+        self.sequence = self.sequence.wrapping_add(1);
+        let command = command_of(self.kind, on, numbers);
+        let command = Datagram {
+            session: self.session,
+            sequence: self.sequence,
+            time_us: self.now_us,
+            echo_us: self.heard.map_or(0, |(_, time_us)| time_us),
+            watchdog_us: self.watchdog_us,
+            ..command
+        };
+        let mut wire = [0; BYTES_MAX];
+        let length = command.encode(&mut wire);
+        match self.datagrams.send(&wire[..length]) {
+            Ok(()) => self.sent.add(self.now_us),
+            Err(loss) => {
+                self.health.lose(loss);
+            }
+        }
+    }
+
+    /// Counts a command that was refused.
+    pub(super) const fn refuse_command(&mut self) {
+        self.health.refused += 1;
+    }
+
+    /// The last command before the line is closed, whatever its state: off.
+    pub(super) fn leave(&mut self) {
+        self.health.standing = Standing::Closed;
+        self.tell(false, &[]);
+    }
+}
+
+/// A command of this kind with these numbers; the missing ones are 0.
+pub(super) fn command_of(kind: Kind, on: bool, numbers: &[f64]) -> Datagram {
+    let mut command = Datagram::blank(Message::Command(kind));
+    command.status = if on { status::ON } else { 0 };
+    command.numbers.iter_mut().zip(numbers).for_each(|(to, number)| *to = *number);
+    command
+}
+
+/// Whether the device switches itself off in time.
+pub(super) fn is_watched(datagram: &Datagram, watchdog_us: u32) -> bool {
+    (1..=watchdog_us).contains(&datagram.watchdog_us)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_command_before_a_time_is_found_after_the_ring_has_gone_round() {
+        let mut sent = Sent { times_us: [0; SENT], count: 0 };
+        assert_eq!(sent.newest_until(u64::MAX), None);
+        for time_us in (1000..=1_000_000).step_by(1000) {
+            sent.add(time_us);
+        }
+        assert_eq!(sent.newest_until(990_500), Some(990_000));
+        assert_eq!(sent.newest_until(990_000), Some(990_000));
+        assert_eq!(sent.newest_until(999), None, "older than what is kept");
+    }
+}

@@ -1,0 +1,141 @@
+//! Meets the program of an external device: the first one that sends a right datagram, and that hears the answer.
+
+use std::{
+    thread::sleep,
+    time::{Duration, Instant, SystemTime},
+};
+
+use super::{
+    codec::{self, BYTES_MAX, Datagram, Message, NoDatagram, VERSION},
+    line::{Line, command_of, is_watched},
+    settings::{Kind, Settings},
+};
+use crate::{
+    Identity, Trouble, same_serial,
+    transport::{Datagrams, Udp},
+};
+
+/// How long the first datagram is waited for, and then one that shows that our answer was heard.
+const FIRST_MAX: Duration = Duration::from_millis(300);
+const ANSWER_MAX: Duration = Duration::from_millis(200);
+const NAP: Duration = Duration::from_micros(500);
+
+/// Listens at the address of the rig file. May take half a second.
+pub(super) fn open(kind: Kind, settings: &Settings) -> Result<Line, Trouble> {
+    settings.check(kind)?;
+    let udp = Udp::listen(settings.listen, settings.peer())?;
+    meet(Box::new(udp), kind, settings, begins_us())
+}
+
+/// Where our time stamps begin: after all of an earlier opening, which the device's program may still remember.
+fn begins_us() -> u64 {
+    let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+    since_1970.map_or(0, |time| time.as_micros() as u64)
+}
+
+/// Meets the device's program over an open socket.
+pub(super) fn meet(
+    mut datagrams: Box<dyn Datagrams>,
+    kind: Kind,
+    settings: &Settings,
+    begins_us: u64,
+) -> Result<Line, Trouble> {
+    let place = settings.place();
+    let first = first_of(&mut *datagrams, kind, settings)?;
+    datagrams.keep_to_sender();
+    let identity = Identity {
+        product: codec::name(&first.product),
+        serial: codec::name(&first.serial),
+        firmware: format!("protocol {VERSION}"),
+    };
+    if let Some(expected) = &settings.serial_number
+        && !same_serial(expected, &identity.serial)
+    {
+        let found = if identity.serial.is_empty() { "unknown".to_owned() } else { identity.serial };
+        return Err(Trouble::OtherSerial { place, expected: expected.clone(), found });
+    }
+    let watchdog_us = (settings.watchdog_ms * 1e3) as u32;
+    if kind.is_driven() && !is_watched(&first, watchdog_us) {
+        return Err(Trouble::DeviceFault {
+            place,
+            words: format!("its own watchdog is {} ms", f64::from(first.watchdog_us) * 1e-3),
+            cure: format!(
+                "Let its program switch the device off after {} ms without a command, and tell that time; or raise watchdog_ms in the rig file.",
+                settings.watchdog_ms
+            ),
+        });
+    }
+    let met = shake_hands(&mut *datagrams, &first, watchdog_us, begins_us).ok_or(Trouble::Unheard { place })?;
+    Ok(Line::new(datagrams, kind, settings, &met, identity))
+}
+
+fn first_of(datagrams: &mut dyn Datagrams, kind: Kind, settings: &Settings) -> Result<Datagram, Trouble> {
+    let place = settings.place();
+    let (begin, mut buffer) = (Instant::now(), [0; BYTES_MAX + 1]);
+    let mut trouble = Trouble::NobodySends { place: place.clone() };
+    let wrong = |found: String| Trouble::WrongProduct {
+        place: place.clone(),
+        expected: format!("program for {} (protocol {VERSION})", kind.word()),
+        found,
+    };
+    while begin.elapsed() < FIRST_MAX {
+        let lost = |loss: crate::Loss| Trouble::Other { place: place.clone(), reason: loss.cause().to_owned() };
+        let Some(count) = datagrams.receive(&mut buffer).map_err(lost)? else {
+            sleep(NAP);
+            continue;
+        };
+        trouble = match Datagram::decode(&buffer[..count]) {
+            Ok(datagram) if datagram.message == Message::Reading(kind) => return Ok(datagram),
+            Ok(Datagram { message: Message::Reading(found), .. }) => wrong(format!("program for {}", found.word())),
+            Ok(_) => wrong("program that sends commands".to_owned()),
+            Err(NoDatagram::Version(version)) => wrong(format!("program of protocol {version}")),
+            Err(NoDatagram::Shape | NoDatagram::Checksum) => {
+                Trouble::Other { place: place.clone(), reason: crate::Loss::Corrupt.cause().to_owned() }
+            }
+        };
+    }
+    Err(trouble)
+}
+
+/// The end of opening.
+pub(super) struct Met {
+    /// The newest datagram of the program.
+    pub(super) newest: Datagram,
+    /// Number of our newest answer.
+    pub(super) sequence: u32,
+    /// Our time stamps are after this, us.
+    pub(super) begins_us: u64,
+}
+
+/// Answers until a datagram shows that the program has heard it.
+fn shake_hands(datagrams: &mut dyn Datagrams, first: &Datagram, watchdog_us: u32, begins_us: u64) -> Option<Met> {
+    let Message::Reading(kind) = first.message else { return None };
+    let (begin, mut buffer, mut wire) = (Instant::now(), [0; BYTES_MAX + 1], [0; BYTES_MAX]);
+    let (mut sequence, mut newest) = (0, *first);
+    while begin.elapsed() < ANSWER_MAX {
+        sequence += 1;
+        let command = Datagram {
+            session: first.session,
+            sequence,
+            time_us: begins_us + u64::from(sequence),
+            echo_us: newest.time_us,
+            watchdog_us,
+            ..command_of(kind, false, &[])
+        };
+        let length = command.encode(&mut wire);
+        datagrams.send(&wire[..length]).ok()?;
+        sleep(NAP);
+        while let Some(count) = datagrams.receive(&mut buffer).ok()? {
+            let heard = Datagram::decode(&buffer[..count]).ok();
+            let own = |heard: &Datagram| heard.session == first.session && heard.message == first.message;
+            newest = heard.filter(own).unwrap_or(newest);
+            if newest.echo_us > begins_us && newest.sequence != first.sequence {
+                return Some(Met { newest, sequence, begins_us });
+            }
+            if begin.elapsed() > ANSWER_MAX {
+                return None;
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,68 @@
+//! An external force-torque sensor.
+
+use nima_core::frames::Wrench;
+
+use super::{
+    codec::{Datagram, status},
+    line::Line,
+    opening,
+    settings::{Kind, Settings},
+};
+use crate::{Device, ForceReading, ForceStatus, Health, Identity, Stamped, Trouble};
+
+/// Numbers of a sensor beyond this are impossible: N, Nm, m/s^2, rad/s, degrees Celsius.
+const NUMBER_MAX: f64 = 1e4;
+
+/// An open external force sensor.
+pub struct Sensor {
+    line: Line,
+}
+
+impl Sensor {
+    /// Waits for the device's program, up to half a second.
+    ///
+    /// # Errors
+    /// [`Trouble`] if a setting is invalid, the port is in use, or no program of a sensor sends and hears.
+    pub fn open(settings: &Settings) -> Result<Self, Trouble> {
+        Ok(Self { line: opening::open(Kind::Sensor, settings)? })
+    }
+
+    /// The same over an open line, with time stamps from 0 on.
+    #[cfg(test)]
+    pub(super) fn over(datagrams: Box<dyn crate::transport::Datagrams>, settings: &Settings) -> Result<Self, Trouble> {
+        settings.check(Kind::Sensor)?;
+        Ok(Self { line: opening::meet(datagrams, Kind::Sensor, settings, 0)? })
+    }
+}
+
+/// The reading in a datagram, if its numbers are possible.
+fn reading(datagram: &Datagram) -> Option<ForceReading> {
+    let numbers = &datagram.numbers[..13];
+    let possible = numbers.iter().all(|number| number.abs() <= NUMBER_MAX);
+    possible.then(|| ForceReading {
+        wrench: Wrench { force_n: datagram.three(0).into(), torque_nm: datagram.three(3).into() },
+        acceleration_m_s2: datagram.has(status::HAS_ACCELERATION).then(|| datagram.three(6).into()),
+        angular_velocity_rad_s: datagram.has(status::HAS_ANGULAR_VELOCITY).then(|| datagram.three(9).into()),
+        temperature_c: numbers[12],
+        status: ForceStatus {
+            throttled: datagram.has(status::THROTTLED),
+            overrange: datagram.has(status::OVERRANGE),
+            invalid: datagram.has(status::INVALID),
+            raw: datagram.has(status::RAW),
+        },
+    })
+}
+
+impl Device for Sensor {
+    type Reading = ForceReading;
+
+    fn poll(&mut self, now_s: f64) -> Option<Stamped<ForceReading>> {
+        let newest = self.line.receive(now_s, reading);
+        self.line.tell(true, &[]);
+        newest.map(|(stamped, _)| stamped)
+    }
+
+    fn about(&self) -> (&Health, &Identity) {
+        self.line.about()
+    }
+}

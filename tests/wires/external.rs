@@ -1,0 +1,401 @@
+//! Devices of a lab's own: the examples in C and Python drive the real loop over UDP, and are killed, stopped and started again.
+#![cfg(target_os = "linux")]
+use std::{
+    net::UdpSocket,
+    path::{Path, PathBuf},
+    process::{Child, Command as Process, Stdio},
+    time::{Duration, Instant},
+};
+
+use nima_core::{
+    impedance::Mode,
+    kinematics::{Arm, Joints, START_MISS_M},
+};
+use nima_devices::{Health, Loss, Standing, Trouble};
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Event, LoopState, Tick},
+    runtime::Handle,
+};
+use nima_testing::real_time::{alone, judged, too_busy};
+use nima_world::{Plan, scene::Scene};
+
+/// Time limit for the force after a program has died, s.
+const GONE_S: f64 = 0.020;
+/// Least force in the hand before a program is killed, N.
+const FELT_N: f64 = 0.3;
+const WAIT: Duration = Duration::from_secs(12);
+
+fn here(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+/// The rig of the guide, at ports that are free.
+fn rig(ports: [u16; 3]) -> RigConfig {
+    let guide = std::fs::read_to_string(here("docs/external-device.md")).unwrap();
+    let (_, after) = guide.split_once("```toml\n").unwrap();
+    let (text, _) = after.split_once("```").unwrap();
+    let mut text = text.to_owned();
+    for (written, port) in ["47200", "47201", "47202"].into_iter().zip(ports) {
+        assert!(text.contains(written));
+        text = text.replace(written, &port.to_string());
+    }
+    let mut rig = RigConfig::parse("docs/external-device.md".as_ref(), &text).unwrap();
+    (rig.mode, rig.gates.static_hold) = (Mode::Dfr, true);
+    rig
+}
+
+fn free_ports() -> [u16; 3] {
+    let sockets = [(); 3].map(|()| UdpSocket::bind("127.0.0.1:0").unwrap());
+    sockets.map(|socket| socket.local_addr().unwrap().port())
+}
+
+/// How the examples are run: compiled, or by the interpreter.
+enum Examples {
+    C(PathBuf),
+    Python,
+}
+
+impl Examples {
+    /// Without a warning of the compiler. `None` where there is none.
+    fn in_c(folder: &Path) -> Option<Self> {
+        if Process::new("cc").arg("--version").output().is_err() {
+            println!("left out: no C compiler (cc) is installed");
+            return None;
+        }
+        for name in ["handle", "arm_and_sensor"] {
+            let source = here("assets/external").join(format!("{name}.c"));
+            let strict = ["-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic", "-Werror", "-o"];
+            let made = Process::new("cc").args(strict).arg(folder.join(name)).arg(source).arg("-lm").output().unwrap();
+            assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+        }
+        Some(Self::C(folder.to_owned()))
+    }
+
+    fn start(&self, name: &str, ports: &[u16]) -> Running {
+        let mut process = match self {
+            Self::C(folder) => Process::new(folder.join(name)),
+            Self::Python => {
+                let mut python = Process::new("python3");
+                python.arg(here("assets/external").join(format!("{name}.py")));
+                python
+            }
+        };
+        process.arg("127.0.0.1").args(ports.iter().map(u16::to_string));
+        Running(Some(process.stdout(Stdio::piped()).spawn().unwrap()))
+    }
+}
+
+/// A running example; killed when the test is done with it.
+struct Running(Option<Child>);
+
+impl Running {
+    #[expect(unsafe_code, reason = "std can only kill")]
+    fn signal(&self, signal: i32) {
+        let pid = self.0.as_ref().unwrap().id().cast_signed();
+        // SAFETY: a signal to our own child, which has not been waited for.
+        unsafe { libc::kill(pid, signal) };
+    }
+
+    fn kill(&mut self) {
+        if let Some(mut child) = self.0.take() {
+            child.kill().unwrap();
+            child.wait().unwrap();
+        }
+    }
+
+    /// Ends it in its own way; what it has counted.
+    fn counted(mut self) -> Vec<serde_json::Value> {
+        self.signal(libc::SIGTERM);
+        let output = self.0.take().unwrap().wait_with_output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
+struct Bench {
+    handle: Handle,
+    newest: Option<Tick>,
+    ticks: Vec<Tick>,
+    healths: [Health; 3],
+    lost: Vec<(usize, Loss)>,
+}
+
+impl Bench {
+    fn new(rig: RigConfig) -> Self {
+        let scene = Scene::load("peg_transfer").unwrap();
+        let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
+        let handle = nima_world::start(&plan).unwrap();
+        Self { handle, newest: None, ticks: Vec::new(), healths: [Health::default(); 3], lost: Vec::new() }
+    }
+
+    fn look(&mut self) {
+        std::thread::sleep(Duration::from_millis(1));
+        let (newest, ticks, lost) = (&mut self.newest, &mut self.ticks, &mut self.lost);
+        self.handle.drain_ticks(|tick| {
+            *newest = Some(*tick);
+            ticks.push(*tick);
+        });
+        self.handle.drain_events(|event| {
+            if let Event::Device(event) = event
+                && let Standing::Lost(loss) = event.standing
+            {
+                lost.push((usize::from(event.device), loss));
+            }
+        });
+        if let Some(healths) = self.handle.healths() {
+            self.healths.copy_from_slice(&healths.devices[..3]);
+        }
+    }
+
+    /// What does not come on a machine with time for it is judged by the watch of the machine.
+    fn until(&mut self, what: &str, good: impl Fn(&Self) -> bool) {
+        let begin = Instant::now();
+        while !good(self) {
+            if begin.elapsed() > WAIT {
+                let state = self.newest.map(|tick| tick.state);
+                let reports: Vec<_> = self.handle.roster().iter().map(|entry| entry.view.report()).collect();
+                panic!("never came: {what}; {state:?}, {:?}, {reports:?}", self.healths.map(|health| health.standing));
+            }
+            self.look();
+        }
+    }
+
+    fn state(&self) -> LoopState {
+        self.newest.map_or(LoopState::Idle, |tick| tick.state)
+    }
+
+    fn rendered_n(&self) -> f64 {
+        self.newest.map_or(0.0, |tick| tick.rendered_n.norm())
+    }
+
+    /// Engages by command, and waits until the hand feels the sensor's force.
+    fn engage(&mut self) {
+        self.until("all connected", |bench| bench.healths.iter().all(|h| h.standing == Standing::Connected));
+        if matches!(self.state(), LoopState::Faulted(_)) {
+            assert!(self.handle.send(Command::ReleaseStop));
+        }
+        self.until("idle", |bench| bench.state() == LoopState::Idle);
+        assert!(self.handle.send(Command::Engage));
+        self.until("a force", |bench| bench.state() == LoopState::Engaged && bench.rendered_n() > FELT_N);
+    }
+
+    /// What happens after `act` to the program of these devices: the cause, and after what time the force is gone, s.
+    fn after(&mut self, act: impl FnOnce(), devices: &[usize]) -> (Loss, f64) {
+        self.look();
+        self.lost.clear();
+        let at_s = self.newest.unwrap().t_s;
+        assert!(self.rendered_n() > 0.0);
+        self.ticks.clear();
+        act();
+        self.until("a fault", |bench| matches!(bench.state(), LoopState::Faulted(_)));
+        self.until("a loss", |bench| bench.lost.iter().any(|(device, _)| devices.contains(device)));
+        let last = self.ticks.iter().filter(|tick| tick.rendered_n.norm() > 0.0).map(|tick| tick.t_s).next_back();
+        let gone_s = last.unwrap_or(at_s) - at_s;
+        let (_, loss) = self.lost.iter().find(|(device, _)| devices.contains(device)).unwrap();
+        (*loss, gone_s)
+    }
+}
+
+/// The numbers behind this name in an example.
+fn numbers_in(path: &str, name: &str) -> Vec<f64> {
+    let text = std::fs::read_to_string(here(path)).unwrap();
+    let (_, after) = text.split_once(name).unwrap();
+    let list = after.split(['{', '}', '(', ')']).nth(1).unwrap();
+    list.split(',').map(|number| number.trim().parse().unwrap()).collect()
+}
+
+#[test]
+fn the_arm_of_the_examples_begins_in_the_trocar_of_the_guide() {
+    let set = rig([1, 2, 3]).devices.unwrap().right.unwrap();
+    let arm = Arm::new(&set.mount).unwrap();
+    for (path, name) in [
+        ("assets/external/arm_and_sensor.c", "joint_rad[NIMA_JOINTS] ="),
+        ("assets/external/arm_and_sensor.py", "START_RAD ="),
+    ] {
+        let begin = Joints::from_iterator(numbers_in(path, name));
+        let pose = arm.pose(&begin);
+        let miss_m = pose.axis_miss_m(&set.rcm.trocar_m).norm();
+        let depth_m = pose.insertion_m(&set.rcm.trocar_m);
+        assert!(miss_m < START_MISS_M / 2.0 && (0.05..0.2).contains(&depth_m), "{path}: {miss_m} m, {depth_m} m deep");
+    }
+}
+
+const HANDLE: &[usize] = &[0];
+const ARM_AND_SENSOR: &[usize] = &[1, 2];
+
+#[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
+fn when_a_program_in_c_dies_or_stands_still_the_force_is_gone_and_the_cause_is_told() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    let Some(examples) = Examples::in_c(folder.path()) else { return };
+    judged(|| {
+        let ports = free_ports();
+        let mut hand = examples.start("handle", &ports[..1]);
+        let mut arm = examples.start("arm_and_sensor", &ports[1..]);
+        let mut bench = Bench::new(rig(ports));
+        bench.engage();
+        let names: Vec<_> =
+            bench.handle.roster().iter().map(|entry| entry.view.report().identity.unwrap().product).collect();
+        assert_eq!(names, ["spring hand", "simulated arm", "pushed sensor"]);
+        let judge =
+            |bench: &mut Bench, what: &str, act: &dyn Fn(&mut Running), running: &mut Running, devices: &[usize]| {
+                let (loss, gone_s) = bench.after(|| act(running), devices);
+                println!("{what}: {loss:?}, no force after {:.1} ms", gone_s * 1e3);
+                assert!(gone_s <= GONE_S, "{what}: force for {gone_s} s");
+                loss
+            };
+        let kill: &dyn Fn(&mut Running) = &|running| running.kill();
+        let stop: &dyn Fn(&mut Running) = &|running| running.signal(libc::SIGSTOP);
+
+        assert_eq!(judge(&mut bench, "handle killed", kill, &mut hand, HANDLE), Loss::Disconnected);
+        bench.until("the cause", |bench| {
+            let trouble = bench.handle.roster()[0].view.report().trouble;
+            trouble.is_some_and(|trouble| matches!(trouble, Trouble::NobodySends { .. }))
+        });
+        hand = examples.start("handle", &ports[..1]);
+        bench.engage();
+
+        assert_eq!(judge(&mut bench, "arm and sensor killed", kill, &mut arm, ARM_AND_SENSOR), Loss::Disconnected);
+        arm = examples.start("arm_and_sensor", &ports[1..]);
+        bench.engage();
+
+        assert_eq!(judge(&mut bench, "sensor stopped", stop, &mut arm, ARM_AND_SENSOR), Loss::Silent);
+        std::thread::sleep(Duration::from_millis(300));
+        arm.signal(libc::SIGCONT);
+        bench.until("connected again", |bench| bench.healths.iter().all(|h| h.standing == Standing::Connected));
+        let faulted = matches!(bench.state(), LoopState::Faulted(_));
+        assert!(faulted && bench.rendered_n() == 0.0, "nothing resumes by itself: {:?}", bench.state());
+        bench.engage();
+
+        assert_eq!(judge(&mut bench, "handle stopped", stop, &mut hand, HANDLE), Loss::Silent);
+        hand.signal(libc::SIGCONT);
+        drop(bench);
+        let counted = hand.counted();
+        println!("{}", counted[0]);
+        assert!(counted[0]["with_force"].as_u64().unwrap() > 0 && counted[0]["damaged"] == 0);
+        assert!(counted[0]["largest_n"].as_f64().unwrap() <= 4.0);
+    });
+}
+
+/// A stranger on the same computer, louder than the handle: nothing of it is heard, and no tick is late for it.
+#[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
+fn nobody_else_is_heard_beside_the_first_program_and_its_double_waits() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    let Some(examples) = Examples::in_c(folder.path()) else { return };
+    judged(|| {
+        let ports = free_ports();
+        let hand = examples.start("handle", &ports[..1]);
+        let arm = examples.start("arm_and_sensor", &ports[1..]);
+        let mut bench = Bench::new(rig(ports));
+        bench.engage();
+        let double = examples.start("handle", &ports[..1]);
+        let stranger = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let (begin, before) = (Instant::now(), bench.healths[0]);
+        while begin.elapsed() < Duration::from_secs(1) {
+            for _ in 0..100 {
+                stranger.send_to(&[0x4E; 180], ("127.0.0.1", ports[0])).ok();
+            }
+            bench.look();
+        }
+        if bench.state() != LoopState::Engaged {
+            too_busy();
+        }
+        let after = bench.healths[0];
+        assert_eq!((after.damaged, after.refused), (before.damaged, before.refused), "{after:?}");
+        assert!(after.readings > before.readings + 500, "{after:?}");
+        assert_eq!(double.counted()[0]["taken"], 0);
+        drop((hand, arm));
+    });
+}
+
+/// The figures of the guide: a minute at 1 kHz.
+fn minute(examples: &Examples, seconds: u64) {
+    let ports = free_ports();
+    let hand = examples.start("handle", &ports[..1]);
+    let arm = examples.start("arm_and_sensor", &ports[1..]);
+    let mut bench = Bench::new(rig(ports));
+    bench.engage();
+    let (begin, before) = (Instant::now(), bench.healths);
+    let (first, mut rates_hz) = (bench.newest.unwrap(), Vec::new());
+    bench.ticks.clear();
+    while begin.elapsed() < Duration::from_secs(seconds) && bench.state() == LoopState::Engaged {
+        bench.look();
+        rates_hz.push(bench.healths.map(|health| health.rate_hz));
+    }
+    let (last, after) = (bench.newest.unwrap(), bench.healths);
+    let mut ages_s: Vec<f64> = bench.ticks.iter().filter_map(|tick| tick.sample_to_force_s).collect();
+    ages_s.sort_by(f64::total_cmp);
+    let at = |share: f64| ages_s[((ages_s.len() - 1) as f64 * share) as usize] * 1e3;
+    println!(
+        "{} s, {:?} at the end, {} ticks, {} missed",
+        last.t_s - first.t_s,
+        bench.state(),
+        bench.ticks.len(),
+        last.missed - first.missed
+    );
+    println!(
+        "oldest reading to force: p50 {:.3} ms, p99 {:.3} ms, p99.9 {:.3} ms, max {:.3} ms",
+        at(0.5),
+        at(0.99),
+        at(0.999),
+        at(1.0)
+    );
+    for (place, name) in ["handle", "arm", "sensor"].into_iter().enumerate() {
+        let (before, after) = (&before[place], &after[place]);
+        let lowest_hz = rates_hz.iter().map(|rates| rates[place]).fold(f64::INFINITY, f64::min);
+        println!(
+            "{name}: {} readings, lowest rate of half a second {lowest_hz:.0} Hz, lost {}, late or twice {}, damaged {}, refused {}",
+            after.readings - before.readings,
+            after.lost - before.lost,
+            after.out_of_order - before.out_of_order,
+            after.damaged - before.damaged,
+            after.refused - before.refused,
+        );
+    }
+    drop(bench);
+    hand.counted().into_iter().chain(arm.counted()).for_each(|line| println!("{line}"));
+}
+
+#[test]
+#[ignore = "a minute each, for the figures of docs/external-device.md"]
+fn figures_of_a_minute_in_c() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    if let Some(examples) = Examples::in_c(folder.path()) {
+        minute(&examples, 60);
+    }
+}
+
+#[test]
+#[ignore = "a minute each, for the figures of docs/external-device.md"]
+fn figures_of_a_minute_in_python() {
+    let _alone = alone();
+    minute(&Examples::Python, 60);
+}
+
+#[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
+fn the_examples_in_python_lead_the_loop_too() {
+    let _alone = alone();
+    judged(|| {
+        let ports = free_ports();
+        let hand = Examples::Python.start("handle", &ports[..1]);
+        let arm = Examples::Python.start("arm_and_sensor", &ports[1..]);
+        let mut bench = Bench::new(rig(ports));
+        bench.engage();
+        drop(bench);
+        for line in hand.counted().into_iter().chain(arm.counted()) {
+            assert!(line["taken"].as_u64().unwrap() > 100 && line["damaged"] == 0, "{line}");
+        }
+    });
+}

@@ -238,6 +238,8 @@ def identify(
         A shape, a value that is not finite, a time that does not rise, or a setting out of its range.
     """
     axes: list[str] | None = None
+    times: Floats | None
+    leader: list[Floats] | None
     if isinstance(positions_m, Recording):
         recording = positions_m
         _only_one_source(forces_n, map)

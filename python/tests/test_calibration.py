@@ -49,7 +49,7 @@ def test_what_is_left_without_gravity_is_the_noise():
     pushed_n = forces_n + [1.0, 2.0, 3.0]
     free_n, free_nm = nima.remove_gravity(report, pushed_n, torques_nm, world_from_sensor_wxyz=wxyz)
     assert np.allclose(free_n, [1.0, 2.0, 3.0], atol=0.03) and free_nm is not None and np.allclose(free_nm, 0.0, atol=0.005)
-    model = next(fit["model"] for fit in report["fits"] if fit["kind"] == "paper")
+    model = next(fit["model"] for fit in report["fits"] if fit["kind"] == "gain")
     alone, none = nima.remove_gravity(model, pushed_n, world_from_sensor_wxyz=wxyz)
     assert none is None and np.allclose(alone, [1.0, 2.0, 3.0], atol=0.05)
     with pytest.raises(ValueError, match="this model needs world_from_sensor_wxyz"):

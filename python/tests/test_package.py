@@ -68,7 +68,7 @@ def test_the_examples_of_the_pages_run(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     times_s, positions_m, forces_n = motion(1500)
     columns = np.column_stack([times_s, positions_m, forces_n])
-    np.savetxt("recording.csv", columns, delimiter=",", comments="", header="t_s,x_m,y_m,z_m,fx_n,fy_n,fz_n", fmt="%r")
+    np.savetxt("recording.csv", columns, delimiter=",", comments="", header="t_s,x_m,y_m,z_m,fx_n,fy_n,fz_n", fmt="%.17g")
     blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.S)
     assert blocks
     names: dict[str, object] = {"positions_m": positions_m, "forces_n": forces_n}

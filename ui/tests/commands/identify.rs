@@ -1,6 +1,9 @@
 //! `nima identify` over several recordings, over three axes that are named at once, and with the leader's own motion.
 
-use std::path::{Path, PathBuf};
+use std::{
+    fmt::Write as _,
+    path::{Path, PathBuf},
+};
 
 use serde_json::Value;
 
@@ -21,7 +24,7 @@ fn recording(folder: &Path, name: &str, stiffness_n_m: f64) -> PathBuf {
             at_m(i + 20).map(|x| x * 1e3),
         ];
         let columns: Vec<String> = columns.as_flattened().iter().map(f64::to_string).collect();
-        text += &format!("{},{}\n", i as f64 * 1e-3, columns.join(","));
+        writeln!(text, "{},{}", i as f64 * 1e-3, columns.join(",")).unwrap();
     }
     let path = folder.join(name);
     std::fs::write(&path, text).unwrap();

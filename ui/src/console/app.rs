@@ -1,11 +1,13 @@
 //! The window: receives what the loop has sent, lays out the panels, and sends the operator's commands.
 
+mod acting;
 mod calibrating;
 mod checking;
 mod connecting;
 mod listing;
 mod opening;
 mod pace;
+mod reaching;
 mod reviewing;
 mod seen;
 mod starting;
@@ -31,6 +33,7 @@ use nima_world::{Plan, Watched, emulated::Screen, scene::Scene};
 use super::{
     Options,
     canvas::{Canvas, Surface, renderer_of},
+    commands::Action,
     diary::Diary,
     door::{Door, News},
     frames::Meter,
@@ -40,6 +43,7 @@ use super::{
     live::Live,
     menu,
     outbox::Outbox,
+    palette::Palette,
     panels::{ForcesState, TopBarState, top_bar_ui},
     past::{Past, list::List},
     pictures::Photographer,
@@ -51,6 +55,7 @@ use super::{
     start::{Choice, StartPage},
     studies::Studies,
     theme,
+    undo::History,
     wizards::Wizards,
 };
 use crate::{
@@ -96,6 +101,8 @@ pub struct ConsoleApp {
     panels: Panels,
     settings: Kept,
     help: Help,
+    palette: Palette,
+    history: History,
     photographer: Option<Photographer>,
     wizards: Wizards,
     checking: Checking,
@@ -190,6 +197,8 @@ impl ConsoleApp {
             panels: Panels { scene: SceneView::new(cc.gl.as_deref()), ..Panels::default() },
             settings: Kept::default(),
             help: Help::default(),
+            palette: Palette::default(),
+            history: History::default(),
             photographer: None,
             options: Options::default(),
             opened: now,
@@ -280,6 +289,7 @@ impl ConsoleApp {
         self.live.rough_edges = rough_edges;
         self.live.line_door = line_door;
         self.panels.forces = ForcesState::default();
+        self.history.adopt();
         self.panels.devices.begin_anew();
         self.checking.forget();
         self.outbox = Outbox::default();
@@ -302,37 +312,18 @@ impl ConsoleApp {
     fn layout(&mut self, ui: &mut Ui) {
         let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
-            let in_trial = self.in_trial();
-            let calibrating = self.wizards.open.is_some() || self.checking.is_open() || self.has_study() && !in_trial;
-            let before = self.role();
+            let (calibrating, before) = (self.is_calibrating(), self.role());
             self.top_bar.participant = self.studies.trial.as_ref().map(|trial| trial.participant.clone());
             self.top_bar.asked = self.checking.ask();
             self.top_bar.past = self.past.is_some();
+            self.top_bar.can_undo = [self.history.can_undo(), self.history.can_redo()];
             self.sessions.look_after();
             self.top_bar.recorded = self.sessions.shown();
-            let wants_start = top_bar_ui(
-                ui,
-                &mut self.live,
-                &mut self.top_bar,
-                &mut self.outbox,
-                &mut self.settings.now,
-                &mut self.help,
-                calibrating,
-            );
-            if std::mem::take(&mut self.top_bar.keeps) || keys::keep_pressed(ui.ctx()) {
-                self.sessions.toggle_kept();
-            }
-            let pressed = keys::role_pressed(ui.ctx()).filter(|_| !calibrating && !in_trial);
-            self.settings.now.role = pressed.unwrap_or(self.role());
-            if wants_start && !self.start.is_open {
-                self.open_start();
-            } else if self.starting.is_none() && (wants_start || pressed.is_some() || self.role() != before) {
-                self.start.is_open = false;
-                self.list.is_open = false;
-                self.studies.is_shown = false;
-            }
-            if std::mem::take(&mut self.top_bar.wants_sessions) && !calibrating {
-                self.toggle_list();
+            let (live, bar, settings) = (&self.live, &mut self.top_bar, &mut self.settings.now);
+            top_bar_ui(ui, live, bar, &mut self.outbox, settings, calibrating);
+            let chosen = (self.role() != before).then_some(Action::View(self.role()));
+            if let Some(action) = self.top_bar.wanted.take().or(chosen) {
+                self.act(action, ui.ctx());
             }
         });
         let signs = self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble());
@@ -345,6 +336,7 @@ impl ConsoleApp {
         self.top_bar.alarms.list_ui(ui.ctx(), room);
         self.settings.now.toured |= self.help.ui(ui.ctx(), room, !self.list.is_open);
         self.welcome(ui.ctx(), room);
+        self.palette_ui(ui.ctx(), room);
     }
 }
 
@@ -373,21 +365,18 @@ impl eframe::App for ConsoleApp {
         self.panels.eyes.show_as(self.settings.now.picture);
         self.panels.eyes.serve(self.live.rig.endoscope.as_ref(), self.sessions.reel(), &ctx);
         self.panels.devices.picture = self.panels.eyes.told();
-        menu::apply(&ctx, &mut self.settings.now);
+        menu::apply(&ctx, &self.settings.now);
         if keys::stop_pressed(&ctx) {
             self.outbox.push(Command::Stop);
+            self.palette.close();
         }
-        self.help.glossary ^= keys::glossary_pressed(&ctx) && !self.in_trial();
-        self.obey_studies_key(&ctx);
-        self.obey_start_key(&ctx);
-        self.obey_past_keys(&ctx, f64::from(ui.input(|input| input.stable_dt)).min(0.1));
-        if keys::mark_pressed(&ctx) && self.past.is_none() {
-            self.live.mark();
-        }
+        self.obey_commands(&ctx);
+        self.go_on_in_past(f64::from(ui.input(|input| input.stable_dt)).min(0.1));
         self.layout(ui);
         if !self.start.is_open {
             self.start.rest();
         }
+        self.remember_look(&ctx);
         self.settings.save();
         if self.past.is_some() {
             self.outbox.only_stop();

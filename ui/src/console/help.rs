@@ -1,11 +1,13 @@
 //! Help for new users: a tour of four steps, and a glossary. Both stay below the top bar so that the stop button is
 //! never covered, and the loop continues while they are open.
 
-use egui::{Align, Align2, Button, Context, Label, Rect, RichText, ScrollArea, Window, vec2};
+use egui::{Align, Align2, Button, Context, Label, Rect, RichText, ScrollArea, Ui, Window, vec2};
 
 use super::{
+    commands::table,
+    text::commands::{BY_HAND, key_meaning},
     text::help::{
-        BEGIN, GLOSSARY, GLOSSARY_WINDOW, KEYS, KEYS_HEADING, NEXT_STEP, SKIP_THE_TOUR, STEP_BACK, TOUR, TOUR_WINDOW,
+        BEGIN, GLOSSARY, GLOSSARY_WINDOW, KEYS_HEADING, NEXT_STEP, SKIP_THE_TOUR, STEP_BACK, TOUR, TOUR_WINDOW,
         WORDS_HEADING, step_of,
     },
     theme,
@@ -62,14 +64,11 @@ impl Help {
         window.default_pos(room.center_top() + vec2(-230.0, 16.0)).fixed_size(vec2(460.0, height)).show(ctx, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.label(RichText::new(KEYS_HEADING).font(theme::strong(16.0)));
-                for (key, meaning) in KEYS {
-                    ui.horizontal(|ui| {
-                        ui.add_sized(
-                            vec2(150.0, 18.0),
-                            Label::new(RichText::new(key).font(theme::strong(14.0))).halign(Align::Min),
-                        );
-                        ui.add(Label::new(super::widgets::weak(meaning)).wrap());
-                    });
+                for entry in table().iter().filter(|entry| !entry.keys.is_empty()) {
+                    key_ui(ui, &entry.keys_told(), &key_meaning(&entry.title, entry.does));
+                }
+                for (key, meaning) in BY_HAND {
+                    key_ui(ui, key, meaning);
                 }
                 ui.add_space(8.0);
                 ui.label(RichText::new(WORDS_HEADING).font(theme::strong(16.0)));
@@ -81,6 +80,15 @@ impl Help {
             });
         });
     }
+}
+
+/// A key and what it does.
+fn key_ui(ui: &mut Ui, key: &str, meaning: &str) {
+    ui.horizontal(|ui| {
+        let key = Label::new(RichText::new(key).font(theme::strong(14.0))).halign(Align::Min);
+        ui.add_sized(vec2(150.0, 18.0), key);
+        ui.add(Label::new(super::widgets::weak(meaning)).wrap());
+    });
 }
 
 #[cfg(test)]

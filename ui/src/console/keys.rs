@@ -1,8 +1,11 @@
-//! Keys with the same function in every view.
+//! Keys with the same function in every view; what each does is in the table of commands.
 
 use egui::{Context, Event, Key};
 
-use super::roles::Role;
+use super::{
+    commands::{Action, Entry, table},
+    roles::Role,
+};
 
 /// Space and Escape stop, wherever the keyboard focus is; the key press is consumed, so that it triggers no button.
 /// While a text is being entered, Space is a letter and only Escape stops.
@@ -23,52 +26,36 @@ pub(super) fn stop_pressed(ctx: &Context) -> bool {
     })
 }
 
-/// The role whose key was pressed.
+/// The role whose key was pressed, in a window that has no other commands.
 pub(super) fn role_pressed(ctx: &Context) -> Option<Role> {
     ctx.input(|input| Role::ALL.into_iter().find(|role| input.key_pressed(role.key())))
 }
 
-/// Whether the key that sets a mark was pressed.
-pub(super) fn mark_pressed(ctx: &Context) -> bool {
-    !ctx.text_edit_focused() && ctx.input(|input| input.key_pressed(Key::E))
-}
-
-/// Whether the key that keeps the session, or no longer keeps it, was pressed.
-pub(super) fn keep_pressed(ctx: &Context) -> bool {
-    !ctx.text_edit_focused() && ctx.input(|input| input.modifiers.is_none() && input.key_pressed(Key::K))
-}
-
-/// Whether the key that acknowledges alarms was pressed.
-pub(super) fn acknowledge_pressed(ctx: &Context) -> bool {
-    !ctx.text_edit_focused() && ctx.input(|input| input.modifiers.is_none() && input.key_pressed(Key::A))
-}
-
-/// Whether the key for the list of alarms was pressed.
-pub(super) fn alarms_pressed(ctx: &Context) -> bool {
-    ctx.input(|input| input.key_pressed(Key::F5))
-}
-
-/// Whether the key for the start page was pressed.
-pub(super) fn start_pressed(ctx: &Context) -> bool {
-    ctx.input(|input| input.key_pressed(Key::F6))
-}
-
-/// Whether the key for the list of recorded sessions was pressed.
-pub(super) fn sessions_pressed(ctx: &Context) -> bool {
-    ctx.input(|input| input.key_pressed(Key::F7))
-}
-
-/// Whether the key for user studies was pressed.
-pub(super) fn studies_pressed(ctx: &Context) -> bool {
-    ctx.input(|input| input.key_pressed(Key::F8))
-}
-
-/// Whether the key that leaves the past was pressed.
-pub(super) fn live_pressed(ctx: &Context) -> bool {
-    !ctx.text_edit_focused() && ctx.input(|input| input.modifiers.is_none() && input.key_pressed(Key::L))
-}
-
-/// Whether the key for the glossary was pressed.
-pub(super) fn glossary_pressed(ctx: &Context) -> bool {
-    ctx.input(|input| input.key_pressed(Key::F4))
+/// The commands whose keys were pressed, in their order; the presses of those that `may` be done are consumed. A key that means
+/// something in a text that is being entered is left to it, and one that a part of the window reads itself to that.
+pub(super) fn pressed(ctx: &Context, may: impl Fn(Action) -> bool) -> Vec<Action> {
+    let writing = ctx.text_edit_focused();
+    let mut actions = Vec::new();
+    let mut events = ctx.input(|input| input.events.clone());
+    let came = events.len();
+    events.retain(|event| {
+        let Event::Key { key, pressed: true, repeat, modifiers, .. } = event else { return true };
+        let strokes = |entry: &'static Entry| entry.keys.iter().map(move |stroke| (entry.action, *stroke));
+        let mut strokes = table().iter().filter(|entry| !entry.action.is_of_part()).flat_map(strokes);
+        let Some((action, stroke)) = strokes.find(|(_, stroke)| stroke.key == *key && stroke.with.holds(*modifiers))
+        else {
+            return true;
+        };
+        if writing && stroke.writes() || !may(action) {
+            return true;
+        }
+        if !*repeat || action.repeats() {
+            actions.push(action);
+        }
+        false
+    });
+    if events.len() < came {
+        ctx.input_mut(|input| input.events = events);
+    }
+    actions
 }

@@ -5,19 +5,23 @@ use egui::{Button, Context, DragValue, Slider, Ui, vec2};
 
 use super::{
     alarms::strip::Alarms,
+    commands::{Action, Entry, SIZES_PERCENT},
     desk::{Layout, Panel},
-    help::Help,
     roles::Role,
-    settings::{CROP_MOST_PERCENT, PictureSettings, SCALES, Settings},
+    settings::{CROP_MOST_PERCENT, PictureSettings, Settings},
 };
 
 /// Size that every view needs, in points; a larger scale than the window has space for is not used.
 const NEEDED: egui::Vec2 = vec2(1100.0, 680.0);
-const STEPS_PERCENT: [u16; 5] = [100, 125, 150, 175, 200];
 
-/// The menu in the top bar. Returns true when the operator marks this moment.
-pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, alarms: &mut Alarms) -> bool {
-    let mut marks = false;
+/// The menu in the top bar; returns the command that was chosen in it. `can_undo` tells whether something can be taken back, and made again.
+pub(super) fn menu_ui(
+    ui: &mut Ui,
+    settings: &mut Settings,
+    alarms: &mut Alarms,
+    can_undo: [bool; 2],
+) -> Option<Action> {
+    let mut wanted = None;
     let button = Button::new(text::menu::VIEW).min_size(vec2(52.0, 30.0));
     let menu = egui::containers::menu::MenuButton::from_button(button);
     let (response, _) = menu.ui(ui, |ui| {
@@ -27,59 +31,71 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, ala
             for (name, light) in [(text::menu::DARK, false), (text::menu::LIGHT, true)] {
                 let button = Button::selectable(settings.light == light, name).frame_when_inactive(true);
                 if ui.add(button.min_size(vec2(96.0, 30.0))).clicked() {
-                    settings.light = light;
+                    wanted = Some(Action::Light(light));
                 }
             }
         });
         ui.add_space(6.0);
         ui.label(text::menu::SIZE);
         ui.horizontal(|ui| {
-            for percent in STEPS_PERCENT {
+            for percent in SIZES_PERCENT {
                 let chosen = settings.scale_percent == percent;
                 if ui.add(Button::selectable(chosen, format!("{percent} %")).frame_when_inactive(true)).clicked() {
-                    settings.scale_percent = percent;
+                    wanted = Some(Action::Size(percent));
                 }
             }
         });
         ui.label(super::widgets::small(text::menu::SIZE_NOTE));
         ui.add_space(6.0);
         if settings.role == Role::Technician {
-            panels_ui(ui, &mut settings.layout);
+            wanted = wanted.or(panels_ui(ui, &settings.layout));
             ui.add_space(6.0);
         }
-        sound_ui(ui, settings, alarms);
+        wanted = wanted.or(sound_ui(ui, settings.sound, alarms));
         ui.add_space(6.0);
-        picture_ui(ui, settings);
+        wanted = wanted.or(picture_ui(ui, settings));
         ui.add_space(6.0);
         ui.horizontal(|ui| {
-            if ui.add(Button::new(text::menu::ALARMS).min_size(vec2(96.0, 30.0))).clicked() {
-                alarms.list = true;
-            }
-            if ui.add(Button::new(text::menu::GLOSSARY).min_size(vec2(110.0, 30.0))).clicked() {
-                help.glossary = true;
-            }
-            if ui.add(Button::new(text::menu::TOUR).min_size(vec2(82.0, 30.0))).clicked() {
-                help.begin_tour();
+            for action in [Action::Alarms, Action::Glossary, Action::Tour] {
+                wanted = wanted.or(entry_ui(ui, action, 0.0));
             }
         });
-        let mark = ui.add(Button::new(text::menu::MARK).min_size(vec2(300.0, 30.0)));
-        marks = mark.on_hover_text(text::menu::MARK_HOVER).clicked();
+        wanted = wanted.or(entry_ui(ui, Action::Palette, 300.0));
+        ui.horizontal(|ui| {
+            for (action, can) in [Action::Undo, Action::Redo].into_iter().zip(can_undo) {
+                wanted = wanted.or(ui.add_enabled_ui(can, |ui| entry_ui(ui, action, 0.0)).inner);
+            }
+        });
+        wanted = wanted.or(entry_ui(ui, Action::Mark, 300.0));
     });
     response.on_hover_text(text::menu::VIEW_HOVER);
-    marks
+    wanted
+}
+
+/// A command with its keys, on a button of this width at least; returns it when it is pressed.
+fn entry_ui(ui: &mut Ui, action: Action, width: f32) -> Option<Action> {
+    let entry = Entry::of(action)?;
+    let button = ui.add(Button::new(entry.with_keys()).min_size(vec2(width, 30.0)));
+    button.on_hover_text(entry.does).clicked().then_some(action)
+}
+
+/// A switch that is now so; returns its command when it is pressed.
+fn switch_ui(ui: &mut Ui, mut on: bool, action: Action) -> Option<Action> {
+    let entry = Entry::of(action)?;
+    ui.checkbox(&mut on, entry.title.as_str()).on_hover_text(entry.does).changed().then_some(action)
 }
 
 /// Switch for alarm sounds, and why they cannot be played.
-fn sound_ui(ui: &mut Ui, settings: &mut Settings, alarms: &mut Alarms) {
-    let meaning = text::menu::SOUND_HOVER;
-    ui.checkbox(&mut settings.sound, text::menu::SOUND).on_hover_text(meaning);
+fn sound_ui(ui: &mut Ui, on: bool, alarms: &mut Alarms) -> Option<Action> {
+    let wanted = switch_ui(ui, on, Action::Sound);
     if let Some(trouble) = alarms.sound.trouble() {
         ui.add(egui::Label::new(super::widgets::small(trouble)).wrap());
     }
+    wanted
 }
 
 /// How the endoscope's picture is shown, and whether it is recorded.
-fn picture_ui(ui: &mut Ui, settings: &mut Settings) {
+fn picture_ui(ui: &mut Ui, settings: &mut Settings) -> Option<Action> {
     ui.label(text::menu::PICTURE);
     let picture = &mut settings.picture;
     ui.add(Slider::new(&mut picture.brightness_percent, -50..=50).text(text::menu::BRIGHTNESS).suffix(" %"));
@@ -95,17 +111,16 @@ fn picture_ui(ui: &mut Ui, settings: &mut Settings) {
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, edge));
         }
     });
-    ui.checkbox(&mut picture.forces_of_now, text::menu::FORCES_OF_NOW).on_hover_text(text::menu::FORCES_OF_NOW_HOVER);
+    let forces = switch_ui(ui, picture.forces_of_now, Action::ForcesOfNow);
     let plain = PictureSettings { forces_of_now: picture.forces_of_now, ..PictureSettings::default() };
-    if ui.add_enabled(*picture != plain, Button::new(text::menu::PICTURE_PLAIN).min_size(vec2(300.0, 26.0))).clicked() {
-        *picture = plain;
-    }
-    let records = ui.checkbox(&mut settings.records_picture, text::menu::RECORDS_PICTURE);
-    records.on_hover_text(text::menu::RECORDS_PICTURE_HOVER);
+    let is_plain = *picture == plain;
+    let plain = ui.add_enabled_ui(!is_plain, |ui| entry_ui(ui, Action::PlainPicture, 300.0)).inner;
+    forces.or(plain).or(switch_ui(ui, settings.records_picture, Action::RecordsPicture))
 }
 
 /// Switches for the panels on the desk.
-fn panels_ui(ui: &mut Ui, layout: &mut Layout) {
+fn panels_ui(ui: &mut Ui, layout: &Layout) -> Option<Action> {
+    let mut wanted = None;
     ui.label(text::menu::PANELS).on_hover_text(text::menu::PANELS_HOVER);
     for pair in Panel::ALL.chunks(2) {
         ui.horizontal(|ui| {
@@ -115,30 +130,18 @@ fn panels_ui(ui: &mut Ui, layout: &mut Layout) {
                 let response = ui.add(button.min_size(vec2(146.0, 26.0)));
                 let meaning = if open { text::menu::PANEL_OPEN_HOVER } else { text::menu::PANEL_CLOSED_HOVER };
                 if response.on_hover_text(format!("{}\n{meaning}", panel.meaning())).clicked() {
-                    layout.toggle(*panel);
+                    wanted = Some(Action::Panel(*panel));
                 }
             }
         });
     }
-    let reset = ui.add(Button::new(text::menu::RESET_LAYOUT).min_size(vec2(300.0, 26.0)));
-    if reset.on_hover_text(text::menu::RESET_LAYOUT_HOVER).clicked() {
-        *layout = Layout::default();
-    }
+    wanted.or(entry_ui(ui, Action::ResetLayout, 300.0))
 }
 
 /// Applies the settings; call at the start of a frame.
-pub(super) fn apply(ctx: &Context, settings: &mut Settings) {
+pub(super) fn apply(ctx: &Context, settings: &Settings) {
     super::theme::choose(ctx, settings.light);
     ctx.options_mut(|options| options.zoom_with_keyboard = false);
-    let step = ctx.input_mut(|input| {
-        let more = input.consume_shortcut(&egui::gui_zoom::kb_shortcuts::ZOOM_IN)
-            || input.consume_shortcut(&egui::gui_zoom::kb_shortcuts::ZOOM_IN_SECONDARY);
-        let less = input.consume_shortcut(&egui::gui_zoom::kb_shortcuts::ZOOM_OUT);
-        i32::from(more) - i32::from(less)
-    });
-    let wanted = i32::from(settings.scale_percent) + 25 * step;
-    settings.scale_percent =
-        wanted.clamp(i32::from(*SCALES.start()), i32::from(*SCALES.end())).unsigned_abs().try_into().unwrap_or(100);
     let window = ctx.content_rect().size() * ctx.zoom_factor();
     let room = (window / NEEDED).min_elem().max(1.0);
     let factor = (f32::from(settings.scale_percent) / 100.0).min(room);

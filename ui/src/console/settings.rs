@@ -88,6 +88,16 @@ pub const CROP_MOST_PERCENT: u8 = 40;
 
 /// Smallest and largest scale, percent.
 pub const SCALES: std::ops::RangeInclusive<u16> = 100..=200;
+/// A step of the keys.
+const STEP_PERCENT: i16 = 25;
+
+impl Settings {
+    /// Makes everything so many steps larger.
+    pub(super) fn scale_by(&mut self, steps: i16) {
+        let wanted = self.scale_percent.saturating_add_signed(STEP_PERCENT * steps);
+        self.scale_percent = wanted.clamp(*SCALES.start(), *SCALES.end());
+    }
+}
 
 impl Default for Settings {
     fn default() -> Self {

@@ -35,6 +35,26 @@ pub fn card<R>(ui: &mut Ui, title: &str, meaning: &str, content: impl FnOnce(&mu
     inner.inner
 }
 
+/// Shows this at the right of a row, in the order in which it is read: in a layout from the right, the keyboard would go backwards.
+pub fn at_the_right<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
+    let id = ui.scope_id().with("right");
+    let known: Option<f32> = ui.data(|data| data.get_temp(id));
+    ui.add_space((ui.available_width() - known.unwrap_or_default()).max(0.0));
+    let row = ui.horizontal(content);
+    let width = row.response.rect.width();
+    if known.is_none_or(|known| (known - width).abs() > 0.5) {
+        ui.data_mut(|data| data.insert_temp(id, width));
+        ui.ctx().request_discard("width");
+    }
+    row.inner
+}
+
+/// Names a plot for who cannot see it, with a summary of what it shows; the summary is made only if somebody listens.
+pub fn describe(ui: &Ui, plot: &Response, name: &str, summary: impl FnOnce() -> String) {
+    plot.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Figure, true, name));
+    ui.ctx().accesskit_node_builder(plot.id, |node| node.set_description(summary()));
+}
+
 /// A name on the left and its value on the right; `meaning` is their hover text.
 pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) -> Response {
     ui.spacing_mut().interact_size.y = 18.0;

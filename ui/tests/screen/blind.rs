@@ -90,6 +90,12 @@ impl Reader {
             self.step();
             self.step();
         }
+        // All that the palette offers, and then it is closed again.
+        for _ in 0..2 {
+            self.window.key_press_modifiers(egui::Modifiers::COMMAND, P);
+            self.step();
+            self.step();
+        }
         self.point_around();
     }
 

@@ -27,7 +27,7 @@ pub(crate) fn camera() -> (Serving, Endoscope) {
 }
 
 /// The same with a second lens so far to the right of the first one, m.
-fn lenses(baseline_m: Option<f64>) -> (Serving, Endoscope) {
+pub(crate) fn lenses(baseline_m: Option<f64>) -> (Serving, Endoscope) {
     let scene = Scene::load("bimanual").unwrap();
     let mut camera = usual(&scene);
     camera.focal_px *= 0.5;
@@ -43,7 +43,7 @@ fn lenses(baseline_m: Option<f64>) -> (Serving, Endoscope) {
     (serving, endoscope)
 }
 
-fn surgeon(endoscope: Endoscope, size: [f32; 2]) -> Console {
+pub(crate) fn surgeon(endoscope: Endoscope, size: [f32; 2]) -> Console {
     let mut plan = plan("bimanual");
     plan.rig.endoscope = Some(endoscope);
     let mut harness = shown(&Plan { engage: true, ..plan }, size, |app| app);
@@ -54,14 +54,14 @@ fn surgeon(endoscope: Endoscope, size: [f32; 2]) -> Console {
 }
 
 /// Waits until the picture is told so, and painted so.
-fn told(harness: &mut Console, words: &str) {
+pub(crate) fn told(harness: &mut Console, words: &str) {
     let is_told = comes(harness, TIMEOUT, |harness| {
         harness.query_by_label_contains(words).is_some() && (words.ends_with("live") || is_painted(harness, words))
     });
     assert!(is_told, "never told: {words}");
 }
 
-fn is_painted(harness: &Console, words: &str) -> bool {
+pub(crate) fn is_painted(harness: &Console, words: &str) -> bool {
     fn is_in(shape: &Shape, words: &str) -> bool {
         match shape {
             Shape::Vec(shapes) => shapes.iter().any(|shape| is_in(shape, words)),

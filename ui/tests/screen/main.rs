@@ -1,17 +1,20 @@
 //! The console, driven by the names on its screen.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod access;
 mod alarms;
 mod bench;
 mod blind;
 mod connecting;
 mod console;
+mod contrast;
 mod desk;
 mod drift;
 mod eyes;
 mod identity;
 mod instruments;
 mod monitor;
+mod palette;
 mod past;
 mod ready;
 mod roles;

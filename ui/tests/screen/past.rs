@@ -43,7 +43,7 @@ pub(crate) fn until_whole(harness: &mut Harness<'_, ConsoleApp>) {
 }
 
 /// The commands that reach a loop, from its tap.
-fn watched(plan: &Plan) -> (runtime::Handle, Arc<Mutex<Vec<Command>>>) {
+pub(crate) fn watched(plan: &Plan) -> (runtime::Handle, Arc<Mutex<Vec<Command>>>) {
     let (tap, end) = tap();
     let commands = Arc::<Mutex<Vec<Command>>>::default();
     let seen = Arc::clone(&commands);

@@ -49,7 +49,7 @@ fn rig_file(folder: &Path, devices: &Settings) -> String {
 }
 
 /// The console on the emulated wires, and the emulators.
-fn console(folder: &Path) -> (Console, EmulatedRig, String) {
+pub(crate) fn console(folder: &Path) -> (Console, EmulatedRig, String) {
     let devices = elsewhere(folder);
     let emulators = started(&devices);
     let name = rig_file(folder, &devices);

@@ -5,8 +5,7 @@
 
 use crate::console::text;
 use egui::{
-    Align, Button, Color32, Context, Frame, Label, Layout, Margin, Panel, Rect, RichText, ScrollArea, Sense, Stroke,
-    Ui, Window, vec2,
+    Button, Color32, Context, Frame, Label, Margin, Panel, Rect, RichText, ScrollArea, Sense, Stroke, Ui, Window, vec2,
 };
 
 use super::{
@@ -15,8 +14,8 @@ use super::{
     sound::Sound,
 };
 use crate::console::{
-    keys, theme,
-    widgets::{Sign, sign, small, weak},
+    theme,
+    widgets::{Sign, at_the_right, sign, small, weak},
 };
 
 /// Width of the strip's buttons.
@@ -39,10 +38,6 @@ impl Alarms {
     pub fn strip_ui(&mut self, ui: &mut Ui, signs: &Signs, loop_s: Option<f64>, sounds: bool) {
         let time_s = ui.input(|input| input.time);
         self.log.update(&judge(signs), &Moment::now(loop_s, time_s));
-        if keys::acknowledge_pressed(ui.ctx()) {
-            self.log.acknowledge();
-        }
-        self.list ^= keys::alarms_pressed(ui.ctx());
         let calls = self.log.calls();
         self.sound.step(calls.filter(|_| sounds), time_s);
         let live = self.log.live();
@@ -63,14 +58,14 @@ impl Alarms {
         Panel::top("alarms").resizable(false).frame(frame).show(ui, |ui| {
             ui.horizontal(|ui| {
                 opened |= words_ui(ui, &first, others, colour);
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    let all = Button::new(text::alarms::SHOW_ALL).min_size(BUTTON);
-                    opened |= ui.add(all).on_hover_text(text::alarms::SHOW_ALL_HOVER).clicked();
+                at_the_right(ui, |ui| {
                     let seen = ui.add_enabled(unseen, Button::new(text::alarms::ACKNOWLEDGE).min_size(BUTTON));
                     let seen = seen
                         .on_hover_text(text::alarms::ACKNOWLEDGE_HOVER)
                         .on_disabled_hover_text(text::alarms::ACKNOWLEDGED_HOVER);
                     acknowledged = seen.clicked();
+                    let all = Button::new(text::alarms::SHOW_ALL).min_size(BUTTON);
+                    opened |= ui.add(all).on_hover_text(text::alarms::SHOW_ALL_HOVER).clicked();
                 });
             });
         });

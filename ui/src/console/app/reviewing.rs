@@ -9,7 +9,6 @@ use egui::{CentralPanel, Stroke, StrokeKind, Ui};
 use super::ConsoleApp;
 use crate::console::{
     door::Door,
-    keys,
     past::{FRAME, Past, bar_ui, both_ui, head_ui},
     roles::role_ui,
     text, theme,
@@ -68,18 +67,8 @@ impl ConsoleApp {
         self.list.is_open = false;
     }
 
-    /// Whether the operator does something at the machine with the help of the screen: then the past is not shown.
-    pub(super) fn is_at_work(&self) -> bool {
-        self.wizards.open.is_some() || self.checking.is_open() || self.starting.is_some() || self.has_study()
-    }
-
-    pub(super) fn obey_past_keys(&mut self, ctx: &egui::Context, dt_s: f64) {
-        if keys::sessions_pressed(ctx) && self.past.is_none() && !self.is_at_work() {
-            self.toggle_list();
-        }
-        if keys::live_pressed(ctx) {
-            self.close_past();
-        }
+    /// The past is played on by this time.
+    pub(super) fn go_on_in_past(&mut self, dt_s: f64) {
         if let Some(past) = &mut self.past {
             past.step(dt_s, self.live.state().permits().drives);
         }

@@ -44,6 +44,16 @@ impl ConsoleApp {
         self.panels.scene.extras
     }
 
+    /// Interval of the traces, s, counted back from now.
+    pub const fn traces_s(&self) -> (f64, f64) {
+        self.panels.forces.view().view_s
+    }
+
+    /// Shows so many seconds in the traces, for tests.
+    pub fn show_traces(&mut self, seconds: f64) {
+        self.panels.forces.show_last(seconds);
+    }
+
     /// Marks set by the operator, s on the loop's clock.
     pub fn marks_s(&self) -> impl Iterator<Item = f64> {
         self.live.marks_s.iter().copied()

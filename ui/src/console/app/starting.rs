@@ -13,7 +13,7 @@ use nima_world::scene::Scene;
 use super::ConsoleApp;
 use crate::{
     console::{
-        chain, keys,
+        chain,
         reader::Reader,
         roles::Role,
         start::{Choice, Now, Way, drawn_anew},
@@ -88,18 +88,6 @@ impl ConsoleApp {
     /// What runs: a rig and a scene.
     pub const fn running(&self) -> &Choice {
         &self.running
-    }
-
-    /// Opens and closes the start page by its key.
-    pub(super) fn obey_start_key(&mut self, ctx: &egui::Context) {
-        let asks = self.wizards.open.is_some() || self.checking.is_open() || self.past.is_some() || self.has_study();
-        if keys::start_pressed(ctx) && !asks && self.starting.is_none() {
-            if self.start.is_open {
-                self.start.is_open = false;
-            } else {
-                self.open_start();
-            }
-        }
     }
 
     /// Over a view, a newcomer chooses between what runs, the demonstration and a rig of their own.

@@ -2,7 +2,7 @@
 //!
 //! The console's own recorder rests as long: a session holds the mode. What a study wants to keep it keeps itself, encrypted.
 
-use egui::{Context, Ui};
+use egui::Ui;
 use nima_machine::{config::RigConfig, messages::LoopState};
 use nima_recording::store::utc_now;
 use nima_world::scene::Scene;
@@ -11,8 +11,6 @@ use super::ConsoleApp;
 use crate::{
     console::{
         chain,
-        help::Help,
-        keys,
         start::{Choice, is_real},
         studies::{Room, Trial, Wanted, Wish},
         text,
@@ -29,16 +27,6 @@ impl ConsoleApp {
     /// Whether a study is open.
     pub(super) const fn has_study(&self) -> bool {
         self.studies.has_study()
-    }
-
-    pub(super) fn obey_studies_key(&mut self, ctx: &Context) {
-        if keys::studies_pressed(ctx) && !self.has_study() && self.past.is_none() && !self.is_at_work() {
-            if self.studies.is_shown {
-                self.studies.is_shown = false;
-            } else {
-                self.open_studies();
-            }
-        }
     }
 
     /// Shows the page. What the screen does to the machine by itself, a demonstration or leading by mouse, ends before.
@@ -144,7 +132,7 @@ impl ConsoleApp {
         let trial = Trial::new(participant, running, task, wanted.hand, study.plan().trials_of_each());
         self.panels.scene.be_of_participant(true, trial.is_by_mouse());
         self.studies.trial = Some(trial);
-        (self.help, self.top_bar.alarms.list) = (Help::default(), false);
+        self.clear_for_trial();
         // End the old loop first: a rig must have one controller only.
         drop(self.door.take());
         self.sessions.end();

@@ -2,29 +2,25 @@
 
 use egui::Ui;
 
-use super::ConsoleApp;
+use super::{ConsoleApp, reaching::Page};
 use crate::console::roles::{Wishes, role_ui};
 
 impl ConsoleApp {
     pub(super) fn page_layout(&mut self, ui: &mut Ui) {
-        if self.in_trial() {
-            self.trial_layout(ui);
-        } else if self.past.is_some() {
-            self.past_layout(ui);
-        } else if self.list.is_open {
-            self.list_layout(ui);
-        } else if self.checking.is_open() {
-            self.check_layout(ui);
-        } else if self.listing.is_open() {
-            self.listing_layout(ui);
-        } else if self.wizards.open.is_some() {
-            self.wizard_layout(ui);
-        } else if self.start.is_open {
-            self.start_layout(ui);
-        } else if self.studies.is_shown {
-            self.studies_layout(ui);
-        } else {
-            self.monitor_layout(ui);
+        self.panels.scene.is_seen = false;
+        if let Some(past) = &mut self.past {
+            past.panels.scene.is_seen = false;
+        }
+        match self.page() {
+            Page::Trial => self.trial_layout(ui),
+            Page::Past => self.past_layout(ui),
+            Page::List => self.list_layout(ui),
+            Page::Check => self.check_layout(ui),
+            Page::Listing => self.listing_layout(ui),
+            Page::Wizard => self.wizard_layout(ui),
+            Page::Start => self.start_layout(ui),
+            Page::Studies => self.studies_layout(ui),
+            Page::Monitor => self.monitor_layout(ui),
         }
     }
 

@@ -9,7 +9,7 @@ mod panel;
 
 use crate::console::text;
 use egui::{
-    Align, Button, Color32, Context, Frame, Layout as Flow, Margin, Response, RichText, ScrollArea, Stroke, Ui,
+    Align, Button, Color32, Context, Frame, Layout as Flow, Margin, Rect, Response, RichText, ScrollArea, Stroke, Ui,
     UiBuilder, Vec2, Visuals, WidgetInfo, WidgetText, vec2,
 };
 use egui_tiles::{
@@ -26,6 +26,8 @@ const GAP: f32 = 6.0;
 /// Space between a panel's edge and its content.
 const PADDING: i8 = 10;
 const TITLE: f32 = 13.5;
+/// Size of the button that closes a panel.
+const CLOSE: Vec2 = vec2(30.0, 26.0);
 
 /// State of the tiles.
 #[derive(Debug, Default)]
@@ -53,7 +55,8 @@ impl Desk {
             ui.centered_and_justified(|ui| ui.label(weak(text::desk::ALL_CLOSED)));
             return;
         }
-        let mut tiles = Contents { draw: contents, closed: None, moved: &mut self.moved, turned: &mut self.turned };
+        let mut tiles =
+            Contents { draw: contents, closed: None, button: None, moved: &mut self.moved, turned: &mut self.turned };
         tree.ui(&mut tiles, ui);
         if let Some(panel) = tiles.closed {
             layout.toggle(panel);
@@ -76,12 +79,17 @@ impl Desk {
 struct Contents<'a> {
     draw: &'a mut dyn FnMut(&mut Ui, Panel),
     closed: Option<Panel>,
+    /// Where the button goes that closes this panel, which is drawn after its title: so the keyboard reaches it.
+    button: Option<(Rect, Panel)>,
     moved: &'a mut bool,
     turned: &'a mut bool,
 }
 
 impl Behavior<Panel> for Contents<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, panel: &mut Panel) -> UiResponse {
+        if let Some((place, _)) = self.button.take_if(|(_, of)| *of == *panel) {
+            self.close_ui(ui, place, *panel);
+        }
         let rect = ui.available_rect_before_wrap();
         let least = panel.least();
         if panel.fills() {
@@ -120,13 +128,8 @@ impl Behavior<Panel> for Contents<'_> {
 
     fn top_bar_right_ui(&mut self, tiles: &Tiles<Panel>, ui: &mut Ui, _tile: TileId, tabs: &Tabs, _scroll: &mut f32) {
         let Some(panel) = tabs.active.and_then(|active| tiles.get_pane(&active)) else { return };
-        let button = Button::new(RichText::new("\u{d7}").font(theme::regular(16.0))).frame_when_inactive(false);
-        let button = ui.add(button.min_size(vec2(22.0, 22.0)));
-        let name = text::desk::close(panel.title());
-        button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &name));
-        if button.on_hover_text(text::desk::close_meaning(&name)).clicked() {
-            self.closed = Some(*panel);
-        }
+        let (place, _) = ui.allocate_exact_size(CLOSE, egui::Sense::hover());
+        self.button = Some((place, *panel));
     }
 
     fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
@@ -188,6 +191,21 @@ impl Behavior<Panel> for Contents<'_> {
             EditAction::TileResized | EditAction::TileDropped => *self.moved = true,
             EditAction::TabSelected => *self.turned = true,
             EditAction::TileDragged => {}
+        }
+    }
+}
+
+impl Contents<'_> {
+    /// The button that closes a panel, at its place in the bar of the tabs.
+    fn close_ui(&mut self, ui: &mut Ui, place: Rect, panel: Panel) {
+        let mut bar = ui.new_child(UiBuilder::new().max_rect(place).id_salt("close"));
+        bar.set_clip_rect(place);
+        let button = Button::new(RichText::new("\u{d7}").font(theme::regular(16.0))).frame_when_inactive(false);
+        let button = bar.add(button.min_size(CLOSE));
+        let name = text::desk::close(panel.title());
+        button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &name));
+        if button.on_hover_text(text::desk::close_meaning(&name)).clicked() {
+            self.closed = Some(panel);
         }
     }
 }

@@ -161,6 +161,11 @@ impl Eyes {
         self.wanted.is_some()
     }
 
+    /// The picture is of two lenses.
+    pub(in crate::console) const fn has_two_lenses(&self) -> bool {
+        self.view.is_some()
+    }
+
     /// Pictures wake the window often enough for everything else that moves.
     pub(in crate::console) fn wakes(&self) -> bool {
         self.rate_hz >= WAKES_HZ
@@ -434,7 +439,7 @@ fn plate(painter: &Painter, places: &[(egui::Pos2, Align2)], tips: &[egui::Pos2]
     let mut rects = rects.collect::<Vec<_>>().into_iter();
     let Some(first) = rects.clone().find(|(rect, _)| is_clear(rect)).or_else(|| rects.next()) else { return };
     let (rect, align) = first;
-    painter.rect_filled(rect, theme::CORNER, Color32::from_black_alpha(185));
+    painter.rect_filled(rect, theme::CORNER, theme::VEIL);
     let mut top = rect.top() + 6.0;
     for (line, colour) in lines {
         let inner = rect.shrink2(vec2(10.0, 0.0));

@@ -31,7 +31,7 @@ const CONTACT: f32 = 15.0;
 const CORNER: f32 = 6.0;
 /// Distance of the sign of a tip beyond the view from its edge, points.
 const EDGE: f32 = 26.0;
-const SHADE: Color32 = Color32::from_black_alpha(200);
+const SHADE: Color32 = theme::VEIL;
 
 /// A picture, and what is drawn into it.
 pub(super) struct Seen<'a> {

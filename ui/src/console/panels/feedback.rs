@@ -11,7 +11,12 @@ use nima_machine::messages::Command;
 
 use super::stable_gain::stable_gain_ui;
 use crate::{
-    console::{live::Live, outbox::Outbox, text, theme, widgets::small},
+    console::{
+        live::Live,
+        outbox::Outbox,
+        text, theme,
+        widgets::{at_the_right, small},
+    },
     words::{mode_meaning, mode_name},
 };
 
@@ -169,7 +174,10 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
     ui.horizontal(|ui| {
         ui.label(RichText::new(text::feedback::GAIN).font(theme::strong(17.0)))
             .on_hover_text(text::feedback::GAIN_HOVER);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_the_right(ui, |ui| {
+            ui.label(RichText::new(format!("{shown:.2}")).font(theme::strong(38.0)))
+                .on_hover_text(text::feedback::GAIN_HOVER);
+            ui.add_space(8.0);
             let mut step = |ui: &mut Ui, text: &str, name: &str, by: f64| {
                 let button =
                     ui.add(Button::new(RichText::new(text).font(theme::strong(22.0))).min_size(vec2(48.0, 48.0)));
@@ -178,11 +186,8 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
                     wanted = Some(((shown + by) * 10.0).round() / 10.0);
                 }
             };
-            step(ui, "+", text::feedback::RAISE_GAIN, 0.1);
             step(ui, "-", text::feedback::LOWER_GAIN, -0.1);
-            ui.add_space(8.0);
-            ui.label(RichText::new(format!("{shown:.2}")).font(theme::strong(38.0)))
-                .on_hover_text(text::feedback::GAIN_HOVER);
+            step(ui, "+", text::feedback::RAISE_GAIN, 0.1);
         });
     });
     let mut value = shown.min(1.0);

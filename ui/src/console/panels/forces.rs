@@ -3,7 +3,7 @@
 //! The view is a time interval counted back from now (or from the moment of the pause). It is moved by dragging, zoomed
 //! with the wheel and reset by a double click, even while data arrive.
 
-use egui::{Align, Align2, Button, Color32, Layout, Rect, RichText, Sense, Ui, pos2, vec2};
+use egui::{Align2, Button, Color32, Rect, RichText, Sense, Ui, pos2, vec2};
 use egui_plot::{
     AxisHints, HoverPosition, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotResponse, Text, VLine,
 };
@@ -16,7 +16,7 @@ use crate::console::{
     readings::Twist,
     scene3d::side_name,
     text, theme,
-    widgets::{force_sign, small, still},
+    widgets::{at_the_right, describe, force_sign, small, still},
 };
 
 const DEFAULT_VIEW_S: (f64, f64) = (-10.0, 0.0);
@@ -60,7 +60,34 @@ impl Default for ForcesState {
     }
 }
 
+/// Which part of the traces is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::console) struct ForcesView {
+    pub(in crate::console) view_s: (f64, f64),
+    pub(in crate::console) side: Side,
+}
+
 impl ForcesState {
+    /// Which part of the traces is shown.
+    pub(in crate::console) const fn view(&self) -> ForcesView {
+        ForcesView { view_s: self.view_s, side: self.side }
+    }
+
+    /// Shows this part of the traces.
+    pub(in crate::console) const fn show(&mut self, ForcesView { view_s, side }: ForcesView) {
+        (self.view_s, self.side) = (view_s, side);
+    }
+
+    /// Shows the last ten seconds.
+    pub(in crate::console) const fn show_last_ten(&mut self) {
+        self.view_s = DEFAULT_VIEW_S;
+    }
+
+    /// Holds the picture, or goes on.
+    pub(in crate::console) fn toggle_pause(&mut self, live: &Live) {
+        self.paused_at_s = if self.is_paused() { None } else { Some(self.history(live).latest_s()) };
+    }
+
     /// Selects the side whose forces are shown.
     pub fn of(side: Side) -> Self {
         Self { side, ..Self::default() }
@@ -137,6 +164,9 @@ pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[
         state.ranges_n[axis] = range_n(history.extent(&[axis, axis + 3], (from_s, to_s)), state.ranges_n[axis]);
         let height = if last { height + TIME_AXIS } else { height };
         let response = plot_ui(ui, live, state, (axis, last, axes.len() == 1), height, cursor_s);
+        describe(ui, &response.response, &text::forces::plot(AXES[axis], state.side.word()), || {
+            summary(history, axis, (from_s, to_s))
+        });
         if last {
             let point_s = response.transform.dvalue_dpos()[0] / f64::from(ui.pixels_per_point());
             state.step_s = if point_s.is_finite() { point_s.max(live.least_step_s()) } else { 0.0 };
@@ -151,6 +181,16 @@ pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[
     if state.cursor_s != cursor_s {
         ui.ctx().request_repaint();
     }
+}
+
+/// The forces along an axis at the end of this time, and the largest in it.
+fn summary(history: &History, axis: usize, (from_s, to_s): (f64, f64)) -> String {
+    let both = [axis, axis + 3].map(|channel| {
+        let now_n = history.value_at(channel, to_s.min(history.latest_s())).unwrap_or_default();
+        let most_n = history.extent(&[channel], (from_s, to_s)).map_or(0.0, |(low, high)| high.max(-low));
+        (signed(now_n), most_n)
+    });
+    text::forces::summary(both, to_s - from_s)
 }
 
 /// Values at the cursor of another plot, in the corner of this one.
@@ -192,38 +232,40 @@ fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
             ui.label(small(name)).on_hover_text(text::forces::HOVER);
             ui.add_space(6.0);
         }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let (name, meaning) = match state.paused_at_s {
-                None => (text::forces::PAUSE, text::forces::PAUSE_HOVER),
-                Some(_) => (text::forces::GO_ON, text::forces::GO_ON_HOVER),
-            };
-            let size = vec2(76.0, 26.0);
-            let paused = state.paused_at_s.is_some();
-            if ui.add(Button::new(name).selected(paused).min_size(size)).on_hover_text(meaning).clicked() {
-                state.paused_at_s = if paused { None } else { Some(state.history(live).latest_s()) };
-            }
-            let mark = ui.add_enabled(!live.is_shown_only(), Button::new(text::forces::MARK).min_size(size));
-            if mark.on_hover_text(text::forces::MARK_HOVER).clicked() {
-                live.mark();
-            }
-            if live.is_bimanual() {
-                for side in [Side::Right, Side::Left] {
-                    let button = Button::selectable(state.side == side, side_name(side)).frame_when_inactive(true);
-                    let meaning = text::forces::forces_of(side.word());
-                    if ui.add(button.min_size(vec2(52.0, 26.0))).on_hover_text(meaning).clicked() {
-                        state.side = side;
-                    }
-                }
-                ui.add_space(6.0);
-            }
-            let reset = ui
-                .add(Button::new(text::forces::LAST_TEN_SECONDS).min_size(size))
-                .on_hover_text(text::forces::LAST_TEN_SECONDS_HOVER);
-            if reset.clicked() {
-                state.view_s = DEFAULT_VIEW_S;
-            }
-        });
+        at_the_right(ui, |ui| switches_ui(ui, live, state));
     });
+}
+
+/// What is shown of the traces.
+fn switches_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
+    let size = vec2(76.0, 26.0);
+    let reset = ui.add(Button::new(text::forces::LAST_TEN_SECONDS).min_size(size));
+    if reset.on_hover_text(text::forces::LAST_TEN_SECONDS_HOVER).clicked() {
+        state.show_last_ten();
+    }
+    if live.is_bimanual() {
+        ui.add_space(6.0);
+        for side in [Side::Left, Side::Right] {
+            let button = Button::selectable(state.side == side, side_name(side)).frame_when_inactive(true);
+            let meaning = text::forces::forces_of(side.word());
+            if ui.add(button.min_size(vec2(52.0, 26.0))).on_hover_text(meaning).clicked() {
+                state.side = side;
+            }
+        }
+    }
+    let mark = ui.add_enabled(!live.is_shown_only(), Button::new(text::forces::MARK).min_size(size));
+    if mark.on_hover_text(text::forces::MARK_HOVER).clicked() {
+        live.mark();
+    }
+    let paused = state.is_paused();
+    let (name, meaning) = if paused {
+        (text::forces::GO_ON, text::forces::GO_ON_HOVER)
+    } else {
+        (text::forces::PAUSE, text::forces::PAUSE_HOVER)
+    };
+    if ui.add(Button::new(name).selected(paused).min_size(size)).on_hover_text(meaning).clicked() {
+        state.toggle_pause(live);
+    }
 }
 
 fn plot_ui(

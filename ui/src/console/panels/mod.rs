@@ -25,6 +25,7 @@ pub use degrees::degrees_ui;
 pub use devices::{DevicesState, devices_ui};
 pub use feedback::{FeedbackState, calm_gain_ui, feedback_ui};
 pub use force_space::{ForceSpaceState, force_space_ui};
+pub(super) use forces::ForcesView;
 pub use forces::{ForcesState, forces_ui, gauge};
 pub use gates::{GatesState, gates_ui, why_no_force};
 pub use horizon::horizon_ui;

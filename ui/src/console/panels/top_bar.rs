@@ -1,6 +1,6 @@
 //! The top bar, always visible: identity, state of the loop, problems, and the stop button.
 
-use egui::{Align, Align2, Area, Button, Id, Label, Layout, Order, RichText, Sense, Stroke, Ui, vec2};
+use egui::{Align, Align2, Area, Button, Id, Label, Layout, Order, Rect, RichText, Sense, Stroke, Ui, vec2};
 use nima_machine::{
     messages::{Command, LoopState, Refusal},
     ready::Ask,
@@ -10,7 +10,7 @@ use nima_machine::{
 use crate::{
     console::{
         alarms::{Missing, strip::Alarms},
-        help::Help,
+        commands::{Action, Entry},
         live::{Live, Refused},
         menu::menu_ui,
         outbox::Outbox,
@@ -42,28 +42,28 @@ pub struct TopBarState {
     pub(in crate::console) asked: Option<Ask>,
     /// The session that is being recorded.
     pub(in crate::console) recorded: Option<Shown>,
-    /// The button that keeps it was pressed.
-    pub(in crate::console) keeps: bool,
-    /// The list of recorded sessions is wanted.
-    pub(in crate::console) wants_sessions: bool,
+    /// The command of the button or the entry of the menu that was pressed.
+    pub(in crate::console) wanted: Option<Action>,
+    /// The next step is wanted from elsewhere, as if its button were pressed.
+    pub(in crate::console) wants_step: Option<Action>,
+    /// Something can be taken back, and made again.
+    pub(in crate::console) can_undo: [bool; 2],
     /// The past is on the screen: nothing but stop acts on the machine.
     pub(in crate::console) past: bool,
     /// Whose trial of a study runs: then nothing but state, stop and engaging is offered.
     pub(in crate::console) participant: Option<String>,
 }
 
-/// The bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged. Returns true when the start
-/// page is wanted.
+/// The bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged.
 pub fn top_bar_ui(
     ui: &mut Ui,
-    live: &mut Live,
+    live: &Live,
     state: &mut TopBarState,
     outbox: &mut Outbox,
     settings: &mut Settings,
-    help: &mut Help,
     calibrating: bool,
-) -> bool {
-    let mut wants_start = false;
+) {
+    let wants_step = state.wants_step.take();
     let time_s = ui.input(|input| input.time);
     let now = live.state();
     let since_s = match state.seen {
@@ -78,32 +78,26 @@ pub fn top_bar_ui(
         }
     };
     ui.horizontal_centered(|ui| {
-        wants_start = identity_ui(ui, live, settings, help, state, calibrating);
+        identity_ui(ui, live, settings, state, calibrating);
         ui.add_space(10.0);
         state_ui(ui, live, now);
         ui.add_space(10.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            stop_ui(ui, now, state.asked == Some(Ask::PressStop), outbox);
+            let (place, _) = ui.allocate_exact_size(theme::STOP_SIZE, Sense::hover());
             let blocked = state.past || calibrating && now == LoopState::Idle;
             let next = state.asked == Some(Ask::Release);
-            step_ui(ui, now, [since_s >= STEP_WAITS_S && !blocked, next], state.past, outbox);
+            let ready = since_s >= STEP_WAITS_S && !blocked;
+            step_ui(ui, now, Step { ready, next, wanted: wants_step, past: state.past }, outbox);
+            // After the step, which is at its left: in the order in which they are read.
+            stop_ui(ui, place, now, state.asked == Some(Ask::PressStop), outbox);
             ui.add_space(6.0);
             refusal_ui(ui, live);
         });
     });
-    wants_start
 }
 
-/// Name of the program, and below it the role switch, the button of the start page, and the menu. Returns true when that is pressed.
-fn identity_ui(
-    ui: &mut Ui,
-    live: &mut Live,
-    settings: &mut Settings,
-    help: &mut Help,
-    state: &mut TopBarState,
-    calibrating: bool,
-) -> bool {
-    let mut wants_start = false;
+/// Name of the program, and below it the role switch, the button of the start page, and the menu.
+fn identity_ui(ui: &mut Ui, live: &Live, settings: &mut Settings, state: &mut TopBarState, calibrating: bool) {
     ui.vertical(|ui| {
         ui.add_space(8.0);
         ui.spacing_mut().item_spacing.y = 4.0;
@@ -121,15 +115,16 @@ fn identity_ui(
             let why = if state.past { text::past::BLOCKED } else { text::start::OPEN_DISABLED_HOVER };
             let free = !calibrating && !state.past;
             let start = ui.add_enabled(free, start).on_hover_text(text::start::OPEN_HOVER);
-            wants_start = start.on_disabled_hover_text(why).clicked();
-            // The machine's traces are not on the screen while the past is.
-            if menu_ui(ui, settings, help, &mut state.alarms) && !state.past {
-                live.mark();
-            }
+            let wants_start = start.on_disabled_hover_text(why).clicked();
+            let of_menu = menu_ui(ui, settings, &mut state.alarms, state.can_undo);
             let sessions = Button::new(text::past::SESSIONS).min_size(vec2(72.0, 30.0));
             let sessions = ui.add_enabled(free, sessions).on_hover_text(text::past::SESSIONS_HOVER);
-            state.wants_sessions |= sessions.on_disabled_hover_text(why).clicked();
-            recorded_ui(ui, state);
+            let wants_sessions = sessions.on_disabled_hover_text(why).clicked();
+            let keeps = recorded_ui(ui, state);
+            state.wanted = of_menu
+                .or(wants_start.then_some(Action::Rig))
+                .or(wants_sessions.then_some(Action::Sessions))
+                .or(keeps.then_some(Action::Keep));
             if ui.ctx().content_rect().width() >= SCENE_FROM {
                 ui.add_space(4.0);
                 ui.label(weak(&live.scene.name))
@@ -137,19 +132,18 @@ fn identity_ui(
             }
         });
     });
-    wants_start
 }
 
-/// How long the session has been recorded, on a button that keeps it.
-fn recorded_ui(ui: &mut Ui, state: &mut TopBarState) {
-    let Some(shown) = &state.recorded else { return };
+/// How long the session has been recorded, on a button that keeps it; true when it is pressed.
+fn recorded_ui(ui: &mut Ui, state: &TopBarState) -> bool {
+    let Some(shown) = &state.recorded else { return false };
     let words = text::sessions::recorded_for(shown.seconds, shown.kept);
     let button = Button::selectable(shown.kept, words).frame_when_inactive(true);
     // Wide enough for hours, so that what stands beside it never moves.
     let response = ui.add(button.min_size(vec2(104.0, 30.0)));
     let name = if shown.kept { text::sessions::NAME_KEPT } else { text::sessions::NAME_KEEP };
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, shown.kept, name));
-    state.keeps |= response.on_hover_text(text::sessions::hover(shown)).clicked();
+    response.on_hover_text(text::sessions::hover(shown)).clicked()
 }
 
 /// The state of the arm that needs more attention; where the other arm is in another state, both, one below the other: an idle
@@ -190,7 +184,7 @@ fn state_lines(live: &Live, state: LoopState) -> Vec<String> {
 }
 
 /// Always in the same place, above every window, menu and tooltip, and always enabled: pressing it twice does no harm.
-fn stop_ui(ui: &mut Ui, state: LoopState, next: bool, outbox: &mut Outbox) {
+fn stop_ui(ui: &Ui, place: Rect, state: LoopState, next: bool, outbox: &mut Outbox) {
     let latched = matches!(state, LoopState::Stopped | LoopState::Faulted(_));
     let (fill, ink) = if latched {
         (theme::now().control, theme::now().text_weak)
@@ -201,7 +195,6 @@ fn stop_ui(ui: &mut Ui, state: LoopState, next: bool, outbox: &mut Outbox) {
     if next {
         button = button.stroke(Stroke::new(6.0, theme::now().primary));
     }
-    let (place, _) = ui.allocate_exact_size(theme::STOP_SIZE, Sense::hover());
     let area = Area::new(Id::unique("stop")).order(Order::TOP).fixed_pos(place.min).default_size(place.size());
     let response =
         area.movable(false).constrain(false).fade_in(false).show(ui.ctx(), |ui| stop_button(ui, button, ink)).inner;
@@ -220,24 +213,36 @@ fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Res
     response
 }
 
+/// How it stands with the next step.
+#[derive(Clone, Copy)]
+struct Step {
+    /// Its button can be pressed.
+    ready: bool,
+    /// Its button stands out.
+    next: bool,
+    /// What is wanted from elsewhere.
+    wanted: Option<Action>,
+    /// The past is on the screen.
+    past: bool,
+}
+
 /// The button for the next step, beside the stop button and never below it.
-fn step_ui(ui: &mut Ui, state: LoopState, [ready, next]: [bool; 2], past: bool, outbox: &mut Outbox) {
-    let (name, command, meaning) = match state {
-        LoopState::Idle => (text::top_bar::ENGAGE, Command::Engage, text::top_bar::ENGAGE_HOVER),
-        LoopState::Stopped => (text::top_bar::RELEASE_STOP, Command::ReleaseStop, text::top_bar::RELEASE_STOP_HOVER),
-        LoopState::Faulted(_) => {
-            (text::top_bar::RELEASE_STOP, Command::ReleaseStop, text::top_bar::RELEASE_FAULT_HOVER)
-        }
+fn step_ui(ui: &mut Ui, state: LoopState, Step { ready, next, wanted, past }: Step, outbox: &mut Outbox) {
+    let (action, command, meaning) = match state {
+        LoopState::Idle => (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER),
+        LoopState::Stopped => (Action::Release, Command::ReleaseStop, text::top_bar::RELEASE_STOP_HOVER),
+        LoopState::Faulted(_) => (Action::Release, Command::ReleaseStop, text::top_bar::RELEASE_FAULT_HOVER),
         LoopState::Engaged | LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => {
             ui.add_space(theme::STOP_SIZE.x + 8.0);
             return;
         }
     };
+    let name = Entry::of(action).map_or("", |entry| entry.title.as_str());
     let text = RichText::new(name).font(theme::strong(17.0));
     let button = next_button(text, next).min_size(theme::STOP_SIZE).corner_radius(theme::CORNER);
     let response = ui.add_enabled(ready, button).on_hover_text(meaning);
     let response = if past { response.on_disabled_hover_text(text::past::BLOCKED) } else { response };
-    if response.clicked() {
+    if response.clicked() || ready && wanted == Some(action) {
         outbox.push(command);
     }
 }

@@ -1,8 +1,8 @@
 //! The frame around the past: a head that says which moment is on the screen, and the time line below every view.
 
 use egui::{
-    Align, Button, Color32, FontId, Frame, Key, Label, Layout, Margin, Modifiers, Panel, Rect, Response, RichText,
-    Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
+    Align, Button, Color32, FontId, Frame, Label, Layout, Margin, Panel, Rect, Response, RichText, Sense, Stroke, Ui,
+    WidgetInfo, pos2, vec2,
 };
 use nima_machine::messages::LoopState;
 use nima_session::file::LineKind;
@@ -27,9 +27,6 @@ const MARKS: f32 = 10.0;
 const BUTTON: f32 = 30.0;
 /// A mark is under the pointer within this distance, points.
 const NEAR: f32 = 5.0;
-/// A step by a key, s.
-const STEP_S: f64 = 1.0;
-const FINE_STEP_S: f64 = 0.01;
 /// Width of the frame.
 pub(crate) const FRAME: f32 = 4.0;
 
@@ -99,32 +96,14 @@ fn extent(past: &Past) -> &'static str {
     }
 }
 
-/// The time line and its buttons. Obeys the keys of the past.
+/// The time line and its buttons.
 pub(crate) fn bar_ui(ui: &mut Ui, past: &mut Past) {
-    obey_keys(ui, past);
     let frame = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 6));
     Panel::bottom("timeline").exact_size(BAR).resizable(false).frame(frame).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 4.0;
         ui.horizontal(|ui| buttons_ui(ui, past));
         strip_ui(ui, past);
     });
-}
-
-fn obey_keys(ui: &Ui, past: &mut Past) {
-    if ui.ctx().text_edit_focused() {
-        return;
-    }
-    let pressed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
-    if pressed(Modifiers::NONE, Key::P) {
-        past.toggle();
-    }
-    for (key, sign) in [(Key::ArrowLeft, -1.0), (Key::ArrowRight, 1.0)] {
-        for (modifiers, step_s) in [(Modifiers::SHIFT, FINE_STEP_S), (Modifiers::NONE, STEP_S)] {
-            if pressed(modifiers, key) {
-                past.show(past.shown_s() + sign * step_s);
-            }
-        }
-    }
 }
 
 fn buttons_ui(ui: &mut Ui, past: &mut Past) {

@@ -60,6 +60,48 @@ impl Default for Extras {
     }
 }
 
+/// A switch of the menu.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Switch {
+    /// [`Extras::ceiling`].
+    Ceiling,
+    /// [`Extras::frames`].
+    Frames,
+    /// [`Extras::shadows`].
+    Shadows,
+    /// [`Extras::depth`].
+    Depth,
+    /// [`Extras::round`].
+    Round,
+}
+
+impl Switch {
+    /// All of them, in the order of the menu.
+    pub const ALL: [Self; 5] = [Self::Ceiling, Self::Frames, Self::Shadows, Self::Depth, Self::Round];
+
+    /// Its label.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ceiling => CEILING,
+            Self::Frames => FRAMES,
+            Self::Shadows => SHADOWS,
+            Self::Depth => DEPTH,
+            Self::Round => ROUND,
+        }
+    }
+
+    /// Its hover text.
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::Ceiling => CEILING_MEANING,
+            Self::Frames => FRAMES_MEANING,
+            Self::Shadows => text::field::SHADOWS_HOVER,
+            Self::Depth => text::field::DEPTH_HOVER,
+            Self::Round => text::field::ROUND_HOVER,
+        }
+    }
+}
+
 /// Origin (m) and axes of a frame, in the workspace.
 #[derive(Clone, Debug)]
 struct Axes {
@@ -69,6 +111,17 @@ struct Axes {
 }
 
 impl Extras {
+    /// What this switch switches.
+    pub(in crate::console) const fn of(&mut self, switch: Switch) -> &mut bool {
+        match switch {
+            Switch::Ceiling => &mut self.ceiling,
+            Switch::Frames => &mut self.frames,
+            Switch::Shadows => &mut self.shadows,
+            Switch::Depth => &mut self.depth,
+            Switch::Round => &mut self.round,
+        }
+    }
+
     /// The menu, beside the switch that leads the instrument.
     pub(super) fn ui(&mut self, ui: &mut Ui, rect: Rect) {
         let place = Rect::from_min_size(rect.right_bottom() - vec2(330.0, 46.0), vec2(72.0, 34.0)).intersect(rect);
@@ -80,11 +133,9 @@ impl Extras {
             let menu = MenuButton::from_button(button).config(config);
             let (response, _) = menu.ui(ui, |ui| {
                 ui.set_min_width(200.0);
-                ui.checkbox(&mut self.ceiling, CEILING).on_hover_text(CEILING_MEANING);
-                ui.checkbox(&mut self.frames, FRAMES).on_hover_text(FRAMES_MEANING);
-                ui.checkbox(&mut self.shadows, SHADOWS).on_hover_text(text::field::SHADOWS_HOVER);
-                ui.checkbox(&mut self.depth, DEPTH).on_hover_text(text::field::DEPTH_HOVER);
-                ui.checkbox(&mut self.round, ROUND).on_hover_text(text::field::ROUND_HOVER);
+                for switch in Switch::ALL {
+                    ui.checkbox(self.of(switch), switch.name()).on_hover_text(switch.meaning());
+                }
             });
             response.on_hover_text(SHOW_MEANING);
         });

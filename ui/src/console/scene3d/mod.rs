@@ -48,6 +48,7 @@ pub enum Look {
 
 /// Camera and GPU objects of the view.
 #[derive(Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct SceneView {
     /// Draw with antialiasing.
     pub smooth: bool,
@@ -59,6 +60,8 @@ pub struct SceneView {
     pub arrows: bool,
     /// Optional objects.
     pub extras: Extras,
+    /// It was drawn in this frame.
+    pub(in crate::console) is_seen: bool,
     camera: Camera,
     /// Name of the scene for which the cameras were set.
     set_for: Option<String>,
@@ -91,6 +94,7 @@ impl Default for SceneView {
             figures: true,
             arrows: true,
             extras: Extras::default(),
+            is_seen: false,
             camera: Camera::default(),
             set_for: None,
             starts_m: [None; SIDES],
@@ -151,6 +155,7 @@ impl SceneView {
 
 /// Draws the view over the available space.
 pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Outbox) {
+    view.is_seen = true;
     if view.set_for.as_ref() != Some(&live.scene.name) {
         view.set_for = Some(live.scene.name.clone());
         view.camera = Camera::of(&live.scene);
@@ -163,12 +168,12 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
     let camera = view.camera(&live.scene);
     // Not in a surgeon's view: the surgeon leads with the handle.
     let offered = view.figures || view.lead.is_on() || view.lead.is_held;
+    if view.figures {
+        view.extras.ui(ui, rect);
+    }
     let leading = offered && view.lead.ui(ui, rect, &response, live, &camera, outbox);
     if view.look == Look::Free {
         turn(ui, live, view, &response, leading);
-    }
-    if view.figures {
-        view.extras.ui(ui, rect);
     }
     let camera = view.camera(&live.scene);
     let arms: Vec<Arm> = live.sides().filter_map(|side| arm(live, side, view)).collect();
@@ -357,9 +362,9 @@ pub const fn side_name(side: Side) -> &'static str {
 
 /// Text with a dark outline, legible on any background.
 fn label(painter: &Painter, place: Pos2, align: Align2, text: &str, font: FontId, colour: Color32) {
-    let shade = Color32::from_black_alpha(190);
-    painter.text(place + vec2(1.0, 1.0), align, text, font.clone(), shade);
-    painter.text(place + vec2(-1.0, 1.0), align, text, font.clone(), shade);
+    for shift in [vec2(1.0, 1.0), vec2(-1.0, 1.0), vec2(0.0, -1.0)] {
+        painter.text(place + shift, align, text, font.clone(), theme::VEIL);
+    }
     painter.text(place, align, text, font, colour);
 }
 
@@ -383,7 +388,7 @@ fn readings(painter: &Painter, rect: Rect, live: &Live) {
     let column = |i: usize| rect.left() + COLUMN + COLUMNS_APART * i as f32;
     let plate =
         Rect::from_min_max(rect.left_top() + vec2(8.0, 8.0), pos2(column(sides.len() - 1) + 12.0, corner.y + 72.0));
-    painter.rect_filled(plate, theme::CORNER, Color32::from_black_alpha(150));
+    painter.rect_filled(plate, theme::CORNER, theme::VEIL);
     let rows = [
         (text::common::MEASURED, figures.measured_n, theme::DARK.measured),
         (text::common::RENDERED, figures.rendered_n, theme::DARK.rendered),
@@ -410,12 +415,13 @@ fn readings(painter: &Painter, rect: Rect, live: &Live) {
             let over = pos2(column(k), corner.y - 13.0);
             painter.text(over, Align2::RIGHT_CENTER, side_name(*side), theme::regular(15.0), theme::DARK.text_weak);
             let under = place.center_bottom() + vec2(0.0, 11.0);
-            painter.text(under, Align2::CENTER_CENTER, side_name(*side), theme::regular(12.5), theme::DARK.text_weak);
+            label(painter, under, Align2::CENTER_CENTER, side_name(*side), theme::regular(12.5), theme::DARK.text_weak);
         }
     }
     let line_y = gauges.bottom() - gauges.height() / 1.25;
     let words = text::field::ceiling_mark(ceiling_n);
-    painter.text(pos2(first - 8.0, line_y), Align2::RIGHT_CENTER, words, theme::regular(12.5), theme::DARK.text_weak);
+    let at = pos2(first - 8.0, line_y);
+    label(painter, at, Align2::RIGHT_CENTER, &words, theme::regular(12.5), theme::DARK.text_weak);
 }
 
 /// Directions of the traces' x, y and z, in the lower right corner.

@@ -162,7 +162,7 @@ pub(super) fn line_ui(ui: &mut Ui, rect: Rect, words: Option<String>, readings: 
     };
     let place =
         Rect::from_center_size(room.center_top() + vec2(0.0, 22.0), vec2(room.width().clamp(60.0, 520.0), 28.0));
-    ui.painter_at(rect).rect_filled(place, theme::CORNER, Color32::from_black_alpha(150));
+    ui.painter_at(rect).rect_filled(place, theme::CORNER, theme::VEIL);
     ui.put(place, Label::new(RichText::new(words).font(theme::strong(14.0)).color(theme::DARK.text)).truncate());
 }
 

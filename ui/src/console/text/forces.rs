@@ -22,6 +22,17 @@ pub(in crate::console) fn at_cursor(axis: &str, measured_n: &str, rendered_n: &s
     format!("At the cursor, {axis}: measured {measured_n} N, rendered {rendered_n} N")
 }
 
+/// Name of the plot of an axis.
+pub(in crate::console) fn plot(axis: &str, side: &str) -> String {
+    format!("Force along {axis}, {side} hand")
+}
+
+/// What that plot shows: the force now (signed) and the largest in this time, N, measured and rendered.
+pub(in crate::console) fn summary([measured, rendered]: [(String, f64); 2], seconds: f64) -> String {
+    let told = |(now_n, most_n): (String, f64)| format!("{now_n} N now, {most_n:.1} N at most in {seconds:.0} s");
+    format!("Measured {}; rendered {}", told(measured), told(rendered))
+}
+
 /// Switch: forces of which side.
 pub(in crate::console) fn forces_of(side: &str) -> String {
     format!("Shows the forces of the {side} hand")

@@ -30,7 +30,7 @@ pub(in crate::console) const TOUR: [(&str, &str); 4] = [
     (
         "Help on hover",
         "Hold the pointer over any number to see its unit, its frame and its meaning. M: drive the instrument by mouse. E: mark a \
-         moment in the traces. F4: keys and glossary.",
+         moment in the traces. F4: keys and glossary. Ctrl P: every command by its name.",
     ),
 ];
 
@@ -78,35 +78,5 @@ pub(in crate::console) const GLOSSARY: [(&str, &str); 25] = [
 pub(in crate::console) const KEYS_HEADING: &str = "Keys";
 pub(in crate::console) const WORDS_HEADING: &str = "Terms";
 
-/// All keys with their functions.
-pub(in crate::console) const KEYS: [(&str, &str); 27] = [
-    ("Space, Escape", "Stop, in every view. While you type a name, only Escape."),
-    ("F1, F2, F3", "Surgeon, Technician, Demo."),
-    ("F4", "This list of keys and terms."),
-    ("F5", "The list of the last alarms."),
-    ("F6", "Choose a rig and a scene."),
-    ("F7", "The list of recorded sessions."),
-    ("F8", "User studies."),
-    ("L", "Leave the recorded session: the screen shows the machine again."),
-    ("P, Left, Right", "In a recorded session: play or hold it; a second back or on (with Shift 10 ms)."),
-    ("A", "Acknowledge the alarms."),
-    ("E", "Mark this moment in the traces and in the session that is being recorded."),
-    ("K", "Keep the session that is being recorded, or no longer."),
-    ("O", "Draw the forces into the endoscope's picture, or hide them."),
-    ("V", "Of an endoscope with two lenses: show the left picture, the right one, or both."),
-    ("Wheel", "Zoom the endoscope's picture. Drag moves it, a double click shows all of it."),
-    ("M", "Drive the instrument by mouse, or let it go."),
-    ("Arrow keys", "Move the instrument by a small step while you drive it."),
-    ("Page Up, Page Down", "Move the instrument up or down while you drive it."),
-    ("H", "While you drive: drive the other instrument; the one before stays where it is and holds what it holds."),
-    ("G", "In a scene with rings: open or close the jaws of the instrument that you drive."),
-    ("X", "In a palpation: mark the place under the tip of the instrument that you drive."),
-    ("D", "In a palpation: end the trial."),
-    ("N", "In a palpation or on a wire: begin the trial anew."),
-    ("Ctrl +, Ctrl -", "Make everything larger or smaller."),
-    ("Tab, Shift Tab", "Select the next or the previous control; it gets a frame."),
-    ("Enter", "Press the selected control."),
-    ("Ctrl Tab", "Show the next tab of the group under the pointer."),
-];
 pub(in crate::console) const GLOSSARY_WINDOW: &str = "Glossary";
 pub(in crate::console) const TOUR_WINDOW: &str = "Tour";

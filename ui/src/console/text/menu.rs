@@ -6,11 +6,6 @@ pub(in crate::console) const DARK: &str = "Dark";
 pub(in crate::console) const LIGHT: &str = "Light";
 pub(in crate::console) const SIZE: &str = "Text and control size (Ctrl + and Ctrl -)";
 pub(in crate::console) const SIZE_NOTE: &str = "Limited to what fits into this window";
-pub(in crate::console) const ALARMS: &str = "Alarms (F5)";
-pub(in crate::console) const GLOSSARY: &str = "Glossary (F4)";
-pub(in crate::console) const TOUR: &str = "Tour";
-pub(in crate::console) const MARK: &str = "Mark this moment (E)";
-pub(in crate::console) const MARK_HOVER: &str = "In the traces and in the session that is being recorded";
 pub(in crate::console) const VIEW_HOVER: &str = "Light or dark colours, size, sound, alarms, glossary, tour and panels";
 pub(in crate::console) const SOUND_HOVER: &str =
     "Ten pulses for an alarm, three for a warning, repeated until it is acknowledged";
@@ -28,6 +23,7 @@ pub(in crate::console) const FORCES_OF_NOW: &str = "Draw forces of now, ahead of
 pub(in crate::console) const FORCES_OF_NOW_HOVER: &str =
     "At the tips as they are now. Otherwise they are those of the picture's moment, and lie on the tips that are seen.";
 pub(in crate::console) const PICTURE_PLAIN: &str = "Show the picture as it comes";
+pub(in crate::console) const PICTURE_PLAIN_HOVER: &str = "With the camera's own brightness and colours, not cropped";
 pub(in crate::console) const RECORDS_PICTURE: &str = "Record the endoscope's picture";
 pub(in crate::console) const RECORDS_PICTURE_HOVER: &str =
     "In sessions, as the camera sends it: some 60 to 200 MB a minute more";
@@ -35,5 +31,4 @@ pub(in crate::console) const PANELS: &str = "Panels";
 pub(in crate::console) const PANELS_HOVER: &str = "Drag a panel's title to move it, drag an edge to resize it";
 pub(in crate::console) const PANEL_OPEN_HOVER: &str = "Open: click to close it";
 pub(in crate::console) const PANEL_CLOSED_HOVER: &str = "Closed: click to open it where it was";
-pub(in crate::console) const RESET_LAYOUT: &str = "Reset the layout";
 pub(in crate::console) const RESET_LAYOUT_HOVER: &str = "Opens all panels at their original places";

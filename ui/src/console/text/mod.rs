@@ -12,6 +12,7 @@ pub(super) mod alarms;
 pub(super) mod calibrations;
 pub(super) mod camera;
 pub(super) mod checkup;
+pub(super) mod commands;
 pub(super) mod common;
 pub(super) mod correspondence;
 pub(super) mod degrees;

@@ -17,9 +17,7 @@ pub(in crate::console) const FAULT_MEANING: &str =
 pub(in crate::console) const STOP: &str = "Stop";
 pub(in crate::console) const STOP_HOVER: &str =
     "Sets the force to zero and stops the follower at once. Space or Escape does the same.";
-pub(in crate::console) const ENGAGE: &str = "Engage";
 pub(in crate::console) const ENGAGE_HOVER: &str = "Second of two steps: starts motion and force feedback";
-pub(in crate::console) const RELEASE_STOP: &str = "Release stop";
 pub(in crate::console) const RELEASE_STOP_HOVER: &str = "First of two steps: returns to idle, still without force";
 pub(in crate::console) const RELEASE_FAULT_HOVER: &str =
     "First of two steps: returns to idle. Refused while the cause of the fault is present.";

@@ -1,0 +1,222 @@
+//! What a command does: the same for its menu, its button, its key and the palette.
+
+use egui::{Context, Event, Rect};
+use nima_machine::messages::Command;
+
+use super::ConsoleApp;
+use crate::console::{
+    commands::{Action, Entry, Reach, table},
+    desk::Layout,
+    help::Help,
+    keys,
+    panels::CalibrationWish,
+    roles::Role,
+    settings::{PictureSettings, Settings},
+    undo::Look,
+};
+
+impl ConsoleApp {
+    /// Does what was chosen in the palette and what keys say.
+    pub(super) fn obey_commands(&mut self, ctx: &Context) {
+        let chosen = self.palette.take();
+        let pressed = keys::pressed(ctx, |action| self.may(action) == Reach::Can);
+        if pressed.iter().any(|action| *action != Action::Palette) {
+            self.palette.close();
+        }
+        for action in chosen.into_iter().chain(pressed) {
+            self.act(action, ctx);
+        }
+    }
+
+    /// The palette with all that can be reached from here.
+    pub(super) fn palette_ui(&mut self, ctx: &Context, room: Rect) {
+        if self.palette.is_open() {
+            let rows = table().iter().map(|entry| (entry, self.may(entry.action)));
+            let here = |(entry, reach): &(&Entry, Reach)| *reach != Reach::Absent && entry.action != Action::Palette;
+            let rows: Vec<_> = rows.filter(here).collect();
+            self.palette.ui(ctx, room, &rows);
+        }
+    }
+
+    /// Does it, if it can be done.
+    pub(super) fn act(&mut self, action: Action, ctx: &Context) {
+        if self.may(action) != Reach::Can {
+            return;
+        }
+        match action {
+            Action::Stop => self.outbox.push(Command::Stop),
+            // The button has the last word: it waits a moment after every change of state.
+            Action::Engage | Action::Release => self.top_bar.wants_step = Some(action),
+            Action::View(role) => self.show_view(role),
+            Action::Rig if self.start.is_open => self.close_pages(),
+            Action::Rig => self.open_start(),
+            Action::Sessions => self.toggle_list(),
+            Action::Studies if self.studies.is_shown => self.studies.is_shown = false,
+            Action::Studies => self.open_studies(),
+            Action::Alarms => self.top_bar.alarms.list ^= true,
+            Action::Acknowledge => self.top_bar.alarms.log.acknowledge(),
+            Action::Mark => self.live.mark(),
+            Action::Keep => self.sessions.toggle_kept(),
+            Action::Check => self.obey_calibrations(Some(CalibrationWish::Check)),
+            Action::Calibrations => self.obey_calibrations(Some(CalibrationWish::List)),
+            Action::Calibrate(which) => self.obey_calibrations(Some(CalibrationWish::Open(which))),
+            Action::CloseWizard => self.obey_calibrations(Some(CalibrationWish::Close)),
+            Action::LeavePast => self.close_past(),
+            Action::Play | Action::Step(_) => self.act_in_past(action),
+            action if action.is_of_part() => press_key_of(action, ctx),
+            action => self.act_on_screen(action),
+        }
+    }
+
+    fn show_view(&mut self, role: Role) {
+        self.settings.now.role = role;
+        if self.starting.is_none() {
+            self.close_pages();
+        }
+    }
+
+    const fn close_pages(&mut self) {
+        self.start.is_open = false;
+        self.list.is_open = false;
+        self.studies.is_shown = false;
+    }
+
+    fn act_in_past(&mut self, action: Action) {
+        let Some(past) = &mut self.past else { return };
+        match action {
+            Action::Step(ms) => past.show(past.shown_s() + 1e-3 * f64::from(ms)),
+            _ => past.toggle(),
+        }
+    }
+
+    /// What only changes the screen.
+    fn act_on_screen(&mut self, action: Action) {
+        let settings = &mut self.settings.now;
+        match action {
+            Action::Undo => {
+                let look = self.history.undo();
+                self.show_as(look);
+            }
+            Action::Redo => {
+                let look = self.history.redo();
+                self.show_as(look);
+            }
+            Action::Glossary => self.help.glossary ^= true,
+            Action::Tour => self.help.begin_tour(),
+            Action::Palette => self.palette.toggle(),
+            Action::Light(light) => settings.light = light,
+            Action::Larger => settings.scale_by(1),
+            Action::Smaller => settings.scale_by(-1),
+            Action::Size(percent) => settings.scale_percent = percent,
+            Action::Sound => settings.sound ^= true,
+            Action::ForcesOfNow => settings.picture.forces_of_now ^= true,
+            Action::PlainPicture => {
+                let forces_of_now = settings.picture.forces_of_now;
+                settings.picture = PictureSettings { forces_of_now, ..PictureSettings::default() };
+            }
+            Action::RecordsPicture => settings.records_picture ^= true,
+            Action::Panel(panel) => settings.layout.toggle(panel),
+            Action::ResetLayout => settings.layout = Layout::default(),
+            action => self.act_on_view(action),
+        }
+    }
+
+    /// What changes the views on the screen.
+    fn act_on_view(&mut self, action: Action) {
+        let (live, panels) = match &mut self.past {
+            Some(past) => (past.live.as_deref(), &mut past.panels),
+            None => (Some(&self.live), &mut self.panels),
+        };
+        match action {
+            Action::Pause => {
+                if let Some(live) = live {
+                    panels.forces.toggle_pause(live);
+                }
+            }
+            Action::LastTenSeconds => panels.forces.show_last_ten(),
+            Action::Draws(switch) => *panels.scene.extras.of(switch) ^= true,
+            _ => {}
+        }
+    }
+
+    /// The arrangement and the look of the screen, which can be taken back.
+    fn look(&self) -> Look {
+        let Settings { layout, light, scale_percent, picture, .. } = &self.settings.now;
+        let (light, scale_percent, picture) = (*light, *scale_percent, *picture);
+        let (extras, traces) = (self.panels.scene.extras, self.panels.forces.view());
+        Look { layout: layout.clone(), light, scale_percent, picture, extras, traces }
+    }
+
+    fn show_as(&mut self, look: Option<Look>) {
+        let Some(look) = look else { return };
+        let Look { layout, light, scale_percent, picture, extras, traces } = look;
+        let settings = &mut self.settings.now;
+        (settings.layout, settings.light, settings.scale_percent) = (layout, light, scale_percent);
+        settings.picture = picture;
+        self.panels.scene.extras = extras;
+        self.panels.forces.show(traces);
+    }
+
+    /// At the end of a frame: what has changed on the screen can be taken back.
+    pub(super) fn remember_look(&mut self, ctx: &Context) {
+        let (time_s, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
+        self.history.watch(self.look(), time_s, held);
+    }
+
+    /// A trial begins: what lies over the window is closed.
+    pub(super) fn clear_for_trial(&mut self) {
+        (self.help, self.top_bar.alarms.list) = (Help::default(), false);
+        self.palette.close();
+    }
+}
+
+/// The part of the window that reads it finds its key pressed.
+fn press_key_of(action: Action, ctx: &Context) {
+    let Some(stroke) = Entry::of(action).and_then(|entry| entry.keys.first()) else { return };
+    let event = Event::Key {
+        key: stroke.key,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: stroke.with.modifiers(),
+    };
+    ctx.input_mut(|input| input.events.push(event));
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Key, Modifiers};
+    use egui_kittest::Harness;
+    use nima_world::Plan;
+
+    use super::*;
+    use crate::{
+        console::{app::start_recorded, sessions::Sessions},
+        watching::Servers,
+    };
+
+    /// Only the console itself can be given a recorder.
+    #[test]
+    fn a_session_is_kept_by_its_key_and_from_the_palette() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut sessions = Sessions::of_user(Some(folder.path()), None, Servers::default());
+        let plan = Plan { engage: false, ..nima_tests::plan("free_motion") };
+        let (handle, _) = start_recorded(&plan, &mut sessions, None).unwrap();
+        let mut window = Harness::builder()
+            .with_size([1280.0, 720.0])
+            .build_eframe(move |cc| ConsoleApp::new(cc, handle, plan.rig, plan.scene).with_sessions(sessions));
+        let is_kept = |window: &Harness<'_, ConsoleApp>| window.state().sessions.shown().unwrap().kept;
+        window.run_steps(2);
+        assert!(!is_kept(&window));
+        window.key_press(Key::K);
+        window.run_steps(2);
+        assert!(is_kept(&window));
+        window.key_press_modifiers(Modifiers::COMMAND, Key::P);
+        window.run_steps(3);
+        window.event(Event::Text("keep the session".to_owned()));
+        window.run_steps(2);
+        window.key_press(Key::Enter);
+        window.run_steps(3);
+        assert!(!is_kept(&window) && !window.state().palette.is_open());
+    }
+}

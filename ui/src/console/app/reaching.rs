@@ -1,0 +1,217 @@
+//! Whether a command can be done now, by who sits before the screen, and if not, why.
+
+use nima_machine::messages::LoopState;
+
+use super::ConsoleApp;
+use crate::console::{
+    commands::{Action, Reach},
+    desk::Panel,
+    roles::{Panels, Role},
+    settings::PictureSettings,
+    text,
+    wizards::Which,
+};
+
+/// What is below the top bar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Page {
+    Trial,
+    Past,
+    List,
+    Check,
+    Listing,
+    Wizard,
+    Start,
+    Studies,
+    Monitor,
+}
+
+impl ConsoleApp {
+    /// The page that is shown.
+    pub(super) const fn page(&self) -> Page {
+        if self.in_trial() {
+            Page::Trial
+        } else if self.past.is_some() {
+            Page::Past
+        } else if self.list.is_open {
+            Page::List
+        } else if self.checking.is_open() {
+            Page::Check
+        } else if self.listing.is_open() {
+            Page::Listing
+        } else if self.wizards.open.is_some() {
+            Page::Wizard
+        } else if self.start.is_open {
+            Page::Start
+        } else if self.studies.is_shown {
+            Page::Studies
+        } else {
+            Page::Monitor
+        }
+    }
+
+    /// A person guides the arm, or a study is open: views stay, and the arm cannot be engaged.
+    pub(super) const fn is_calibrating(&self) -> bool {
+        self.wizards.open.is_some() || self.checking.is_open() || self.has_study() && !self.in_trial()
+    }
+
+    /// Whether this can be done now, and by who sits here.
+    pub(super) fn may(&self, action: Action) -> Reach {
+        if self.in_trial() && !action.is_of_participant() {
+            return Reach::Absent;
+        }
+        match action {
+            Action::Engage | Action::Release => self.may_step(action),
+            Action::View(_) => Reach::unless(self.is_calibrating().then_some(text::roles::SWITCH_DISABLED_HOVER)),
+            Action::Rig | Action::Sessions | Action::Studies => self.may_turn_to(action),
+            Action::Acknowledge => {
+                let is_quiet = !self.top_bar.alarms.log.has_unseen();
+                Reach::unless(is_quiet.then_some(text::commands::NO_ALARM))
+            }
+            Action::Mark => Reach::unless(self.past.is_some().then_some(text::past::BLOCKED)),
+            Action::Keep => {
+                let nothing = self.sessions.shown().is_none();
+                Reach::unless(nothing.then_some(text::commands::NOTHING_RECORDED))
+            }
+            Action::Undo => Reach::unless((!self.history.can_undo()).then_some(text::commands::NOTHING_TO_UNDO)),
+            Action::Redo => Reach::unless((!self.history.can_redo()).then_some(text::commands::NOTHING_TO_REDO)),
+            Action::PlainPicture => Reach::unless(self.shows_picture_plain().then_some(text::commands::IS_PLAIN)),
+            Action::Panel(_) | Action::ResetLayout => Reach::Can.only_if(self.role() == Role::Technician),
+            Action::Check | Action::Calibrations | Action::Calibrate(_) | Action::CloseWizard => {
+                self.may_calibrate(action)
+            }
+            Action::Pause | Action::LastTenSeconds | Action::Draws(_) => self.may_draw(action),
+            action if action.is_of_part() => self.may_in_part(action),
+            Action::LeavePast => Reach::Can.only_if(self.past.is_some()),
+            Action::Play | Action::Step(_) => {
+                let opening = self.past.as_ref().is_some_and(|past| past.live.is_none());
+                Reach::unless(opening.then_some(text::past::OPENING)).only_if(self.past.is_some())
+            }
+            _ => Reach::Can,
+        }
+    }
+
+    fn may_step(&self, action: Action) -> Reach {
+        let state = self.live.state();
+        let latched = state.is_latched();
+        let why = match (action, state) {
+            (Action::Release, _) if !latched => Some(text::commands::NOT_STOPPED),
+            (Action::Engage, _) if latched => Some(text::commands::RELEASE_FIRST),
+            (Action::Engage, LoopState::Disconnected) => text::calibrations::closed(state),
+            (Action::Engage, LoopState::Engaged | LoopState::Ready | LoopState::Clutched) => {
+                Some(text::commands::IS_ENGAGED)
+            }
+            _ if self.past.is_some() => Some(text::past::BLOCKED),
+            (Action::Engage, _) if self.is_calibrating() => Some(text::start::OPEN_DISABLED_HOVER),
+            _ => None,
+        };
+        Reach::unless(why)
+    }
+
+    fn may_turn_to(&self, action: Action) -> Reach {
+        let why = if self.past.is_some() {
+            Some(text::past::BLOCKED)
+        } else if self.has_study() && action == Action::Studies {
+            Some(text::commands::STUDY_IS_OPEN)
+        } else if self.is_calibrating() {
+            Some(text::start::OPEN_DISABLED_HOVER)
+        } else {
+            // The page itself tells how far it has come.
+            let may_look = action == Action::Rig && !self.start.is_open;
+            (self.starting.is_some() && !may_look).then_some(text::commands::IS_STARTING)
+        };
+        Reach::unless(why)
+    }
+
+    /// As the panel of calibrations has it, which is the technician's and beside the wizards.
+    fn may_calibrate(&self, action: Action) -> Reach {
+        let page = self.page();
+        let is_beside = matches!(page, Page::Check | Page::Listing | Page::Wizard);
+        if action == Action::CloseWizard {
+            return Reach::Can.only_if(is_beside);
+        }
+        let rig = &self.live.rig;
+        let (is_open, is_offered) = match action {
+            Action::Check => (page == Page::Check, true),
+            Action::Calibrations => (page == Page::Listing, true),
+            Action::Calibrate(which) => {
+                let is_open = page == Page::Wizard && self.wizards.open == Some(which);
+                let is_offered = match which {
+                    Which::Camera => rig.endoscope.is_some(),
+                    _ => rig.devices.is_some() || which.scene().is_some(),
+                };
+                (is_open, is_offered)
+            }
+            _ => (false, false),
+        };
+        let closed = text::calibrations::closed(self.live.state()).filter(|_| action != Action::Calibrations);
+        let why = is_open.then_some(text::calibrations::IS_OPEN).or(closed);
+        let why = self.past.is_some().then_some(text::past::BLOCKED).or(why);
+        let of_technician = self.role() == Role::Technician && matches!(page, Page::Monitor | Page::Past);
+        Reach::unless(why).only_if(is_offered && (is_beside || of_technician))
+    }
+
+    /// Traces and field are in the technician's and the demonstration's view.
+    fn may_draw(&self, action: Action) -> Reach {
+        let is_here = self.role() != Role::Surgeon && self.panels_in_view().is_some();
+        let of_technician = self.role() == Role::Technician;
+        let why = match action {
+            Action::Draws(_) => {
+                let seen = self.panels_in_view().is_some_and(|panels| panels.scene.is_seen);
+                (!seen).then_some(text::commands::FIELD_IS_HIDDEN)
+            }
+            _ if of_technician && !self.settings.now.layout.is_open(Panel::Traces) => {
+                Some(text::commands::PANEL_IS_CLOSED)
+            }
+            _ => None,
+        };
+        Reach::unless(why).only_if(is_here)
+    }
+
+    /// As the part of the window reads its keys.
+    fn may_in_part(&self, action: Action) -> Reach {
+        if matches!(action, Action::HideForces | Action::Lens) {
+            let eyes = self.panels_in_view().map(|panels| &panels.eyes);
+            let eyes = eyes.filter(|eyes| eyes.is_on() && self.role() == Role::Surgeon);
+            let has = eyes.is_some_and(|eyes| action == Action::HideForces || eyes.has_two_lenses());
+            return Reach::Can.only_if(has);
+        }
+        let (scene, view) = (&self.live.scene, &self.panels.scene);
+        let is_searched = scene.is_searched();
+        let is_offered = match action {
+            Action::OtherHand => self.live.is_bimanual(),
+            Action::Jaws => scene.objects.is_some(),
+            Action::MarkPlace | Action::EndTrial => is_searched,
+            Action::BeginTrial => is_searched || scene.wire.is_some(),
+            _ => true,
+        };
+        let runs = matches!(self.live.state(), LoopState::Idle | LoopState::Engaged);
+        let why = if !view.is_seen {
+            Some(text::commands::FIELD_IS_HIDDEN)
+        } else if !runs {
+            Some(text::commands::NOT_NOW)
+        } else {
+            (action != Action::Drive && !view.is_led()).then_some(text::commands::DRIVE_FIRST)
+        };
+        let is_here = match self.page() {
+            Page::Trial => true,
+            Page::Monitor => self.role() != Role::Surgeon || view.is_led() && view.is_seen,
+            _ => false,
+        };
+        Reach::unless(why).only_if(is_offered && is_here)
+    }
+
+    /// The panels of the views that are on the screen: of the machine, or of the past.
+    fn panels_in_view(&self) -> Option<&Panels> {
+        match (self.page(), &self.past) {
+            (Page::Past, Some(past)) if past.beside.is_none() && !self.list.is_open => Some(&past.panels),
+            (Page::Monitor, _) => Some(&self.panels),
+            _ => None,
+        }
+    }
+
+    fn shows_picture_plain(&self) -> bool {
+        let picture = self.settings.now.picture;
+        picture == PictureSettings { forces_of_now: picture.forces_of_now, ..PictureSettings::default() }
+    }
+}

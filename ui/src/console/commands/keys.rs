@@ -1,0 +1,95 @@
+//! Keys of the commands.
+
+use egui::{Key, Modifiers};
+
+use super::super::text;
+
+/// Modifiers of a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum With {
+    /// None.
+    Nothing,
+    /// Shift.
+    Shift,
+    /// Control (Command on a Mac).
+    Ctrl,
+    /// Control and Shift.
+    CtrlShift,
+    /// Control; on some keyboards the sign needs Shift.
+    CtrlAndSign,
+}
+
+impl With {
+    /// Whether these modifiers, and no others, are held down.
+    pub(in crate::console) fn holds(self, modifiers: Modifiers) -> bool {
+        let Modifiers { alt, shift, command, .. } = modifiers;
+        match self {
+            Self::Nothing => modifiers.is_none(),
+            Self::Shift => shift && !command && !alt && !modifiers.ctrl,
+            Self::Ctrl => command && !shift && !alt,
+            Self::CtrlShift => command && shift && !alt,
+            Self::CtrlAndSign => command && !alt,
+        }
+    }
+
+    /// The modifiers that are held down for it.
+    pub fn modifiers(self) -> Modifiers {
+        match self {
+            Self::Nothing => Modifiers::NONE,
+            Self::Shift => Modifiers::SHIFT,
+            Self::Ctrl | Self::CtrlAndSign => Modifiers::COMMAND,
+            Self::CtrlShift => Modifiers::COMMAND | Modifiers::SHIFT,
+        }
+    }
+}
+
+/// A key with its modifiers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stroke {
+    /// The key.
+    pub key: Key,
+    /// Its modifiers.
+    pub with: With,
+}
+
+impl Stroke {
+    /// A key without modifiers.
+    pub(super) const fn plain(key: Key) -> Self {
+        Self { key, with: With::Nothing }
+    }
+
+    /// Its name.
+    pub fn name(self) -> String {
+        let key = match self.key {
+            Key::Plus | Key::Minus | Key::Equals => self.key.symbol_or_name(),
+            key => key.name(),
+        };
+        let held = match self.with {
+            With::Nothing => "",
+            With::Shift => text::commands::SHIFT,
+            With::Ctrl | With::CtrlAndSign => text::commands::CTRL,
+            With::CtrlShift => text::commands::CTRL_SHIFT,
+        };
+        format!("{held}{key}")
+    }
+
+    /// It means something in a text that is being typed.
+    pub(in crate::console) fn writes(self) -> bool {
+        match self.with {
+            With::Nothing => !(Key::F1..=Key::F12).contains(&self.key),
+            With::Shift => true,
+            With::Ctrl | With::CtrlShift => self.key == Key::Z,
+            With::CtrlAndSign => false,
+        }
+    }
+}
+
+/// Larger, and smaller.
+pub(in crate::console) const SIZE: [&[Stroke]; 2] = [
+    &[Stroke { key: Key::Plus, with: With::CtrlAndSign }, Stroke { key: Key::Equals, with: With::CtrlAndSign }],
+    &[Stroke { key: Key::Minus, with: With::CtrlAndSign }],
+];
+
+/// Undo, and redo.
+pub(in crate::console) const UNDO: [&[Stroke]; 2] =
+    [&[Stroke { key: Key::Z, with: With::Ctrl }], &[Stroke { key: Key::Z, with: With::CtrlShift }]];

@@ -1,0 +1,204 @@
+//! The table.
+
+use std::{fmt::Write as _, sync::LazyLock};
+
+use egui::Key;
+
+use super::{Action, Entry, Place, SIZE, SIZES_PERCENT, Stroke, UNDO, With};
+use crate::console::{
+    desk::Panel, roles::Role, scene3d::extras::Switch, text, text::commands as names, wizards::Which,
+};
+
+type Keys = &'static [Stroke];
+
+/// One key without modifiers.
+macro_rules! key {
+    ($key:ident) => {
+        const { &[Stroke::plain(Key::$key)] }
+    };
+}
+
+/// Every command, in the order of the palette.
+pub fn table() -> &'static [Entry] {
+    static TABLE: LazyLock<Vec<Entry>> =
+        LazyLock::new(|| [views(), pages(), screen(), calibration(), traces_and_field(), past(), machine()].concat());
+    &TABLE
+}
+
+fn entry(action: Action, title: impl Into<String>, does: &'static str, keys: Keys, place: Place) -> Entry {
+    Entry { action, title: title.into(), does, keys, place }
+}
+
+fn views() -> Vec<Entry> {
+    let of = |role: Role| {
+        let keys: Keys = match role {
+            Role::Surgeon => key!(F1),
+            Role::Technician => key!(F2),
+            Role::Demo => key!(F3),
+        };
+        entry(Action::View(role), names::view(role.name()), role.meaning(), keys, Place::Bar)
+    };
+    Role::ALL.map(of).into()
+}
+
+fn pages() -> Vec<Entry> {
+    const PALETTE: Keys = &[Stroke { key: Key::P, with: With::Ctrl }];
+    vec![
+        entry(Action::Glossary, names::GLOSSARY, names::GLOSSARY_DOES, key!(F4), Place::ViewMenu),
+        entry(Action::Alarms, names::ALARMS, names::ALARMS_DOES, key!(F5), Place::ViewMenu),
+        entry(Action::Rig, names::RIG, names::RIG_DOES, key!(F6), Place::Bar),
+        entry(Action::Sessions, names::SESSIONS, names::SESSIONS_DOES, key!(F7), Place::Bar),
+        entry(Action::Studies, names::STUDIES, names::STUDIES_DOES, key!(F8), Place::Keys),
+        entry(Action::Tour, names::TOUR, names::TOUR_DOES, &[], Place::ViewMenu),
+        entry(Action::Palette, names::PALETTE, names::PALETTE_DOES, PALETTE, Place::ViewMenu),
+    ]
+}
+
+fn screen() -> Vec<Entry> {
+    let menu = Place::ViewMenu;
+    let [larger, smaller] = SIZE;
+    let [undo, redo] = UNDO;
+    let mut entries = vec![
+        entry(Action::Undo, names::UNDO, names::UNDO_DOES, undo, menu),
+        entry(Action::Redo, names::REDO, names::REDO_DOES, redo, menu),
+        entry(Action::Light(false), names::DARK, names::DARK_DOES, &[], menu),
+        entry(Action::Light(true), names::LIGHT, names::LIGHT_DOES, &[], menu),
+        entry(Action::Larger, names::LARGER, names::LARGER_DOES, larger, Place::Keys),
+        entry(Action::Smaller, names::SMALLER, names::SMALLER_DOES, smaller, Place::Keys),
+    ];
+    entries.extend(
+        SIZES_PERCENT.map(|percent| entry(Action::Size(percent), names::size(percent), names::SIZE_DOES, &[], menu)),
+    );
+    entries.extend(
+        Panel::ALL.map(|panel| entry(Action::Panel(panel), names::panel(panel.title()), panel.meaning(), &[], menu)),
+    );
+    let reset = (names::RESET_LAYOUT, text::menu::RESET_LAYOUT_HOVER);
+    let (plain, plain_does) = (text::menu::PICTURE_PLAIN, text::menu::PICTURE_PLAIN_HOVER);
+    let (now, now_does) = (text::menu::FORCES_OF_NOW, text::menu::FORCES_OF_NOW_HOVER);
+    let (records, records_does) = (text::menu::RECORDS_PICTURE, text::menu::RECORDS_PICTURE_HOVER);
+    entries.extend([
+        entry(Action::ResetLayout, reset.0, reset.1, &[], menu),
+        entry(Action::Sound, text::menu::SOUND, text::menu::SOUND_HOVER, &[], menu),
+        entry(Action::ForcesOfNow, now, now_does, &[], menu),
+        entry(Action::PlainPicture, plain, plain_does, &[], menu),
+        entry(Action::RecordsPicture, records, records_does, &[], menu),
+    ]);
+    entries
+}
+
+fn calibration() -> Vec<Entry> {
+    let at = Place::Calibration;
+    let (back, back_does) = (text::calibrations::CLOSE_WIZARD, text::calibrations::CLOSE_WIZARD_HOVER);
+    let mut entries = vec![
+        entry(Action::Check, text::ready::OPEN, text::ready::MEANING, &[], at),
+        entry(Action::Calibrations, text::overview::OPEN, text::overview::MEANING, &[], at),
+    ];
+    entries.extend(Which::ALL.map(|which| {
+        let title = text::calibrations::calibrate(&which.name().to_lowercase());
+        entry(Action::Calibrate(which), title, which.meaning(), &[], at)
+    }));
+    entries.push(entry(Action::CloseWizard, back, back_does, &[], at));
+    entries
+}
+
+fn traces_and_field() -> Vec<Entry> {
+    let (last, last_does) = (text::forces::LAST_TEN_SECONDS, text::forces::LAST_TEN_SECONDS_HOVER);
+    let mut entries = vec![
+        entry(Action::Mark, names::MARK, names::MARK_DOES, key!(E), Place::ViewMenu),
+        entry(Action::Keep, names::KEEP, names::KEEP_DOES, key!(K), Place::Bar),
+        entry(Action::Pause, names::PAUSE, text::forces::PAUSE_HOVER, &[], Place::Traces),
+        entry(Action::LastTenSeconds, last, last_does, &[], Place::Traces),
+    ];
+    entries.extend(
+        Switch::ALL.map(|switch| entry(Action::Draws(switch), switch.name(), switch.meaning(), &[], Place::Field)),
+    );
+    entries.extend([
+        entry(Action::Drive, names::DRIVE, names::DRIVE_DOES, key!(M), Place::Field),
+        entry(Action::OtherHand, names::OTHER_HAND, names::OTHER_HAND_DOES, key!(H), Place::Field),
+        entry(Action::Jaws, names::JAWS, names::JAWS_DOES, key!(G), Place::Field),
+        entry(Action::MarkPlace, names::MARK_PLACE, names::MARK_PLACE_DOES, key!(X), Place::Field),
+        entry(Action::EndTrial, names::END_TRIAL, names::END_TRIAL_DOES, key!(D), Place::Field),
+        entry(Action::BeginTrial, names::BEGIN_TRIAL, names::BEGIN_TRIAL_DOES, key!(N), Place::Field),
+        entry(Action::HideForces, names::HIDE_FORCES, names::HIDE_FORCES_DOES, key!(O), Place::Picture),
+        entry(Action::Lens, names::LENS, names::LENS_DOES, key!(V), Place::Picture),
+    ]);
+    entries
+}
+
+fn past() -> Vec<Entry> {
+    const FINE: [Keys; 2] =
+        [&[Stroke { key: Key::ArrowLeft, with: With::Shift }], &[Stroke { key: Key::ArrowRight, with: With::Shift }]];
+    let at = Place::Past;
+    vec![
+        entry(Action::LeavePast, names::LEAVE_PAST, names::LEAVE_PAST_DOES, key!(L), at),
+        entry(Action::Play, names::PLAY, names::PLAY_DOES, key!(P), at),
+        entry(Action::Step(-1000), names::BACK, names::PLAY_DOES, key!(ArrowLeft), at),
+        entry(Action::Step(1000), names::ON, names::PLAY_DOES, key!(ArrowRight), at),
+        entry(Action::Step(-10), names::BACK_FINE, names::PLAY_DOES, FINE[0], at),
+        entry(Action::Step(10), names::ON_FINE, names::PLAY_DOES, FINE[1], at),
+    ]
+}
+
+/// Last: nobody should come upon them by accident.
+fn machine() -> Vec<Entry> {
+    const STOP: Keys = &[Stroke::plain(Key::Space), Stroke::plain(Key::Escape)];
+    vec![
+        entry(Action::Acknowledge, names::ACKNOWLEDGE, names::ACKNOWLEDGE_DOES, key!(A), Place::Alarms),
+        entry(Action::Stop, names::STOP, names::STOP_DOES, STOP, Place::Bar),
+        entry(Action::Release, names::RELEASE, names::RELEASE_DOES, &[], Place::Bar),
+        entry(Action::Engage, names::ENGAGE, names::ENGAGE_DOES, &[], Place::Bar),
+    ]
+}
+
+/// The rows of the table in `docs/screen.md`.
+pub fn as_markdown() -> String {
+    let mut rows = String::new();
+    for entry in table() {
+        let does = entry.does.lines().next().unwrap_or_default();
+        // Writing into a String cannot fail.
+        let _ = writeln!(rows, "| {} | {} | {} | {does} |", entry.title, entry.keys_told(), entry.place.name());
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_commands_share_a_name_an_action_or_a_key() {
+        let keys = |entry: &Entry| entry.keys.iter().map(|stroke| stroke.name()).collect::<Vec<_>>();
+        for (i, one) in table().iter().enumerate() {
+            assert!(!one.title.is_empty() && !one.does.is_empty(), "{one:?}");
+            for other in &table()[i + 1..] {
+                assert!(one.title != other.title && one.action != other.action, "{one:?} {other:?}");
+                assert!(keys(one).iter().all(|key| !keys(other).contains(key)), "{one:?} {other:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_command_whose_key_is_pressed_for_it_has_one_without_modifiers() {
+        for entry in table().iter().filter(|entry| entry.action.is_of_part()) {
+            assert!(matches!(entry.keys, [Stroke { with: With::Nothing, .. }]), "{entry:?}");
+        }
+    }
+
+    #[test]
+    fn the_keys_of_the_views_are_those_of_the_roles() {
+        for role in Role::ALL {
+            let view = Entry::of(Action::View(role)).unwrap();
+            assert_eq!(view.keys, [Stroke::plain(role.key())]);
+        }
+    }
+
+    #[test]
+    fn the_document_has_the_table() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/screen.md");
+        let document = std::fs::read_to_string(path).unwrap();
+        assert!(document.contains(&as_markdown()), "docs/screen.md must contain:\n{}", as_markdown());
+        for (keys, does) in names::BY_HAND {
+            assert!(document.contains(&format!("| {keys} | {does} |")), "{keys}");
+        }
+    }
+}

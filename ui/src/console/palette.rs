@@ -1,0 +1,225 @@
+//! The palette: all commands that can be reached from here, found by their names.
+//!
+//! It does what the button or the key of a command does, on the same way. What leads towards motion and force is asked once more, because a
+//! word and Enter are typed faster than a button is found.
+
+use egui::{
+    Align, Align2, Button, Context, Id, Key, Label, Order, Rect, RichText, ScrollArea, TextEdit, Ui, Window, vec2,
+};
+
+use super::{
+    commands::{Action, Entry, Reach},
+    text::commands::{FOOT, NONE_FOUND, ONCE_MORE, PALETTE, SEARCH, hover},
+    theme,
+    widgets::{small, weak},
+};
+
+const WIDTH: f32 = 560.0;
+const ROW: f32 = 28.0;
+
+/// A command, and whether it can be done now.
+pub(super) type Row = (&'static Entry, Reach);
+
+/// The palette.
+#[derive(Debug, Default)]
+pub(super) struct Palette {
+    open: Option<Search>,
+    chosen: Option<Action>,
+}
+
+/// What is looked for.
+#[derive(Debug, Default)]
+struct Search {
+    words: String,
+    /// The row that Enter takes; the first that can be done, until an arrow key was pressed.
+    at: Option<usize>,
+    /// What was asked once.
+    asked: Option<Action>,
+}
+
+impl Palette {
+    pub(super) const fn is_open(&self) -> bool {
+        self.open.is_some()
+    }
+
+    pub(super) fn toggle(&mut self) {
+        self.open = if self.is_open() { None } else { Some(Search::default()) };
+    }
+
+    pub(super) fn close(&mut self) {
+        self.open = None;
+    }
+
+    /// What was chosen since the last frame.
+    pub(super) const fn take(&mut self) -> Option<Action> {
+        self.chosen.take()
+    }
+
+    /// Draws it into `room` with these rows.
+    pub(super) fn ui(&mut self, ctx: &Context, room: Rect, rows: &[Row]) {
+        let Some(search) = &mut self.open else { return };
+        let field = Id::unique("palette_field");
+        let keys = Keys::take(ctx);
+        let window = Window::new(PALETTE).title_bar(false).resizable(false).movable(false).constrain_to(room);
+        let window = window.order(Order::Foreground).fixed_size(vec2(WIDTH.min(room.width() - 24.0), 0.0));
+        let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, room.top() + 8.0));
+        let mut wanted = None;
+        let shown = window.show(ctx, |ui| {
+            let edit = TextEdit::singleline(&mut search.words).id(field).hint_text(SEARCH);
+            let edit = ui.add(edit.desired_width(f32::INFINITY).font(theme::regular(16.0)));
+            ctx.accesskit_node_builder(edit.id, |node| node.set_label(SEARCH));
+            if edit.changed() {
+                (search.at, search.asked) = (None, None);
+            }
+            edit.request_focus();
+            let found = found(&search.words, rows);
+            search.step(&keys, &found);
+            wanted = search.list_ui(ui, &found, &keys, room.height() - 150.0);
+            ui.label(small(FOOT));
+        });
+        let inside = shown.is_some_and(|shown| {
+            let pressed =
+                ctx.input(|input| input.pointer.any_pressed().then(|| input.pointer.interact_pos()).flatten());
+            pressed.is_none_or(|at| shown.response.rect.contains(at))
+        });
+        if let Some(action) = wanted {
+            if action.leads_to_force() && search.asked != Some(action) {
+                search.asked = Some(action);
+                return;
+            }
+            self.chosen = Some(action);
+            ctx.request_repaint();
+        }
+        if wanted.is_some() || !inside {
+            ctx.memory_mut(|memory| memory.surrender_focus(field));
+            self.close();
+        }
+    }
+}
+
+/// Keys of the list, which its field does not get.
+#[derive(Debug)]
+struct Keys {
+    by: isize,
+    enter: bool,
+}
+
+impl Keys {
+    fn take(ctx: &Context) -> Self {
+        ctx.input_mut(|input| {
+            let mut pressed = |key| input.consume_key(egui::Modifiers::NONE, key);
+            let (up, down) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown));
+            Self { by: isize::from(down) - isize::from(up), enter: pressed(Key::Enter) }
+        })
+    }
+}
+
+impl Search {
+    /// Goes to the next row that can be done.
+    fn step(&mut self, keys: &Keys, found: &[Row]) {
+        let possible: Vec<usize> = (0..found.len()).filter(|&i| found[i].1 == Reach::Can).collect();
+        let at = self.at.and_then(|at| possible.iter().position(|&i| i == at)).unwrap_or(0);
+        let last = possible.len().saturating_sub(1);
+        let next = at.saturating_add_signed(keys.by).min(last);
+        if keys.by != 0 {
+            self.asked = None;
+        }
+        self.at = possible.get(next).copied();
+    }
+
+    /// The rows; returns what is to be done.
+    fn list_ui(&self, ui: &mut Ui, found: &[Row], keys: &Keys, height: f32) -> Option<Action> {
+        let mut wanted = None;
+        ScrollArea::vertical().max_height(height.clamp(120.0, 420.0)).auto_shrink([false, true]).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 2.0;
+            if found.is_empty() {
+                ui.label(weak(NONE_FOUND));
+            }
+            for (i, (entry, reach)) in found.iter().enumerate() {
+                let is_at = self.at == Some(i);
+                let response = row_ui(ui, entry, *reach, is_at);
+                if response.clicked() || is_at && keys.enter {
+                    wanted = Some(entry.action);
+                }
+                if is_at && keys.by != 0 {
+                    response.scroll_to_me(Some(Align::Center));
+                }
+                if self.asked == Some(entry.action) {
+                    ui.label(RichText::new(ONCE_MORE).font(theme::strong(14.0)));
+                }
+            }
+        });
+        wanted
+    }
+}
+
+fn row_ui(ui: &mut Ui, entry: &Entry, reach: Reach, is_at: bool) -> egui::Response {
+    // Weak words cannot be read on the colour of what is selected.
+    let ink = if is_at { theme::now().text } else { theme::now().text_weak };
+    let keys = RichText::new(entry.keys_told()).color(ink);
+    let button = Button::selectable(is_at, entry.title.as_str()).right_text(keys).truncate();
+    let can = reach == Reach::Can;
+    let response = ui.add_enabled(can, button.min_size(vec2(ui.available_width(), ROW)));
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::MenuItem, can, is_at, &entry.title));
+    if let Reach::Cannot(why) = reach {
+        ui.indent(entry.title.as_str(), |ui| ui.add(Label::new(small(why)).wrap()));
+    }
+    response.on_hover_text(hover(entry.does, entry.place.name()))
+}
+
+/// The rows in whose names every one of these words is found, the best first; of equal ones those that can be done, in the order of the
+/// table.
+fn found(words: &str, rows: &[Row]) -> Vec<Row> {
+    let words: Vec<String> = words.split_whitespace().map(str::to_lowercase).collect();
+    let rank = |(entry, _): &Row| words.iter().try_fold(0, |sum, word| Some(sum + rank(word, entry)?));
+    let mut found: Vec<(usize, Row)> = rows.iter().filter_map(|row| Some((rank(row)?, *row))).collect();
+    found.sort_by_key(|(rank, (_, reach))| (*rank, !words.is_empty() && *reach != Reach::Can));
+    found.into_iter().map(|(_, row)| row).collect()
+}
+
+/// How well a word fits: 0 is best. It is a key, begins a word of the name, stands in the name, or begins a word of the meaning.
+fn rank(word: &str, entry: &Entry) -> Option<usize> {
+    let begins = |text: &str| {
+        let text = text.to_lowercase();
+        text.split(|letter: char| !letter.is_alphanumeric()).position(|other| other.starts_with(word))
+    };
+    let is_key = entry.keys.iter().any(|stroke| stroke.name().to_lowercase() == word);
+    let within = || entry.title.to_lowercase().contains(word).then_some(20);
+    is_key.then_some(0).or_else(|| begins(&entry.title)).or_else(within).or_else(|| begins(entry.does).map(|_| 40))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::{commands::table, roles::Role};
+
+    fn all() -> Vec<Row> {
+        table().iter().map(|entry| (entry, Reach::Can)).collect()
+    }
+
+    fn first(words: &str) -> Option<Action> {
+        found(words, &all()).first().map(|(entry, _)| entry.action)
+    }
+
+    #[test]
+    fn a_command_is_found_by_its_name_its_key_the_beginnings_of_its_words_and_its_meaning() {
+        for entry in table() {
+            assert_eq!(first(&entry.title), Some(entry.action), "{}", entry.title);
+        }
+        assert_eq!(first("f7"), Some(Action::Sessions));
+        assert_eq!(first("rese lay"), Some(Action::ResetLayout));
+        assert_eq!(first("SESSIONS rec"), Some(Action::Sessions));
+        assert_eq!(first("printing"), Some(Action::Light(true)));
+        assert_eq!(first("xylophone"), None);
+        assert_eq!(found("", &all()).len(), table().len());
+    }
+
+    #[test]
+    fn what_cannot_be_done_comes_after_what_fits_as_well() {
+        let can = Action::View(Role::ALL[2]);
+        let reach = |action| if action == can { Reach::Can } else { Reach::Cannot("") };
+        let rows: Vec<Row> = table().iter().map(|entry| (entry, reach(entry.action))).collect();
+        assert_eq!(found("view", &rows)[0].0.action, can);
+        assert_ne!(found("", &rows)[0].0.action, can, "without words the table's order stays");
+    }
+}

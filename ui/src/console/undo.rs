@@ -1,0 +1,196 @@
+//! Undo and redo of the arrangement and the look of the screen.
+//!
+//! A [`Look`] is everything that can be taken back: a list of what is in it, so that nothing else ever is. What goes to the machine
+//! (mode, gain, delay, thresholds, engaging, stopping) is no part of it, nor is the role, whose demonstration sets modes, nor the alarms'
+//! sound, nor what is recorded. The history ends with the window.
+
+use super::{desk::Layout, panels::ForcesView, scene3d::extras::Extras, settings::PictureSettings};
+
+/// Most steps that can be taken back.
+const STEPS: usize = 100;
+/// A slider or a wheel that goes on changing the same part within this time makes one step, s.
+const SAME_STEP_S: f64 = 0.6;
+
+/// The arrangement and the look of the screen.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Look {
+    pub(super) layout: Layout,
+    pub(super) light: bool,
+    pub(super) scale_percent: u16,
+    pub(super) picture: PictureSettings,
+    pub(super) extras: Extras,
+    pub(super) traces: ForcesView,
+}
+
+/// How two looks differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Change {
+    /// Only in what a slider sets: the endoscope's picture.
+    Picture,
+    /// Only in what wheel and drag set: the interval of the traces.
+    Traces,
+    /// In something that is set with one action.
+    AtOnce,
+}
+
+impl Look {
+    /// How it differs from this one. Which tab is in front is no change: it would be in the way of what matters.
+    fn change(&self, other: &Self) -> Option<Change> {
+        let Self { layout, light, scale_percent, picture, extras, traces } = self;
+        let at_once = layout.places != other.layout.places
+            || layout.closed != other.layout.closed
+            || *light != other.light
+            || *scale_percent != other.scale_percent
+            || *extras != other.extras
+            || traces.side != other.traces.side;
+        match (at_once, *picture != other.picture, *traces != other.traces) {
+            (false, false, false) => None,
+            (false, true, false) => Some(Change::Picture),
+            (false, false, true) => Some(Change::Traces),
+            _ => Some(Change::AtOnce),
+        }
+    }
+}
+
+/// Looks before the present one, and those that were taken back.
+#[derive(Debug, Default)]
+pub(super) struct History {
+    before: Vec<Look>,
+    after: Vec<Look>,
+    now: Option<Look>,
+    last: Option<(Change, f64)>,
+}
+
+impl History {
+    /// Looks at the screen at the end of a frame, at this time of the window; a change is a step once the pointer is not `held` down.
+    pub(super) fn watch(&mut self, look: Look, time_s: f64, held: bool) {
+        let Some(now) = &mut self.now else {
+            self.now = Some(look);
+            return;
+        };
+        if held {
+            return;
+        }
+        let Some(change) = now.change(&look) else {
+            now.layout.front = look.layout.front;
+            return;
+        };
+        let goes_on = change != Change::AtOnce
+            && self.last.is_some_and(|(last, at_s)| last == change && time_s - at_s < SAME_STEP_S);
+        let before = std::mem::replace(now, look);
+        self.last = Some((change, time_s));
+        self.after.clear();
+        if !goes_on {
+            self.before.push(before);
+            if self.before.len() > STEPS {
+                self.before.remove(0);
+            }
+        }
+    }
+
+    /// The next look is taken as it is: the operator did not make it.
+    pub(super) fn adopt(&mut self) {
+        self.now = None;
+    }
+
+    pub(super) const fn can_undo(&self) -> bool {
+        !self.before.is_empty()
+    }
+
+    pub(super) const fn can_redo(&self) -> bool {
+        !self.after.is_empty()
+    }
+
+    /// The look before the last step.
+    pub(super) fn undo(&mut self) -> Option<Look> {
+        let look = self.before.pop()?;
+        self.after.extend(self.now.replace(look.clone()));
+        self.last = None;
+        Some(look)
+    }
+
+    /// The look that was taken back last.
+    pub(super) fn redo(&mut self) -> Option<Look> {
+        let look = self.after.pop()?;
+        self.before.extend(self.now.replace(look.clone()));
+        self.last = None;
+        Some(look)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::{desk::Panel, panels::ForcesState};
+
+    fn plain() -> Look {
+        Look {
+            layout: Layout::default(),
+            light: false,
+            scale_percent: 100,
+            picture: PictureSettings::default(),
+            extras: Extras::default(),
+            traces: ForcesState::default().view(),
+        }
+    }
+
+    #[test]
+    fn steps_are_taken_back_and_made_again_and_a_new_one_ends_that() {
+        let mut history = History::default();
+        let looks: Vec<Look> = [100, 125, 150].map(|scale_percent| Look { scale_percent, ..plain() }).to_vec();
+        for (time_s, look) in looks.iter().enumerate() {
+            history.watch(look.clone(), time_s as f64, false);
+        }
+        assert_eq!(
+            [history.undo(), history.undo(), history.undo()],
+            [Some(looks[1].clone()), Some(looks[0].clone()), None]
+        );
+        assert_eq!(history.redo(), Some(looks[1].clone()));
+        history.watch(looks[1].clone(), 9.0, false);
+        assert!(history.can_undo() && history.can_redo(), "what was made again is no new step");
+        history.watch(Look { light: true, ..looks[1].clone() }, 10.0, false);
+        assert!(!history.can_redo());
+        assert_eq!(history.undo(), Some(looks[1].clone()));
+    }
+
+    #[test]
+    fn a_drag_is_one_step_and_a_slider_that_goes_on_too() {
+        let mut history = History::default();
+        let bright = |brightness_percent| Look {
+            picture: PictureSettings { brightness_percent, ..PictureSettings::default() },
+            ..plain()
+        };
+        history.watch(plain(), 0.0, false);
+        for percent in 1..=20 {
+            history.watch(bright(percent), 1.0 + 0.1 * f64::from(percent), false);
+        }
+        history.watch(bright(40), 9.0, true);
+        history.watch(bright(50), 9.1, false);
+        assert_eq!([history.undo(), history.undo(), history.undo()], [Some(bright(20)), Some(plain()), None]);
+    }
+
+    #[test]
+    fn a_tab_in_front_is_no_step_and_goes_along() {
+        let mut history = History::default();
+        history.watch(plain(), 0.0, false);
+        let front = Look { layout: Layout { front: vec![Panel::Link], ..Layout::default() }, ..plain() };
+        history.watch(front.clone(), 1.0, false);
+        assert!(!history.can_undo());
+        history.watch(Look { light: true, ..front.clone() }, 2.0, false);
+        assert_eq!(history.undo(), Some(front));
+    }
+
+    #[test]
+    fn the_history_is_bounded_and_what_nobody_did_is_no_step() {
+        let mut history = History::default();
+        for step in 0..3 * STEPS {
+            history.watch(Look { light: step % 2 == 0, ..plain() }, step as f64, false);
+        }
+        assert_eq!(std::iter::from_fn(|| history.undo()).count(), STEPS);
+        let mut history = History::default();
+        history.watch(plain(), 0.0, false);
+        history.adopt();
+        history.watch(Look { light: true, ..plain() }, 1.0, false);
+        assert!(!history.can_undo());
+    }
+}

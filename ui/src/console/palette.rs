@@ -62,7 +62,7 @@ impl Palette {
         let keys = Keys::take(ctx);
         let window = Window::new(PALETTE).title_bar(false).resizable(false).movable(false).constrain_to(room);
         let window = window.order(Order::Foreground).fixed_size(vec2(WIDTH.min(room.width() - 24.0), 0.0));
-        let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, room.top() + 8.0));
+        let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, 8.0));
         let mut wanted = None;
         let shown = window.show(ctx, |ui| {
             let edit = TextEdit::singleline(&mut search.words).id(field).hint_text(SEARCH);
@@ -130,7 +130,10 @@ impl Search {
     /// The rows; returns what is to be done.
     fn list_ui(&self, ui: &mut Ui, found: &[Row], keys: &Keys, height: f32) -> Option<Action> {
         let mut wanted = None;
-        ScrollArea::vertical().max_height(height.clamp(120.0, 420.0)).auto_shrink([false, true]).show(ui, |ui| {
+        let height = height.clamp(120.0, 480.0);
+        // The window is as high as what is in it, so that nothing else gives the list its height.
+        let list = ScrollArea::vertical().max_height(height).min_scrolled_height(height).auto_shrink([false, true]);
+        list.show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
             if found.is_empty() {
                 ui.label(weak(NONE_FOUND));

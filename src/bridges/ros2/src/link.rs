@@ -1,0 +1,51 @@
+//! The connection to the console's `OpenIGTLink` server.
+
+use std::{
+    io::{self, Read as _, Write as _},
+    net::{SocketAddr, TcpStream},
+    time::Duration,
+};
+
+use nima_bridges::igtl::{Content, Header, Kind, Message, Stream, Verb};
+
+const PATIENCE: Duration = Duration::from_secs(5);
+/// Longest body that is read, bytes; ours are shorter.
+const LONGEST: u64 = 1 << 16;
+
+#[derive(Debug)]
+pub struct Link(TcpStream);
+
+impl Link {
+    /// Connects, and asks for poses with quaternions, forces and states, so many times a second.
+    pub fn open(address: SocketAddr, rate_hz: u32) -> io::Result<Self> {
+        let stream = TcpStream::connect_timeout(&address, PATIENCE)?;
+        stream.set_nodelay(true)?;
+        stream.set_read_timeout(Some(PATIENCE))?;
+        let mut link = Self(stream);
+        let interval = Stream { interval_ms: 1000 / rate_hz, frame: "world".to_owned() };
+        link.ask(Verb::Start, Kind::Tracking, Some(interval))?;
+        for kind in [Kind::Tracking, Kind::Transform, Kind::Text] {
+            link.ask(Verb::Stop, kind, None)?;
+        }
+        link.ask(Verb::Start, Kind::Position, None)?;
+        Ok(link)
+    }
+
+    fn ask(&mut self, verb: Verb, kind: Kind, stream: Option<Stream>) -> io::Result<()> {
+        self.0.write_all(&Message::new("", 0, Content::Request(verb, kind, stream)).encode())
+    }
+
+    /// The next message; waits for it. A status comes once a second.
+    pub fn next(&mut self) -> io::Result<Message> {
+        let wrong = |error| io::Error::new(io::ErrorKind::InvalidData, error);
+        let mut head = [0; Header::BYTES];
+        self.0.read_exact(&mut head)?;
+        let header = Header::read(&head).map_err(wrong)?;
+        if header.body_bytes > LONGEST {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "a message that is too long"));
+        }
+        let mut body = vec![0; header.body_bytes as usize];
+        self.0.read_exact(&mut body)?;
+        Message::read(&header, &body).map_err(wrong)
+    }
+}

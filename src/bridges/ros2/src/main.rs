@@ -1,0 +1,147 @@
+//! `nima-bridge-ros2`: poses, forces and states of a loop as ROS 2 topics. A client of the console's `OpenIGTLink` server (`--igtl`), which tells and
+//! hears nothing else; this program subscribes to no topic. What it publishes is in `docs/bridges.md`.
+
+mod link;
+mod publish;
+mod topics;
+
+use std::{
+    io,
+    net::{Ipv4Addr, SocketAddr, UdpSocket},
+    process::ExitCode,
+    thread::sleep,
+    time::Duration,
+};
+
+use clap::Parser;
+
+use crate::{link::Link, publish::Publisher};
+
+/// Between two attempts to reach the console.
+const AGAIN: Duration = Duration::from_secs(1);
+
+/// Publishes poses, forces and states of a running loop of NIMA Console as ROS 2 topics with the names of CRTK
+#[derive(Debug, Parser)]
+#[command(version)]
+struct Arguments {
+    /// Where `nima run --igtl` or `nima console --igtl` listens
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:18944")]
+    from: SocketAddr,
+    /// Addresses of this computer in the networks that may read, with commas; 127.0.0.1 is this computer alone, 0.0.0.0 every network
+    #[arg(long, value_name = "ADDRESSES", default_value = "127.0.0.1", value_delimiter = ',', value_parser = own_address)]
+    network: Vec<Ipv4Addr>,
+    /// Domain of ROS 2
+    #[arg(long, value_name = "N", env = "ROS_DOMAIN_ID", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=232))]
+    domain: u16,
+    /// Namespace of the topics
+    #[arg(long, value_name = "NAME", default_value = "nima", value_parser = namespace)]
+    namespace: String,
+    /// Poses and forces in a second, 1 to 100
+    #[arg(long, value_name = "HZ", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100))]
+    rate: u32,
+}
+
+/// A name as ROS 2 allows it: letters, digits, underscores, parts between slashes.
+fn namespace(text: &str) -> Result<String, String> {
+    let is_part = |part: &str| {
+        part.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_')
+            && part.chars().all(|one| one.is_ascii_alphanumeric() || one == '_')
+    };
+    let name = text.trim_matches('/');
+    if name.split('/').all(is_part) {
+        Ok(name.to_owned())
+    } else {
+        Err("give letters, digits and underscores, parts between slashes: nima or lab/nima".to_owned())
+    }
+}
+
+/// DDS would take a foreign address too, and be heard by nobody.
+fn own_address(text: &str) -> Result<Ipv4Addr, String> {
+    let address: Ipv4Addr = text.parse().map_err(|_| "give an address as 192.168.1.5".to_owned())?;
+    UdpSocket::bind((address, 0)).map(|_| address).map_err(|_| "no address of this computer".to_owned())
+}
+
+/// What a lost connection means, and what to do.
+fn words(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => "nothing came for 5 s; is this the console?".to_owned(),
+        io::ErrorKind::InvalidData => format!("{error}; give the address of `--igtl`"),
+        _ => format!("{error}; start `nima run --igtl` or `nima console --igtl`"),
+    }
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let publisher = match Publisher::new(arguments.domain, &arguments.network, &arguments.namespace) {
+        Ok(publisher) => publisher,
+        Err(error) => {
+            eprintln!("nima-bridge-ros2: no DDS in domain {}: {error}; check the network", arguments.domain);
+            return ExitCode::FAILURE;
+        }
+    };
+    eprintln!("nima-bridge-ros2: publishes /{}/... in domain {}", arguments.namespace, arguments.domain);
+    let mut told = String::new();
+    loop {
+        let ended = Link::open(arguments.from, arguments.rate).and_then(|mut link| {
+            eprintln!("nima-bridge-ros2: reads from {}", arguments.from);
+            told.clear();
+            loop {
+                let message = link.next()?;
+                if let Some(sample) = topics::sample(&message) {
+                    publisher.publish(&sample);
+                }
+            }
+        });
+        // The same reason once.
+        if let Err::<(), _>(error) = ended {
+            let words = words(&error);
+            if words != told {
+                eprintln!("nima-bridge-ros2: {}: {words}", arguments.from);
+                told = words;
+            }
+        }
+        sleep(AGAIN);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_ros_refuses_are_refused_here() {
+        assert_eq!(namespace("/lab_2/nima/").as_deref(), Ok("lab_2/nima"));
+        for bad in ["", "2nima", "a//b", "a b", "nima!", "~/x"] {
+            assert!(namespace(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn the_command_line_is_sound() {
+        use clap::CommandFactory as _;
+        Arguments::command().debug_assert();
+        assert!(Arguments::try_parse_from(["x", "--rate", "0"]).is_err());
+        assert!(Arguments::try_parse_from(["x", "--domain", "233"]).is_err());
+    }
+
+    #[test]
+    fn it_is_this_computer_alone_unless_another_of_its_addresses_is_named() {
+        let network = |arguments: &[&str]| Arguments::try_parse_from(arguments).map(|all| all.network);
+        assert_eq!(network(&["x"]).unwrap(), [Ipv4Addr::LOCALHOST]);
+        assert_eq!(network(&["x", "--network", "127.0.0.1,127.0.0.2"]).unwrap().len(), 2);
+        // An address for documentation (RFC 5737), which nobody has.
+        for foreign in ["203.0.113.77", "lo"] {
+            assert!(network(&["x", "--network", foreign]).is_err(), "{foreign}");
+        }
+    }
+
+    #[test]
+    fn a_lost_connection_is_told_with_what_to_do() {
+        assert!(
+            words(&io::ErrorKind::ConnectionRefused.into())
+                .ends_with("start `nima run --igtl` or `nima console --igtl`")
+        );
+        assert!(words(&io::ErrorKind::WouldBlock.into()).starts_with("nothing came for 5 s"));
+        assert!(words(&io::Error::new(io::ErrorKind::InvalidData, "x")).contains("address of `--igtl`"));
+    }
+}

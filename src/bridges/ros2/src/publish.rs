@@ -1,0 +1,89 @@
+//! The writers of the topics.
+
+use std::{collections::BTreeMap, net::Ipv4Addr};
+
+use rustdds::{
+    DomainParticipant, DomainParticipantBuilder, QosPolicies, QosPolicyBuilder, TopicKind,
+    no_key::DataWriter,
+    policy::{Durability, History, Reliability},
+};
+use serde::Serialize;
+
+use crate::topics::{Data, OperatingState, PoseStamped, Sample, Side, Topic, WrenchStamped};
+
+enum Writer {
+    Pose(DataWriter<PoseStamped>),
+    Wrench(DataWriter<WrenchStamped>),
+    State(DataWriter<OperatingState>),
+}
+
+/// Publishes samples of both arms.
+pub struct Publisher {
+    writers: BTreeMap<(Side, Topic), Writer>,
+    /// Without it nothing is published any more.
+    _participant: DomainParticipant,
+}
+
+/// Reliable, so that readers of either kind match; the newest sample only, so that nobody waits for what is old.
+fn usual() -> QosPolicyBuilder {
+    QosPolicyBuilder::new()
+        .reliability(Reliability::Reliable { max_blocking_time: rustdds::Duration::ZERO })
+        .history(History::KeepLast { depth: 1 })
+}
+
+impl Publisher {
+    /// Of this domain and namespace; announced in the networks of these addresses alone, or in all of them.
+    pub fn new(domain: u16, networks: &[Ipv4Addr], namespace: &str) -> Result<Self, String> {
+        let mut builder = DomainParticipantBuilder::new(domain);
+        if !networks.iter().any(Ipv4Addr::is_unspecified) {
+            builder = builder.with_only_networks(networks.iter().copied());
+        }
+        let participant = builder.build().map_err(|error| error.to_string())?;
+        let writers =
+            Side::ALL.into_iter().flat_map(|side| Topic::ALL.map(|topic| (side, topic))).map(|(side, topic)| {
+                // As ROS 2 names its topics and types in DDS.
+                let name = format!("rt/{namespace}/{}/{}", side.word(), topic.name());
+                Ok(((side, topic), writer(&participant, &name, topic)?))
+            });
+        let writers = writers.collect::<Result<_, String>>()?;
+        Ok(Self { writers, _participant: participant })
+    }
+
+    /// Hands a sample to its readers. One that cannot be written now is followed by the next one.
+    pub fn publish(&self, sample: &Sample) {
+        match (self.writers.get(&(sample.side, sample.topic)), &sample.data) {
+            (Some(Writer::Pose(writer)), Data::Pose(pose)) => drop(writer.write(pose.clone(), None)),
+            (Some(Writer::Wrench(writer)), Data::Wrench(wrench)) => drop(writer.write(wrench.clone(), None)),
+            (Some(Writer::State(writer)), Data::State(state)) => drop(writer.write(state.clone(), None)),
+            _ => {}
+        }
+    }
+}
+
+fn writer(participant: &DomainParticipant, name: &str, topic: Topic) -> Result<Writer, String> {
+    Ok(match topic {
+        Topic::MeasuredCp | Topic::SetpointCp => {
+            Writer::Pose(of_type(participant, name, "geometry_msgs::msg::dds_::PoseStamped_", &usual().build())?)
+        }
+        Topic::MeasuredCf | Topic::RenderedCf => {
+            Writer::Wrench(of_type(participant, name, "geometry_msgs::msg::dds_::WrenchStamped_", &usual().build())?)
+        }
+        // Who comes late learns the state at once.
+        Topic::OperatingState => {
+            let qos = usual().durability(Durability::TransientLocal).build();
+            Writer::State(of_type(participant, name, "crtk_msgs::msg::dds_::OperatingState_", &qos)?)
+        }
+    })
+}
+
+fn of_type<D: Serialize>(
+    participant: &DomainParticipant,
+    name: &str,
+    kind: &str,
+    qos: &QosPolicies,
+) -> Result<DataWriter<D>, String> {
+    let publisher = participant.create_publisher(qos).map_err(|error| error.to_string())?;
+    let topic = participant.create_topic(name.to_owned(), kind.to_owned(), qos, TopicKind::NoKey);
+    let topic = topic.map_err(|error| error.to_string())?;
+    publisher.create_datawriter_no_key_cdr(&topic, None).map_err(|error| error.to_string())
+}

@@ -1,0 +1,231 @@
+//! What is published, under which names of CRTK (<https://crtk-robotics.readthedocs.io>).
+
+use nima_bridges::igtl::{Content, Message, Position, Sensor, Status, Unit};
+use serde::{Deserialize, Serialize};
+
+/// The frame of all poses and forces.
+const WORLD: &str = "world";
+
+/// `builtin_interfaces/msg/Time`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Time {
+    sec: i32,
+    nanosec: u32,
+}
+
+/// `std_msgs/msg/Header`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Header {
+    stamp: Time,
+    frame_id: String,
+}
+
+/// `geometry_msgs/msg/Point` and `Vector3`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Vector3 {
+    x: f64,
+    y: f64,
+    z: f64,
+}
+
+/// `geometry_msgs/msg/Quaternion`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Quaternion {
+    x: f64,
+    y: f64,
+    z: f64,
+    w: f64,
+}
+
+/// `geometry_msgs/msg/PoseStamped`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PoseStamped {
+    header: Header,
+    position: Vector3,
+    orientation: Quaternion,
+}
+
+/// `geometry_msgs/msg/WrenchStamped`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WrenchStamped {
+    header: Header,
+    force: Vector3,
+    torque: Vector3,
+}
+
+/// `crtk_msgs/msg/OperatingState`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct OperatingState {
+    header: Header,
+    state: String,
+    is_homed: bool,
+    is_busy: bool,
+}
+
+/// An arm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Side {
+    Right,
+    Left,
+}
+
+impl Side {
+    pub const ALL: [Self; 2] = [Self::Right, Self::Left];
+
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Right => "right",
+            Self::Left => "left",
+        }
+    }
+}
+
+/// Where a sample of an arm goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Topic {
+    MeasuredCp,
+    SetpointCp,
+    MeasuredCf,
+    RenderedCf,
+    OperatingState,
+}
+
+impl Topic {
+    pub const ALL: [Self; 5] =
+        [Self::MeasuredCp, Self::SetpointCp, Self::MeasuredCf, Self::RenderedCf, Self::OperatingState];
+
+    /// Its name behind that of the arm.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::MeasuredCp => "measured_cp",
+            Self::SetpointCp => "setpoint_cp",
+            Self::MeasuredCf => "measured_cf",
+            Self::RenderedCf => "rendered_cf",
+            Self::OperatingState => "operating_state",
+        }
+    }
+}
+
+/// What is published.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Data {
+    Pose(PoseStamped),
+    Wrench(WrenchStamped),
+    State(OperatingState),
+}
+
+/// A sample of an arm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sample {
+    pub side: Side,
+    pub topic: Topic,
+    pub data: Data,
+}
+
+/// What a message becomes; `None` for those that have no topic.
+pub fn sample(message: &Message) -> Option<Sample> {
+    let (arm, what) = message.device.split_once('.')?;
+    let side = Side::ALL.into_iter().find(|side| side.word() == arm)?;
+    let stamp = Time {
+        sec: i32::try_from(message.time_ns / 1_000_000_000).ok()?,
+        nanosec: (message.time_ns % 1_000_000_000) as u32,
+    };
+    let header = Header { stamp, frame_id: WORLD.to_owned() };
+    let (topic, data) = match (what, &message.content) {
+        ("tip", Content::Position(position)) => (Topic::MeasuredCp, pose(header, position)),
+        ("leader", Content::Position(position)) => (Topic::SetpointCp, pose(header, position)),
+        ("measured", Content::Sensor(sensor)) => (Topic::MeasuredCf, wrench(header, sensor)?),
+        ("rendered", Content::Sensor(sensor)) => (Topic::RenderedCf, wrench(header, sensor)?),
+        ("state", Content::Status(status)) => (Topic::OperatingState, state(header, status)),
+        _ => return None,
+    };
+    Some(Sample { side, topic, data })
+}
+
+/// ROS has metres.
+fn pose(header: Header, position: &Position) -> Data {
+    let [x, y, z] = position.place_mm.map(|mm| f64::from(mm) * 1e-3);
+    let [qx, qy, qz, qw] = position.turn.unwrap_or([0.0, 0.0, 0.0, 1.0]).map(f64::from);
+    let orientation = Quaternion { x: qx, y: qy, z: qz, w: qw };
+    Data::Pose(PoseStamped { header, position: Vector3 { x, y, z }, orientation })
+}
+
+/// Torques are not measured.
+fn wrench(header: Header, sensor: &Sensor) -> Option<Data> {
+    let [x, y, z] = *sensor.values.as_slice() else { return None };
+    let torque = Vector3::default();
+    (sensor.unit == Unit::NEWTON).then_some(Data::Wrench(WrenchStamped { header, force: Vector3 { x, y, z }, torque }))
+}
+
+/// The states of CRTK; the subcodes are those of docs/bridges.md.
+fn state(header: Header, status: &Status) -> Data {
+    let state = match status.subcode {
+        3 => "ENABLED",
+        2 | 4 => "PAUSED",
+        6 => "FAULT",
+        _ => "DISABLED",
+    };
+    let (is_homed, is_busy) = (status.subcode != 0, false);
+    Data::State(OperatingState { header, state: state.to_owned(), is_homed, is_busy })
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_bridges::igtl::{StatusCode, Text};
+
+    use super::*;
+
+    fn of(device: &str, content: Content) -> Option<Sample> {
+        sample(&Message::new(device, 1_700_000_000_250_000_000, content))
+    }
+
+    #[test]
+    fn millimetres_become_metres_and_times_stay() {
+        let position = Position { place_mm: [1.0, -2.0, 3.5], turn: Some([0.0, 0.6, 0.0, 0.8]) };
+        let Some(Sample { side: Side::Left, topic: Topic::MeasuredCp, data: Data::Pose(pose) }) =
+            of("left.tip", Content::Position(position))
+        else {
+            panic!()
+        };
+        assert_eq!(pose.header.stamp, Time { sec: 1_700_000_000, nanosec: 250_000_000 });
+        assert!((pose.position.z - 3.5e-3).abs() < 1e-9 && pose.position.y < 0.0, "{pose:?}");
+        assert!((pose.orientation.w - 0.8).abs() < 1e-6 && (pose.orientation.y - 0.6).abs() < 1e-6);
+    }
+
+    #[test]
+    fn forces_need_the_right_unit_and_three_numbers() {
+        let force = |unit, values: &[f64]| {
+            of("right.measured", Content::Sensor(Sensor { status: 0, unit, values: values.to_vec() }))
+        };
+        let Some(Sample { data: Data::Wrench(wrench), topic: Topic::MeasuredCf, .. }) =
+            force(Unit::NEWTON, &[0.1, 0.2, -0.3])
+        else {
+            panic!()
+        };
+        assert_eq!(wrench.force, Vector3 { x: 0.1, y: 0.2, z: -0.3 });
+        assert_eq!(force(Unit(0), &[0.1, 0.2, -0.3]), None);
+        assert_eq!(force(Unit::NEWTON, &[0.1, 0.2]), None);
+    }
+
+    #[test]
+    fn states_are_those_of_crtk() {
+        let told = |subcode| {
+            let status = Status { code: StatusCode::OK, subcode, name: String::new(), text: String::new() };
+            let Some(Sample { data: Data::State(state), .. }) = of("right.state", Content::Status(status)) else {
+                panic!()
+            };
+            (state.state, state.is_homed)
+        };
+        let expected = ["DISABLED", "DISABLED", "PAUSED", "ENABLED", "PAUSED", "DISABLED", "FAULT"];
+        for (subcode, state) in expected.into_iter().enumerate() {
+            assert_eq!(told(subcode as i64), (state.to_owned(), subcode != 0));
+        }
+    }
+
+    #[test]
+    fn what_has_no_topic_is_left_out() {
+        assert_eq!(of("nima", Content::Text(Text::of("{}"))), None);
+        assert_eq!(of("middle.tip", Content::Position(Position { place_mm: [0.0; 3], turn: None })), None);
+        assert_eq!(of("right.tip", Content::Text(Text::of("x"))), None);
+    }
+}

@@ -3,7 +3,9 @@
 
 import os
 import pathlib
+import socket
 import subprocess
+import sys
 import tempfile
 import time
 from dataclasses import dataclass
@@ -77,36 +79,152 @@ LOOPBACK = """<CycloneDDS><Domain>
 </Domain></CycloneDDS>"""
 
 
-def listen(domain, seconds):
-    """All samples by topic, with the times of their arrival."""
-    from cyclonedds.core import Policy, Qos
-    from cyclonedds.domain import Domain, DomainParticipant
-    from cyclonedds.sub import DataReader
-    from cyclonedds.topic import Topic
-    from cyclonedds.util import duration
+class Reader:
+    """A participant on this computer alone, and what it reads by topic, with the times of arrival."""
 
-    pose, wrench, state = types()
-    configured = Domain(domain, LOOPBACK)
-    participant = DomainParticipant(domain)
-    usual = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(100))
-    late = Qos(
-        Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.TransientLocal, Policy.History.KeepLast(100)
-    )
-    readers = {}
-    for name, kind, qos in [
-        ("right/measured_cp", pose, usual),
-        ("left/measured_cp", pose, usual),
-        ("right/setpoint_cp", pose, usual),
-        ("right/measured_cf", wrench, usual),
-        ("right/operating_state", state, late),
-    ]:
-        readers[name] = DataReader(participant, Topic(participant, f"rt/nima/{name}", kind), qos=qos)
-    found, end = {name: [] for name in readers}, time.time() + seconds
-    while time.time() < end:
-        for name, reader in readers.items():
-            found[name] += [(time.time(), sample) for sample in reader.take(N=100)]
-        time.sleep(0.005)
-    return found
+    def __init__(self, domain):
+        from cyclonedds.core import Policy, Qos
+        from cyclonedds.domain import Domain, DomainParticipant
+        from cyclonedds.util import duration
+
+        self.pose, self.wrench, self.state = types()
+        history, reliable = Policy.History.KeepLast(100), Policy.Reliability.Reliable(duration(seconds=1))
+        self.usual, self.late = Qos(reliable, history), Qos(reliable, history, Policy.Durability.TransientLocal)
+        self.best_effort = Qos(Policy.Reliability.BestEffort, history)
+        self.domain = Domain(domain, LOOPBACK)
+        self.participant = DomainParticipant(domain)
+        self.readers = {
+            "right/measured_cp": self.reader("right/measured_cp", self.pose, self.usual),
+            "left/measured_cp": self.reader("left/measured_cp", self.pose, self.best_effort),
+            "right/setpoint_cp": self.reader("right/setpoint_cp", self.pose, self.usual),
+            "right/measured_cf": self.reader("right/measured_cf", self.wrench, self.usual),
+            "left/rendered_cf": self.reader("left/rendered_cf", self.wrench, self.usual),
+            "right/operating_state": self.reader("right/operating_state", self.state, self.late),
+        }
+
+    def reader(self, name, kind, qos):
+        from cyclonedds.sub import DataReader
+        from cyclonedds.topic import Topic
+
+        return DataReader(self.participant, Topic(self.participant, f"rt/nima/{name}", kind), qos=qos)
+
+    def listen(self, seconds):
+        found, end = {name: [] for name in self.readers}, time.time() + seconds
+        while time.time() < end:
+            for name, reader in self.readers.items():
+                found[name] += [(time.time(), sample) for sample in reader.take(N=100)]
+            time.sleep(0.002)
+        return found
+
+    def state_before(self):
+        """Whether a reader that comes now is told a state from before. One comes by itself once a second: the first of three decides."""
+        for _ in range(3):
+            now, reader = time.time(), self.reader("right/operating_state", self.state, self.late)
+            while not (samples := reader.take(N=1)):
+                if time.time() > now + 5:
+                    return False
+                time.sleep(0.002)
+            if seconds(samples[0].header) < now:
+                return True
+        return False
+
+    def offered(self):
+        """What others publish and what they subscribe to: by topic its type, and the policies."""
+        from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription
+        from cyclonedds.core import Policy
+
+        policies = [Policy.Reliability, Policy.Durability, Policy.History]
+
+        def of(topic):
+            ends = BuiltinDataReader(self.participant, topic).take(N=1000)
+            theirs = [one for one in ends if one.participant_key != self.participant.guid]
+            # Topics of ROS 2 begin so; those of discovery itself do not.
+            theirs = [one for one in theirs if one.topic_name.startswith("rt/")]
+            return {one.topic_name[3:]: (one.type_name, [one.qos[policy] for policy in policies]) for one in theirs}
+
+        return of(BuiltinTopicDcpsPublication), of(BuiltinTopicDcpsSubscription)
+
+
+def documented():
+    """The table of the quality of service in docs/bridges.md."""
+    from cyclonedds.core import Policy
+
+    def offers(topic, kind):
+        durability = Policy.Durability.TransientLocal if topic == "operating_state" else Policy.Durability.Volatile
+        return kind, [Policy.Reliability.Reliable(0), durability, Policy.History.KeepLast(1)]
+
+    pose, wrench = "geometry_msgs::msg::dds_::PoseStamped_", "geometry_msgs::msg::dds_::WrenchStamped_"
+    kinds = {
+        "measured_cp": pose,
+        "setpoint_cp": pose,
+        "measured_cf": wrench,
+        "rendered_cf": wrench,
+        "operating_state": "crtk_msgs::msg::dds_::OperatingState_",
+    }
+    return {f"nima/{side}/{topic}": offers(topic, kind) for side in ("right", "left") for topic, kind in kinds.items()}
+
+
+class Group:
+    """Hears what participants of this domain say to every network of this computer, at the address where DDS looks for others."""
+
+    def __init__(self, domain):
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self.socket.bind(("", 7400 + 250 * domain))
+        self.socket.setblocking(False)
+        for index, _ in socket.if_nameindex():
+            membership = socket.inet_aton("239.255.0.1") + bytes(4) + index.to_bytes(4, sys.byteorder)
+            try:
+                self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+            except OSError:
+                pass  # a network that is down, or has no multicast
+
+    def heard(self):
+        try:
+            return self.socket.recv(65536)
+        except BlockingIOError:
+            return None
+
+
+def seconds(header):
+    return header.stamp.sec + header.stamp.nanosec * 1e-9
+
+
+def compare(peer, found, truth):
+    times = sorted(truth)
+    for name, samples in found.items():
+        peer.check(f"{name} comes", len(samples) > (2 if "state" in name else 300), len(samples))
+
+    def row(header):
+        peer.check("frame", header.frame_id == "world", header.frame_id)
+        stamp_ns = header.stamp.sec * 10**9 + header.stamp.nanosec
+        nearest = min(times, key=lambda time_ns: abs(time_ns - stamp_ns))
+        peer.check("a stamp of a tick", abs(nearest - stamp_ns) < 1000, stamp_ns - nearest)
+        return truth[nearest]
+
+    for name, of in [("right/measured_cp", "right.tip"), ("left/measured_cp", "left.tip"), ("right/setpoint_cp", "right.leader")]:
+        for _, sample in found[name][::40]:
+            expected, turn = row(sample.header), sample.pose.orientation
+            for axis in "xyz":
+                peer.near(f"{name}, m", getattr(sample.pose.position, axis), expected[f"{of}.{axis}_m"], 1e-7)
+            peer.near("a unit quaternion", turn.x**2 + turn.y**2 + turn.z**2 + turn.w**2, 1.0, 1e-5)
+    for name, of in [("right/measured_cf", "right.measured"), ("left/rendered_cf", "left.rendered")]:
+        largest = 0
+        for _, sample in found[name][::40]:
+            expected = row(sample.header)
+            for axis in "xyz":
+                force = getattr(sample.wrench.force, axis)
+                peer.near(f"{name}, N", force, expected[f"{of}.{axis}_n"], 1e-12)
+                largest = max(largest, abs(force))
+        peer.check(f"{name} is a force that was felt", largest > 0.05, largest)
+    states = {sample.state for _, sample in found["right/operating_state"]}
+    peer.check("the arm is engaged", "ENABLED" in states and states <= {"ENABLED", "PAUSED", "DISABLED"}, states)
+    stamps = [seconds(sample.header) for _, sample in found["right/measured_cp"]]
+    gap = max(second - first for first, second in zip(stamps, stamps[1:]))
+    ages = sorted(at - seconds(sample.header) for at, sample in found["right/measured_cp"])
+    late = [(age - ages[0]) * 1e3 for age in ages]
+    p50, p99 = late[len(late) // 2], late[len(late) * 99 // 100]
+    print(f"Cyclone DDS: {len(ages)} poses in 10 s, later than the first of them by {p50:.1f} ms (p50), {p99:.1f} ms (p99); at most {gap * 1e3:.0f} ms between two")
 
 
 def run(nima):
@@ -118,42 +236,34 @@ def run(nima):
     from peer_igtl import recorded, started
 
     domain = os.getpid() % 200
+    group, reader = Group(domain), Reader(domain)
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "ros2.mcap"
-        command = [nima, "run", "--igtl", "127.0.0.1:0", "--record", path, "--scene", "bimanual", "--seconds", "14"]
-        process, host, port = started(command)
+        command = [nima, "run", "--scene", "bimanual", "--igtl"]
+        process, host, port = started([*command, "127.0.0.1:0", "--record", path, "--seconds", "14"])
         publishes = subprocess.Popen([bridge, "--from", f"{host}:{port}", "--domain", str(domain)])
         try:
-            found = listen(domain, 11)
+            found = reader.listen(10)
+            peer.check("who comes late learns the state", reader.state_before())
+            publications, subscriptions = reader.offered()
+            told = process.communicate()[1]
+            peer.check("the run ends well", process.returncode == 0, told)
+            between = [sample.state for _, sample in reader.listen(1.5)["right/operating_state"]]
+            peer.check("no state stays when the run has ended", between[-1:] == ["UNKNOWN"], between)
+            # The next run, at the same address.
+            process, _, _ = started([*command, f"{host}:{port}", "--seconds", "6"])
+            again = reader.listen(4)
+            told = process.communicate()[1]
+            peer.check("the next run ends well", process.returncode == 0, told)
+            peer.check("the bridge still runs", publishes.poll() is None, publishes.poll())
         finally:
             publishes.kill()
             publishes.wait()
-        peer.check("the run ends well", process.wait() == 0, process.returncode)
-        truth = recorded(path)
-    times = sorted(truth)
-    for name, samples in found.items():
-        peer.check(f"{name} comes", len(samples) > (2 if "state" in name else 300), len(samples))
-
-    def row(header):
-        stamp_ns = header.stamp.sec * 10**9 + header.stamp.nanosec
-        nearest = min(times, key=lambda time_ns: abs(time_ns - stamp_ns))
-        peer.check("a stamp of a tick", abs(nearest - stamp_ns) < 1000, stamp_ns - nearest)
-        return truth[nearest]
-
-    for name, of in [("right/measured_cp", "right.tip"), ("left/measured_cp", "left.tip"), ("right/setpoint_cp", "right.leader")]:
-        for _, sample in found[name][::40]:
-            expected, turn = row(sample.header), sample.pose.orientation
-            peer.check("frame", sample.header.frame_id == "world", sample.header.frame_id)
-            for axis in "xyz":
-                peer.near(f"{name}, m", getattr(sample.pose.position, axis), expected[f"{of}.{axis}_m"], 1e-7)
-            peer.near("a unit quaternion", turn.x**2 + turn.y**2 + turn.z**2 + turn.w**2, 1.0, 1e-5)
-    for _, sample in found["right/measured_cf"][::40]:
-        expected = row(sample.header)
-        for axis in "xyz":
-            peer.near("measured_cf, N", getattr(sample.wrench.force, axis), expected[f"right.measured.{axis}_n"], 1e-12)
-    states = {sample.state for _, sample in found["right/operating_state"]}
-    peer.check("the arm is engaged", "ENABLED" in states and states <= {"ENABLED", "PAUSED", "DISABLED"}, states)
-    ages = sorted(at - sample.header.stamp.sec - sample.header.stamp.nanosec * 1e-9 for at, sample in found["right/measured_cp"])
-    late = [(age - ages[0]) * 1e3 for age in ages]
-    print(f"Cyclone DDS: {len(ages)} poses, later than the first by {late[len(late) // 2]:.1f} ms (p50), {late[len(late) * 99 // 100]:.1f} ms (p99)")
+        compare(peer, found, recorded(path))
+    for name, samples in again.items():
+        peer.check(f"{name} comes of the next run too", len(samples) > (1 if "state" in name else 50), len(samples))
+    peer.check("engaged again", "ENABLED" in [sample.state for _, sample in again["right/operating_state"]])
+    peer.check("topics, types and quality of service", publications == documented(), publications)
+    peer.check("it subscribes to nothing", subscriptions == {}, subscriptions)
+    peer.check("no word to another network", group.heard() is None)
     return [peer]

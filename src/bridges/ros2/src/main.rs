@@ -10,7 +10,7 @@ use std::{
     net::{Ipv4Addr, SocketAddr, UdpSocket},
     process::ExitCode,
     thread::sleep,
-    time::Duration,
+    time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
 use clap::Parser;
@@ -65,9 +65,14 @@ fn own_address(text: &str) -> Result<Ipv4Addr, String> {
 fn words(error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => "nothing came for 5 s; is this the console?".to_owned(),
+        io::ErrorKind::UnexpectedEof => "the run ended; waits for the next one".to_owned(),
         io::ErrorKind::InvalidData => format!("{error}; give the address of `--igtl`"),
         _ => format!("{error}; start `nima run --igtl` or `nima console --igtl`"),
     }
+}
+
+fn now_ns() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64)
 }
 
 fn main() -> ExitCode {
@@ -87,11 +92,10 @@ fn main() -> ExitCode {
             told.clear();
             loop {
                 let message = link.next()?;
-                if let Some(sample) = topics::sample(&message) {
-                    publisher.publish(&sample);
-                }
+                publisher.publish(&topics::samples(&message));
             }
         });
+        publisher.publish(&topics::unknown(now_ns()));
         // The same reason once.
         if let Err::<(), _>(error) = ended {
             let words = words(&error);
@@ -141,6 +145,7 @@ mod tests {
             words(&io::ErrorKind::ConnectionRefused.into())
                 .ends_with("start `nima run --igtl` or `nima console --igtl`")
         );
+        assert!(words(&io::ErrorKind::UnexpectedEof.into()).starts_with("the run ended"));
         assert!(words(&io::ErrorKind::WouldBlock.into()).starts_with("nothing came for 5 s"));
         assert!(words(&io::Error::new(io::ErrorKind::InvalidData, "x")).contains("address of `--igtl`"));
     }

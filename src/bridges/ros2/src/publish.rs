@@ -49,8 +49,14 @@ impl Publisher {
         Ok(Self { writers, _participant: participant })
     }
 
-    /// Hands a sample to its readers. One that cannot be written now is followed by the next one.
-    pub fn publish(&self, sample: &Sample) {
+    /// Hands samples to their readers. One that cannot be written now is followed by the next one.
+    pub fn publish(&self, samples: &[Sample]) {
+        for sample in samples {
+            self.write(sample);
+        }
+    }
+
+    fn write(&self, sample: &Sample) {
         match (self.writers.get(&(sample.side, sample.topic)), &sample.data) {
             (Some(Writer::Pose(writer)), Data::Pose(pose)) => drop(writer.write(pose.clone(), None)),
             (Some(Writer::Wrench(writer)), Data::Wrench(wrench)) => drop(writer.write(wrench.clone(), None)),

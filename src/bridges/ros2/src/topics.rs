@@ -1,6 +1,6 @@
 //! What is published, under which names of CRTK (<https://crtk-robotics.readthedocs.io>).
 
-use nima_bridges::igtl::{Content, Message, Position, Sensor, Status, Unit};
+use nima_bridges::igtl::{Content, Message, Position, Sensor, Status, StatusCode, Unit};
 use serde::{Deserialize, Serialize};
 
 /// The frame of all poses and forces.
@@ -122,15 +122,37 @@ pub struct Sample {
     pub data: Data,
 }
 
-/// What a message becomes; `None` for those that have no topic.
-pub fn sample(message: &Message) -> Option<Sample> {
+impl Header {
+    /// `None` beyond the year 2038, which ROS 2 cannot tell.
+    fn at(time_ns: u64) -> Option<Self> {
+        let sec = i32::try_from(time_ns / 1_000_000_000).ok()?;
+        let stamp = Time { sec, nanosec: (time_ns % 1_000_000_000) as u32 };
+        Some(Self { stamp, frame_id: WORLD.to_owned() })
+    }
+}
+
+/// What a message becomes; nothing for those that have no topic.
+pub fn samples(message: &Message) -> Vec<Sample> {
+    match &message.content {
+        Content::Status(status) if status.code == StatusCode::NOT_READY => unknown(message.time_ns),
+        _ => sample(message).into_iter().collect(),
+    }
+}
+
+/// States of both arms while nothing is told of them: who comes late would take the last ones for those of now.
+pub fn unknown(time_ns: u64) -> Vec<Sample> {
+    let of = |side| {
+        let header = Header::at(time_ns)?;
+        let state = OperatingState { header, state: "UNKNOWN".to_owned(), is_homed: false, is_busy: false };
+        Some(Sample { side, topic: Topic::OperatingState, data: Data::State(state) })
+    };
+    Side::ALL.into_iter().filter_map(of).collect()
+}
+
+fn sample(message: &Message) -> Option<Sample> {
     let (arm, what) = message.device.split_once('.')?;
     let side = Side::ALL.into_iter().find(|side| side.word() == arm)?;
-    let stamp = Time {
-        sec: i32::try_from(message.time_ns / 1_000_000_000).ok()?,
-        nanosec: (message.time_ns % 1_000_000_000) as u32,
-    };
-    let header = Header { stamp, frame_id: WORLD.to_owned() };
+    let header = Header::at(message.time_ns)?;
     let (topic, data) = match (what, &message.content) {
         ("tip", Content::Position(position)) => (Topic::MeasuredCp, pose(header, position)),
         ("leader", Content::Position(position)) => (Topic::SetpointCp, pose(header, position)),
@@ -171,12 +193,12 @@ fn state(header: Header, status: &Status) -> Data {
 
 #[cfg(test)]
 mod tests {
-    use nima_bridges::igtl::{StatusCode, Text};
+    use nima_bridges::igtl::Text;
 
     use super::*;
 
     fn of(device: &str, content: Content) -> Option<Sample> {
-        sample(&Message::new(device, 1_700_000_000_250_000_000, content))
+        samples(&Message::new(device, 1_700_000_000_250_000_000, content)).pop()
     }
 
     #[test]
@@ -220,6 +242,16 @@ mod tests {
         for (subcode, state) in expected.into_iter().enumerate() {
             assert_eq!(told(subcode as i64), (state.to_owned(), subcode != 0));
         }
+    }
+
+    #[test]
+    fn without_a_loop_the_last_states_do_not_stay() {
+        let status =
+            Status { code: StatusCode::NOT_READY, subcode: 0, name: String::new(), text: "no loop runs".to_owned() };
+        let told = samples(&Message::new("nima", 1_700_000_000_250_000_000, Content::Status(status)));
+        assert_eq!(told, unknown(1_700_000_000_250_000_000));
+        assert_eq!(told.iter().map(|sample| sample.side).collect::<Vec<_>>(), Side::ALL);
+        assert!(told.iter().all(|sample| matches!(&sample.data, Data::State(state) if state.state == "UNKNOWN")));
     }
 
     #[test]

@@ -14,7 +14,6 @@ impl Decoder {
     ///
     /// # Errors
     /// Always: it was not built.
-    #[expect(clippy::unused_self, reason = "as the real one")]
     pub fn take(&mut self, _: &[u8], _: bool, _: bool) -> Result<Option<Taken>, Damage> {
         Err(Damage::Undecodable { reason: ABSENT.to_owned() })
     }

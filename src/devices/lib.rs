@@ -13,6 +13,7 @@ pub mod dynamixel;
 pub mod external;
 #[expect(missing_docs, reason = "the names are the manufacturer's")]
 pub mod force_dimension;
+pub mod haply;
 mod health;
 #[expect(missing_docs, reason = "the names are the manufacturer's")]
 pub mod hid;

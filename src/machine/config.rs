@@ -17,6 +17,7 @@ use nima_core::{
     safety::ChainSettings,
     tip_force::Fallback,
 };
+use nima_devices::discovery::Probe;
 use nima_recording::store::ReadyRecord;
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +31,7 @@ pub use own_copy::{change_rig, own_copy};
 pub use rig_file::{Chosen, RigFile, RigFileError};
 pub use teleoperation::{LeaderMount, Teleoperation};
 
-use crate::rig::{self, Part};
+use crate::rig::{self, Part, Side};
 
 /// The settings of a rig: its loop, and its devices if it has any.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -134,9 +135,10 @@ pub struct TipForcePart {
     pub fallback: Fallback,
 }
 
-const RIGS: [(&str, &str); 4] = [
+const RIGS: [(&str, &str); 5] = [
     ("simulated", include_str!("../../config/rigs/simulated.toml")),
     ("desk", include_str!("../../config/rigs/desk.toml")),
+    ("haply-desk", include_str!("../../config/rigs/haply-desk.toml")),
     ("emulated", include_str!("../../config/rigs/emulated.toml")),
     ("paper", include_str!("../../config/rigs/paper.toml")),
 ];
@@ -191,9 +193,36 @@ impl RigConfig {
         let parts = self.devices.iter().flat_map(|devices| {
             Part::ALL.into_iter().filter(|part| part.is_in(devices)).map(|part| part.name_and_make(devices))
         });
-        let desk =
-            self.desk.iter().flat_map(|desk| [desk.cap.as_ref().map(|_| "cap"), desk.pedal.as_ref().map(|_| "pedal")]);
-        parts.chain(desk.flatten().map(str::to_owned)).collect()
+        let handle = |desk: &rig::DeskSettings| {
+            desk.handle.as_ref().map(|handle| Part::Handle(Side::Right).name_of_make(handle.maker()))
+        };
+        let desk = self.desk.iter().flat_map(|desk| {
+            let cap = desk.leading_cap().map(|_| "cap".to_owned());
+            [handle(desk), cap, desk.pedal.as_ref().map(|_| "pedal".to_owned())]
+        });
+        parts.chain(desk.flatten()).collect()
+    }
+
+    /// A test of each of its devices; of a simulated rig, of the handle that leads it.
+    pub fn probes(&self) -> Vec<Box<dyn Probe>> {
+        let handle = self.desk.as_ref().and_then(|desk| desk.handle.as_ref());
+        let handle = handle.map(|handle| handle.probe(Part::Handle(Side::Right).name()));
+        self.devices.as_ref().map(rig::rig_probes).into_iter().flatten().chain(handle).collect()
+    }
+
+    /// Whether nobody can be hurt: no real device renders a force or moves. Only such a rig may engage by itself.
+    pub fn is_harmless(&self) -> bool {
+        self.devices.as_ref().is_none_or(|devices| devices.emulated) && !self.has_real_hand()
+    }
+
+    /// Whether a person's hand holds the handle of a simulated rig.
+    pub fn has_real_hand(&self) -> bool {
+        self.desk.as_ref().is_some_and(|desk| desk.handle.is_some())
+    }
+
+    /// Whether the hand at the handle is simulated, within this program.
+    pub fn has_simulated_hand(&self) -> bool {
+        self.devices.is_none() && !self.has_real_hand()
     }
 
     /// Adds the devices of the last passed ready check, by which exchanged ones are told; `None` forgets them.
@@ -286,7 +315,9 @@ impl RigConfig {
         ranges.check("gates.zero_after_s", gates.zero_after_s, ages, "later than fade_after_s")?;
         self.endoscope.as_ref().map_or(Ok(()), |endoscope| endoscope.check(&ranges))?;
         let devices = self.devices.as_ref().map_or(Ok(()), rig::Settings::check);
+        let desk = self.desk.as_ref().map_or(Ok(()), rig::DeskSettings::check);
         devices
+            .and(desk)
             .and_then(|()| self.check_simulated_wrists())
             .map_err(|source| ConfigError::Device { name: self.name.clone(), source })
     }

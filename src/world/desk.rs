@@ -1,5 +1,5 @@
-//! Desk devices that lead a simulated rig: a six-axis cap such as a `SpaceMouse` leads the right hand; pedals are
-//! clutch and presence switch.
+//! Desk devices that lead a simulated rig: a six-axis cap such as a `SpaceMouse`, or a haptic handle (`held`),
+//! leads the right hand; pedals are clutch and presence switch.
 //!
 //! The cap commands a velocity: its deflection (-1 to 1) times [`DeskSettings::speed_m_s`], in the workspace (x right,
 //! y away, z up). Until it is touched, the simulated hand performs its task; from then on the hand is led by the cap,
@@ -9,7 +9,7 @@
 
 use nalgebra::Vector3;
 use nima_devices::{
-    CapReading, Health, PedalReading, Slot,
+    CapReading, Health, Lever, PedalReading, Slot,
     hid::{CapDriver, Held, PedalDriver, PedalRoles},
 };
 use nima_machine::rig::{
@@ -17,7 +17,7 @@ use nima_machine::rig::{
     SIDES, Side, Switches, Watch,
 };
 
-use super::Worlds;
+use super::{Worlds, held::Held as HeldHandle};
 
 /// Smaller deflections count as zero.
 const TOUCH: f64 = 0.05;
@@ -30,6 +30,7 @@ const STEP_MAX_S: f64 = 0.01;
 /// A simulated rig with a cap and pedals.
 pub struct Desk {
     worlds: Worlds,
+    handle: Option<HeldHandle>,
     cap: Option<(Slot<CapDriver>, Held<CapReading>)>,
     pedal: Option<(Slot<PedalDriver>, Held<PedalReading>, PedalRoles)>,
     speed_m_s: f64,
@@ -55,7 +56,13 @@ impl Desk {
     /// [`RigError`] if a setting is invalid or a thread cannot be created.
     pub fn start(settings: &DeskSettings, worlds: Worlds) -> Result<(Self, Roster), RigError> {
         let mut roster = Roster::new();
-        let cap = settings.cap.clone().map(|cap| {
+        let handle = settings.handle.as_ref().map(|handle| {
+            let (handle, entry) = HeldHandle::start(handle)?;
+            roster.push(entry);
+            Ok::<_, RigError>(handle)
+        });
+        let handle = handle.transpose()?;
+        let cap = settings.leading_cap().cloned().map(|cap| {
             let driver = format!("cap, {}", cap.source);
             let slot = Slot::start("cap", move || CapDriver::open(&cap))?;
             let view = slot.view();
@@ -75,6 +82,7 @@ impl Desk {
         let pedal = pedal.transpose()?;
         let desk = Self {
             worlds,
+            handle,
             cap,
             pedal,
             speed_m_s: settings.speed_m_s,
@@ -143,22 +151,30 @@ impl Desk {
     }
 
     fn standings(&self) -> impl Iterator<Item = &Health> {
+        let handle = self.handle.as_ref().map(HeldHandle::health);
         let cap = self.cap.as_ref().map(|(slot, _)| slot.health());
-        cap.into_iter().chain(self.pedal.as_ref().map(|(slot, ..)| slot.health()))
+        handle.into_iter().chain(cap).chain(self.pedal.as_ref().map(|(slot, ..)| slot.health()))
     }
 }
 
 impl Rig for Desk {
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
-        let (led_m, switches) = (self.lead(now_s), self.switches(now_s));
+        let by_handle_m = self.handle.as_mut().and_then(|handle| handle.poll(now_s));
+        let (led_m, switches) = (by_handle_m.or_else(|| self.lead(now_s)), self.switches(now_s));
         let outputs = self.led(led_m);
         let mut watch = std::mem::take(&mut self.watch);
         for (device, health) in self.standings().enumerate() {
-            watch.look(now_s, device, health.standing, [false; SIDES]);
+            // The handle is the first of them, and on the path of the right force.
+            let carries_force = self.handle.is_some() && device == 0;
+            watch.look(now_s, device, health.standing, [carries_force, false]);
         }
         self.watch = watch;
         self.worlds.write(now_s, &outputs);
         let mut inputs = self.worlds.read(now_s);
+        if let Some(handle) = &self.handle {
+            let right = &mut inputs[Side::Right.index()];
+            *right = right.as_ref().and_then(|inputs| handle.led(now_s, inputs));
+        }
         for input in inputs.iter_mut().flatten() {
             input.switches = switches;
         }
@@ -171,6 +187,13 @@ impl Rig for Desk {
 
     fn write(&mut self, _: f64, outputs: &[Outputs; SIDES]) {
         self.outputs = *outputs;
+        if let Some(handle) = &mut self.handle {
+            handle.write(&outputs[Side::Right.index()]);
+        }
+    }
+
+    fn levers(&self) -> Vec<Lever> {
+        self.handle.iter().map(HeldHandle::lever).collect()
     }
 
     fn event(&mut self) -> Option<DeviceEvent> {
@@ -341,7 +364,7 @@ mod tests {
             let settings = DeskSettings {
                 cap: Some(CapSettings { source: source(&cap.endpoint), ..CapSettings::default() }),
                 pedal: Some(PedalSettings { source: source(&pedal.endpoint), ..PedalSettings::default() }),
-                speed_m_s: 0.06,
+                ..DeskSettings::default()
             };
             let worlds = Worlds::new(&Scene::load("free_motion").unwrap(), 1000.0);
             let (mut desk, roster) = Desk::start(&settings, worlds).unwrap();

@@ -12,6 +12,8 @@ pub mod emulated;
 pub mod emulators;
 mod feeling;
 mod hand;
+#[cfg(unix)]
+mod held;
 mod person;
 mod plan;
 mod playing;

@@ -10,6 +10,7 @@ mod device_rig;
 mod dynamixel;
 mod external;
 mod force_dimension;
+mod haply;
 mod hid;
 mod kinematics;
 mod kinova;

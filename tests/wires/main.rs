@@ -8,6 +8,7 @@ mod emulated_rig;
 mod endoscope;
 mod external;
 mod frames;
+mod haply;
 mod killed;
 mod rig_diagnosis;
 mod sides;

@@ -178,7 +178,7 @@ pub(crate) fn ended_by(fault: Fault) -> String {
 /// condition it does not.
 pub(crate) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, leave: &Leave) -> anyhow::Result<Ran> {
     let rig = RigConfig::load(&study.plan().rig)?;
-    if rig.devices.is_some() {
+    if !rig.has_simulated_hand() {
         bail!("rig \"{}\" has devices, which need the real clock: --virtual is for simulated rigs", rig.name);
     }
     let (scene, task) = scene_for(study, &rig, hand)?;

@@ -6,7 +6,7 @@ use super::{DeviceProbe, Found, Probe, SerialProbe, Speaks, TcpProbe};
 use crate::{
     Trouble,
     bota::{self, Transport},
-    external, force_dimension,
+    external, force_dimension, haply,
     hid::{CapDriver, CapSettings, PedalDriver, PedalSettings},
     kinova, ndi,
 };
@@ -38,6 +38,7 @@ pub const KINDS: &[ProbeKind] = &[
         usage: "force-dimension[=SERIAL|emulated:ADDRESS:PORT]",
         make: force_dimension,
     },
+    ProbeKind { name: "haply", usage: "haply=PORT", make: haply },
     ProbeKind { name: "external-handle", usage: "external-handle=ADDRESS:PORT[,FROM]", make: external_handle },
     ProbeKind { name: "external-arm", usage: "external-arm=ADDRESS:PORT[,FROM]", make: external_arm },
     ProbeKind { name: "external-sensor", usage: "external-sensor=ADDRESS:PORT[,FROM]", make: external_sensor },
@@ -144,6 +145,13 @@ fn force_dimension(place: &str) -> Result<Box<dyn Probe>, Trouble> {
         None => settings.serial = Some(place.parse().map_err(|_| refused())?),
     }
     Ok(super::probes::handle("force-dimension", settings))
+}
+
+fn haply(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    if place.is_empty() {
+        return Err(wrong("haply", place, "the handle's device file"));
+    }
+    Ok(super::probes::haply("haply", haply::Settings::at(place)))
 }
 
 fn external_handle(place: &str) -> Result<Box<dyn Probe>, Trouble> {

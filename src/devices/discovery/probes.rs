@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::{DeviceProbe, Probe, Speaks};
-use crate::{bota, dynamixel, external, force_dimension, hid, kinova, ndi};
+use crate::{bota, dynamixel, external, force_dimension, haply, hid, kinova, ndi};
 
 /// A first-generation sensor restarts whenever its line is opened.
 const START: Duration = Duration::from_secs(1);
@@ -46,6 +46,12 @@ pub fn tracker(name: &str, settings: ndi::Settings) -> Box<dyn Probe> {
 pub fn pedal(name: &str, settings: hid::PedalSettings) -> Box<dyn Probe> {
     let place = settings.source.clone();
     Box::new(DeviceProbe::new(name, place, Speaks::OnChange, move || hid::PedalDriver::open(&settings)))
+}
+
+/// Tests a Haply handle.
+pub fn haply(name: &str, settings: haply::Settings) -> Box<dyn Probe> {
+    let place = settings.port.clone();
+    Box::new(DeviceProbe::new(name, place, Speaks::Always, move || haply::Driver::open(&settings)))
 }
 
 /// Tests the program of an external device.

@@ -1,7 +1,7 @@
 //! A serial line that never waits, with the low-latency flag if the port supports it.
 
 use std::{
-    io::{ErrorKind, Read as _, Write as _},
+    io::{ErrorKind, Read as _, Write},
     path::Path,
     time::Duration,
 };
@@ -74,6 +74,18 @@ impl Serial {
     /// Whether the port's driver delivers bytes without delay instead of collecting them for up to 16 ms.
     pub const fn has_low_latency(&self) -> bool {
         self.low_latency
+    }
+
+    /// A second way to write to the open line, for another thread; `None` if the system gives none.
+    pub(crate) fn another_writer(&self) -> Option<Box<dyn Write + Send>> {
+        #[cfg(unix)]
+        {
+            self.bytes.try_clone().ok().map(|file| Box::new(file) as Box<dyn Write + Send>)
+        }
+        #[cfg(not(unix))]
+        {
+            self.port.try_clone().ok().map(|port| Box::new(port) as Box<dyn Write + Send>)
+        }
     }
 
     /// Errors counted by the port's hardware (framing, parity, overrun, break); `None` if it does not count them.

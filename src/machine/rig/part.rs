@@ -105,7 +105,7 @@ impl Part {
     /// Makes of it that the program knows.
     pub const fn makes(self) -> &'static [&'static str] {
         match self.kind() {
-            PartKind::Handle => &["Force Dimension", "external"],
+            PartKind::Handle => &["Force Dimension", "Haply", "external"],
             PartKind::Arm => &["Kinova", "simulated", "external"],
             PartKind::Sensor => &["Bota", "external"],
             PartKind::Servos => &["DYNAMIXEL"],

@@ -134,6 +134,9 @@ impl ArmSet {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DeskSettings {
+    /// A haptic handle, which leads and feels; there is then no cap.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub handle: Option<LeaderSettings>,
     /// The six-axis cap.
     pub cap: Option<hid::CapSettings>,
     /// The pedals.
@@ -144,7 +147,29 @@ pub struct DeskSettings {
 
 impl Default for DeskSettings {
     fn default() -> Self {
-        Self { cap: Some(hid::CapSettings::default()), pedal: None, speed_m_s: 0.06 }
+        Self { handle: None, cap: Some(hid::CapSettings::default()), pedal: None, speed_m_s: 0.06 }
+    }
+}
+
+impl DeskSettings {
+    /// The cap, if nothing better leads.
+    pub fn leading_cap(&self) -> Option<&hid::CapSettings> {
+        self.cap.as_ref().filter(|_| self.handle.is_none())
+    }
+
+    /// Checks the handle.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first invalid value, with its full key.
+    pub fn check(&self) -> Result<(), Trouble> {
+        let Some(handle) = &self.handle else { return Ok(()) };
+        // Nobody may take an emulated handle for a real one, nor lead the loop by both.
+        handle.check().and_then(|()| handle.check_emulated(false)).map_err(|trouble| match trouble {
+            Trouble::Setting { key, value, allowed } => {
+                Trouble::Setting { key: format!("desk.handle.{key}"), value, allowed }
+            }
+            other => other,
+        })
     }
 }
 

@@ -159,7 +159,7 @@ impl<L: Link> Pair<L> {
             guide_m: None,
             grip_rad: None,
             acts: Acts::NONE,
-            lets_go: rig.devices.is_none().then_some(false),
+            lets_go: rig.has_simulated_hand().then_some(false),
             link,
             far: Far::none(),
             tracking: Tracking::new(rig.rate_hz),

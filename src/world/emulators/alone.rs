@@ -62,6 +62,7 @@ pub const ALONE: &[(&str, Alone)] = &[
     ("dynamixel", super::dynamixel::alone::bus),
     ("endoscope", super::endoscope::alone::endoscope),
     ("force-dimension", super::force_dimension::alone::handle),
+    ("haply", super::haply::alone::handle),
     ("kinova", super::kinova::alone::arm),
     ("ndi", super::ndi::alone::network),
     ("ndi-serial", super::ndi::alone::line),

@@ -11,6 +11,7 @@ pub mod dynamixel;
 pub mod endoscope;
 mod faults;
 pub mod force_dimension;
+pub mod haply;
 #[cfg(target_os = "linux")]
 pub mod hid;
 pub mod kinova;

@@ -88,7 +88,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (rig, calibrations) = (in_force.with_checked(rig.clone()), in_force.calibrations(&rig));
     let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
     // Nobody can be hurt by a simulated or emulated rig, so the demo starts at once.
-    let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
+    let by_itself = rig.is_harmless();
     let by_itself = by_itself && !arguments.at_rest && arguments.calibrate.is_none() && arguments.session.is_none();
     plan.engage = by_itself && plan.may_engage();
     // Pictures are taken of a session that nobody looks for afterwards.

@@ -9,14 +9,14 @@ use nima_devices::{
     Standing,
     discovery::{Diagnosis, Found, KINDS, Outcome, Plugged, TIMEOUT, diagnose, probe_named, rules},
 };
-use nima_machine::{config::RigConfig, rig::rig_probes};
+use nima_machine::config::RigConfig;
 use serde::Serialize;
 
 use super::output;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A device to test; may be given several times: `spacemouse`, `pedal`, `force-dimension`, `kinova`, `ndi`, `dynamixel`, `bota-gen0`,
+    /// A device to test; may be given several times: `spacemouse`, `pedal`, `force-dimension`, `haply`, `kinova`, `ndi`, `dynamixel`, `bota-gen0`,
     /// `bota-gen-a`, `bota-socket`, `external-handle`, `external-arm`, `external-sensor`, each with `=PLACE`;
     /// `serial=PORT@BAUD[,HEADER][,quiet]`, `tcp=HOST:PORT`
     #[arg(long, value_name = "KIND[=PLACE]")]
@@ -70,9 +70,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     if let Some(name) = &arguments.rig {
         let rig = RigConfig::load(name)?;
-        let Some(devices) = &rig.devices else { bail!("rig \"{}\" is simulated: it has no devices", rig.name) };
-        probes.extend(rig_probes(devices));
-        emulated = devices.emulated.then_some(name);
+        if rig.devices.is_none() && !rig.has_real_hand() {
+            bail!("rig \"{}\" is simulated: it has no devices", rig.name);
+        }
+        probes.extend(rig.probes());
+        emulated = rig.devices.is_some_and(|devices| devices.emulated).then_some(name);
     }
     let report = Report { plugged: Plugged::list(), cameras: cameras(), devices: diagnose(probes, TIMEOUT) };
     if arguments.json {

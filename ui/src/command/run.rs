@@ -135,7 +135,7 @@ pub(super) fn run_with(
     rig.identification.compare |= arguments.compare;
     rig.scheduling = arguments.scheduling.unwrap_or(rig.scheduling);
     rig.validate()?;
-    if arguments.virtual_clock && rig.devices.is_some() {
+    if arguments.virtual_clock && !rig.has_simulated_hand() {
         bail!("rig \"{}\" has devices, which need the real clock: remove --virtual", rig.name);
     }
     let line = open(&mut rig, &scene)?;
@@ -151,7 +151,7 @@ pub(super) fn run_with(
     let calibrations = in_force.calibrations(&rig);
     // With a calibrated wrist sensor the bias is checked before the tool may touch anything. Only rigs that cannot hurt
     // anybody engage automatically.
-    let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
+    let by_itself = rig.is_harmless();
     let by_itself = by_itself && here.have_leader();
     let engage = by_itself && in_force.drift().is_none() && !in_force.is_waiting();
     let rig = in_force.with_checked(rig);

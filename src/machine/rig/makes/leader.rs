@@ -3,14 +3,14 @@
 use std::net::SocketAddr;
 
 use nima_devices::{
-    Leader, Trouble,
+    Leader, Lever, Slot, Trouble,
     discovery::{Probe, probes},
-    external, force_dimension,
+    external, force_dimension, haply,
 };
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::Opener;
-use crate::rig::Side;
+use crate::rig::{Part, RigError, RosterEntry, Side};
 
 /// The handle of a rig file.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -18,6 +18,8 @@ use crate::rig::Side;
 pub enum LeaderSettings {
     /// `make = "force_dimension"`, the default: omega.7.
     ForceDimension(force_dimension::Settings),
+    /// `make = "haply"`: Inverse3 or Minverse.
+    Haply(haply::Settings),
     /// `make = "external"`: a program of the lab over UDP.
     External(external::Settings),
 }
@@ -27,6 +29,7 @@ impl Serialize for LeaderSettings {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::ForceDimension(settings) => settings.serialize(serializer),
+            Self::Haply(settings) => settings.serialize(serializer),
             Self::External(settings) => settings.serialize(serializer),
         }
     }
@@ -34,13 +37,13 @@ impl Serialize for LeaderSettings {
 
 impl LeaderSettings {
     /// Its makes as a rig file names them, the usual one first.
-    pub(super) const MAKES: &[&str] = &["force_dimension", "external"];
+    pub(super) const MAKES: &[&str] = &["force_dimension", "haply", "external"];
 
     /// The settings, if it is a handle by Force Dimension.
     pub const fn force_dimension(&self) -> Option<&force_dimension::Settings> {
         match self {
             Self::ForceDimension(settings) => Some(settings),
-            Self::External(_) => None,
+            Self::Haply(_) | Self::External(_) => None,
         }
     }
 
@@ -48,14 +51,15 @@ impl LeaderSettings {
     pub const fn force_dimension_mut(&mut self) -> Option<&mut force_dimension::Settings> {
         match self {
             Self::ForceDimension(settings) => Some(settings),
-            Self::External(_) => None,
+            Self::Haply(_) | Self::External(_) => None,
         }
     }
 
     /// Its make on the screen, one of [`Part::makes`](crate::rig::Part::makes).
-    pub(in crate::rig) const fn maker(&self) -> &'static str {
+    pub(crate) const fn maker(&self) -> &'static str {
         match self {
             Self::ForceDimension(_) => "Force Dimension",
+            Self::Haply(_) => "Haply",
             Self::External(_) => "external",
         }
     }
@@ -67,6 +71,7 @@ impl LeaderSettings {
     pub fn check(&self) -> Result<(), Trouble> {
         match self {
             Self::ForceDimension(settings) => settings.check(),
+            Self::Haply(settings) => settings.check(),
             Self::External(settings) => settings.check(external::Kind::Handle),
         }
     }
@@ -76,6 +81,7 @@ impl LeaderSettings {
     pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
         let settings = match self {
             Self::ForceDimension(settings) => settings,
+            Self::Haply(_) => return super::not_emulated("haply", rig_is_emulated),
             Self::External(_) => return super::not_emulated("external", rig_is_emulated),
         };
         if settings.emulator.is_some() == rig_is_emulated {
@@ -89,8 +95,15 @@ impl LeaderSettings {
 
     /// Checks that the settings tell the two handles apart.
     pub(in crate::rig) fn check_beside(&self, other: &Self) -> Result<(), Trouble> {
-        // External ones have addresses of their own, which are checked with those of all parts.
-        let (Self::ForceDimension(one), Self::ForceDimension(other)) = (self, other) else { return Ok(()) };
+        let (one, other) = match (self, other) {
+            (Self::ForceDimension(one), Self::ForceDimension(other)) => (one, other),
+            (Self::Haply(one), Self::Haply(other)) if one.port == other.port => {
+                let allowed = "another port than the left handle's".to_owned();
+                return Err(Trouble::Setting { key: "port".to_owned(), value: one.port.clone(), allowed });
+            }
+            // External ones have addresses of their own, which are checked with those of all parts.
+            _ => return Ok(()),
+        };
         if one.serial.is_some() && one.serial != other.serial {
             return Ok(());
         }
@@ -102,7 +115,7 @@ impl LeaderSettings {
     /// The address at which an external one is listened for.
     pub(in crate::rig) const fn listens_at(&self) -> Option<SocketAddr> {
         match self {
-            Self::ForceDimension(_) => None,
+            Self::ForceDimension(_) | Self::Haply(_) => None,
             Self::External(settings) => Some(settings.listen),
         }
     }
@@ -111,6 +124,8 @@ impl LeaderSettings {
     pub(in crate::rig) const fn rate_hz(&self) -> f64 {
         match self {
             Self::ForceDimension(settings) => settings.rate_hz,
+            // It is asked once in every tick.
+            Self::Haply(_) => f64::INFINITY,
             Self::External(settings) => settings.rate_hz,
         }
     }
@@ -137,6 +152,7 @@ impl LeaderSettings {
     pub(in crate::rig) fn serial(&self) -> Option<String> {
         match self {
             Self::ForceDimension(settings) => settings.serial.map(|serial| serial.to_string()),
+            Self::Haply(settings) => settings.serial_number.clone(),
             Self::External(settings) => settings.serial_number.clone(),
         }
     }
@@ -151,6 +167,11 @@ impl LeaderSettings {
                     clear_faults: None,
                 }
             }
+            Self::Haply(settings) => Opener {
+                driver: format!("Haply handle, {}", settings.port),
+                open: Box::new(move || Ok(Box::new(haply::Driver::open(&settings)?))),
+                clear_faults: None,
+            },
             Self::External(settings) => Opener {
                 driver: format!("external handle, {}", settings.place()),
                 open: Box::new(move || Ok(Box::new(external::Handle::open(&settings)?))),
@@ -159,9 +180,24 @@ impl LeaderSettings {
         }
     }
 
-    pub(in crate::rig) fn probe(&self, name: &str) -> Box<dyn Probe> {
+    /// Begins to open the handle that leads a simulated rig; `lever` takes its force away from another thread.
+    ///
+    /// # Errors
+    /// [`RigError`] if no thread can be created.
+    pub fn start(&self, lever: &Lever) -> Result<(Slot<Box<dyn Leader>>, RosterEntry), RigError> {
+        let Opener { driver, mut open, clear_faults } = self.opener();
+        let lever = lever.clone();
+        let name = Part::Handle(Side::Right).name();
+        let slot = Slot::start(name, move || open().inspect(|handle| handle.attach(&lever)))?;
+        let entry = RosterEntry { clear_faults, ..RosterEntry::new(name, driver, slot.view()) };
+        Ok((slot, entry))
+    }
+
+    /// A test of it, under this name.
+    pub fn probe(&self, name: &str) -> Box<dyn Probe> {
         match self.clone() {
             Self::ForceDimension(settings) => probes::handle(name, settings),
+            Self::Haply(settings) => probes::haply(name, settings),
             Self::External(settings) => probes::external(name, external::Kind::Handle, settings),
         }
     }

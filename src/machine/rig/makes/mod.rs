@@ -48,6 +48,9 @@ pub(crate) type Misread = (Range<usize>, String);
 /// Writes every part of a rig file with its make taken out, `arm = { kinova = { ... } }`: the form that serde reads as an enum. Each
 /// value keeps its place in the text, so that what is wrong below a make is told with its line.
 pub(crate) fn take_out_makes(rig: &mut DeTable<'_>) -> Result<(), Misread> {
+    if let Some(desk) = below(rig, "desk") {
+        choose(desk, "handle", LeaderSettings::MAKES)?;
+    }
     let Some(devices) = below(rig, "devices") else { return Ok(()) };
     for side in Side::ALL {
         let Some(set) = below(devices, side.word()) else { continue };

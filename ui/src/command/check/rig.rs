@@ -62,7 +62,7 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let guided = if rig.devices.is_some() { Scene::default_for(&rig) } else { SIMULATED };
     let scene_name = arguments.scene.as_deref().unwrap_or(guided);
     let scene = Scene::load(scene_name)?.mounted_at(&rig)?;
-    if rig.devices.as_ref().is_some_and(|devices| !devices.emulated) {
+    if !rig.is_harmless() {
         bail!("rig \"{}\" is for real devices, whose stop a person must press; check it in `nima console`", rig.name);
     }
     let leave = Setup::of(&arguments.rig, Some(scene_name)).leave()?;

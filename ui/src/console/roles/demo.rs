@@ -264,12 +264,12 @@ impl DemoState {
 
 /// Whether the rig is simulated or emulated, so that nobody can be hurt.
 fn may_play(live: &Live) -> bool {
-    live.rig.devices.as_ref().is_none_or(|devices| devices.emulated)
+    live.rig.is_harmless()
 }
 
 /// Whether the hand is simulated, so that it may let go.
 fn may_let_go(live: &Live) -> bool {
-    live.rig.devices.is_none()
+    live.rig.has_simulated_hand()
 }
 
 fn may_show(live: &Live, step: &Step) -> bool {

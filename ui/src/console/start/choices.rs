@@ -5,7 +5,7 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
-use nima_machine::{config::RigConfig, rig::rig_probes};
+use nima_machine::config::RigConfig;
 use nima_world::scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -114,8 +114,8 @@ fn rig((key, own): (String, bool)) -> Entry {
     match RigConfig::load(&key) {
         Ok(rig) => {
             let about = rig.devices.as_ref().map_or_else(
-                || text::start::SIMULATED.to_owned(),
-                |devices| text::start::of_devices(rig_probes(devices).len(), devices.emulated),
+                || if rig.has_real_hand() { text::start::LED } else { text::start::SIMULATED }.to_owned(),
+                |devices| text::start::of_devices(rig.probes().len(), devices.emulated),
             );
             Entry { key, name: rig.name, about, usable: true, own }
         }

@@ -8,7 +8,7 @@ use std::{
 
 use egui::Context;
 use nima_devices::discovery::{Diagnosis, Plugged, TIMEOUT, diagnose};
-use nima_machine::rig::{Settings, rig_probes};
+use nima_machine::config::RigConfig;
 
 /// Time between two looks at what is plugged in.
 const AGAIN: Duration = Duration::from_secs(2);
@@ -86,8 +86,8 @@ pub(super) type Answers = Looked<Vec<Diagnosis>>;
 
 impl Answers {
     /// Opens every device of the rig for a moment.
-    pub(super) fn check(&mut self, ctx: &Context, devices: &Settings) {
-        let probes = rig_probes(devices);
+    pub(super) fn check(&mut self, ctx: &Context, rig: &RigConfig) {
+        let probes = rig.probes();
         self.begin(ctx, move || diagnose(probes, TIMEOUT));
     }
 }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use egui::{Align, Button, CentralPanel, Frame, Label, Layout, Margin, RichText, ScrollArea, TextEdit, Ui, vec2};
 use nima_devices::discovery::{Diagnosis, Found, Outcome, Plugged};
-use nima_machine::{config::RigConfig, messages::LoopState, rig::Settings as Devices};
+use nima_machine::{config::RigConfig, messages::LoopState};
 
 pub use choices::Choice;
 pub(crate) use choices::drawn_anew;
@@ -42,8 +42,8 @@ pub struct StartPage {
     chosen: Choice,
     folder: Option<PathBuf>,
     lists: Lists,
-    /// The chosen rig's devices, as long as they are what they were when it was chosen.
-    devices: Option<Devices>,
+    /// The chosen rig, as long as its file is what it was when it was chosen.
+    rig: Option<RigConfig>,
     new_name: String,
     told: Option<String>,
     plugged: PluggedIn,
@@ -75,7 +75,7 @@ impl StartPage {
             chosen,
             folder: None,
             lists: Lists::default(),
-            devices: None,
+            rig: None,
             new_name: String::new(),
             told: None,
             plugged: PluggedIn::default(),
@@ -120,7 +120,7 @@ impl StartPage {
             let rig = RigConfig::load(&choice.rig).ok();
             self.endoscope.choose(rig.as_ref());
             self.is_stale = false;
-            self.devices = rig.and_then(|rig| rig.devices);
+            self.rig = rig;
         }
         self.chosen = choice;
     }
@@ -244,7 +244,7 @@ impl StartPage {
 
     /// Of the rig that runs its list of devices tells what is missing; the devices of another one are opened for a moment.
     fn missing_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
-        let Some(devices) = &self.devices else {
+        let Some(rig) = self.rig.as_ref().filter(|rig| rig.devices.is_some() || rig.has_real_hand()) else {
             ui.label(text::start::SIMULATED);
             return;
         };
@@ -258,7 +258,7 @@ impl StartPage {
             }
             return;
         }
-        if devices.emulated {
+        if rig.is_harmless() {
             ui.label(text::start::EMULATED);
             return;
         }
@@ -267,7 +267,7 @@ impl StartPage {
         let button = ui.add_enabled(!checking, button.min_size(vec2(ui.available_width(), 32.0)));
         if button.on_hover_text(text::start::CHECK_HOVER).clicked() {
             let ctx = ui.ctx().clone();
-            self.answers.check(&ctx, devices);
+            self.answers.check(&ctx, rig);
         }
         for Diagnosis { name, outcome, .. } in self.answers.found().into_iter().flatten() {
             match outcome {
@@ -315,7 +315,7 @@ impl StartPage {
 
 /// Whether a person may be at the handle and a patient below the arm.
 pub(super) fn is_real(rig: &RigConfig) -> bool {
-    rig.devices.as_ref().is_some_and(|devices| !devices.emulated)
+    !rig.is_harmless()
 }
 
 fn name_in<'a>(list: &'a [Entry], key: &'a str) -> &'a str {

@@ -29,6 +29,7 @@ pub(in crate::console) const CHECK: &str = "Check the devices";
 pub(in crate::console) const CHECK_HOVER: &str = "Opens each device for a moment; takes about a second";
 pub(in crate::console) const CHECKING: &str = "Checking the devices";
 pub(in crate::console) const SIMULATED: &str = "Everything is simulated: nothing needs to be plugged in";
+pub(in crate::console) const LED: &str = "1 device: a real handle leads the simulated rig";
 pub(in crate::console) const EMULATED: &str = "The emulators start with this rig: nothing needs to be plugged in";
 pub(in crate::console) const RUNNING: &str = "Running now";
 pub(in crate::console) const NOTHING_PLUGGED: &str = "No device that this program can use";

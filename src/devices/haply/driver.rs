@@ -1,0 +1,281 @@
+//! Driver of a Haply handle: one force out and one state back per tick.
+
+use std::{
+    io::Write,
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+use nalgebra::Vector3;
+
+use super::{
+    codec::{Decoder, Next, STATE_BYTES, State, force_request},
+    opening,
+    settings::Settings,
+};
+use crate::{
+    Device, HandleReading, Health, Identity, Leader, Lever, Loss, Stamped, Standing, Trouble,
+    transport::{Bytes, Serial, SerialSettings},
+};
+
+/// Time without an answer after which the handle is lost, s.
+pub const SILENCE_S: f64 = 0.020;
+/// An answer that has not come after this time does not come any more, s.
+const ANSWER_MAX_S: f64 = 0.005;
+/// Questions that may be without an answer at once: one on its way, and one that is late.
+const OPEN_MAX: u32 = 2;
+/// Impossible answers in a row after which the handle is lost.
+const BAD_MAX: u32 = 10;
+/// Bytes skipped since the last answer after which the handle is lost.
+const SKIPPED_MAX: u64 = 10 * STATE_BYTES as u64;
+/// Reads in one tick.
+const READS_MAX: usize = 8;
+/// A serial port on USB ignores the speed; the manufacturer's client sets none.
+const BAUD: u32 = 115_200;
+
+type Writer = Option<Box<dyn Write + Send>>;
+
+/// An open handle.
+pub struct Driver {
+    line: Box<dyn Bytes>,
+    /// The same line for the lever, which must not hold it open when the driver is closed. The loop never locks it.
+    writer: Arc<Mutex<Writer>>,
+    decoder: Decoder,
+    centre_m: Vector3<f64>,
+    force_max_n: f64,
+    /// Force is wanted; the lever clears it from another thread.
+    wanted: Arc<AtomicBool>,
+    /// Whether the newest question was asked with force on. The device does not tell: with the answer it counts as on.
+    asked_on: bool,
+    /// The device may still have a force that is not zero on the hand.
+    pushes: bool,
+    reported: Option<bool>,
+    /// A force was sent since the last poll.
+    told: bool,
+    /// Questions without an answer, and when the newest one was asked, s.
+    open: u32,
+    asked_s: f64,
+    now_s: f64,
+    first_s: Option<f64>,
+    bad_in_a_row: u32,
+    skipped_before: u64,
+    health: Health,
+    identity: Identity,
+}
+
+impl Driver {
+    /// Opens the line and asks who is there; may take half a second.
+    ///
+    /// # Errors
+    /// [`Trouble`] if a setting is invalid, or the port is missing, in use, not permitted, or no handle answers there.
+    pub fn open(settings: &Settings) -> Result<Self, Trouble> {
+        settings.check()?;
+        let mut serial = Serial::open(&SerialSettings { port: settings.port.clone(), baud: BAUD })?;
+        let identity = opening::meet(&mut serial, settings)?;
+        let writer = serial.another_writer();
+        Ok(Self::on(Box::new(serial), writer, identity, settings))
+    }
+
+    /// The same over another line, which the lever does not reach.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn over(mut line: Box<dyn Bytes>, settings: &Settings) -> Result<Self, Trouble> {
+        settings.check()?;
+        let identity = opening::meet(&mut *line, settings)?;
+        Ok(Self::on(line, None, identity, settings))
+    }
+
+    fn on(line: Box<dyn Bytes>, writer: Writer, identity: Identity, settings: &Settings) -> Self {
+        Self {
+            line,
+            writer: Arc::new(Mutex::new(writer)),
+            decoder: Decoder::default(),
+            centre_m: settings.centre_m.into(),
+            force_max_n: settings.force_max_n,
+            wanted: Arc::default(),
+            asked_on: false,
+            pushes: false,
+            reported: None,
+            told: false,
+            open: 0,
+            asked_s: 0.0,
+            now_s: 0.0,
+            first_s: None,
+            bad_in_a_row: 0,
+            skipped_before: 0,
+            health: Health::opening(),
+            identity,
+        }
+    }
+
+    fn is_lost(&self) -> bool {
+        matches!(self.health.standing, Standing::Lost(_))
+    }
+
+    /// Puts a force on the hand, unless older questions are still open: the device would have to catch up. That there is to be none any
+    /// more is told at once.
+    fn ask(&mut self, force_n: Vector3<f64>) {
+        let on = self.wanted.load(Ordering::Acquire);
+        let force_n = if on { force_n } else { Vector3::zeros() };
+        let lets_go = self.pushes && force_n == Vector3::zeros();
+        if self.is_lost() || (self.open >= OPEN_MAX && !lets_go) {
+            return;
+        }
+        self.asked_on = on;
+        match self.line.send(&force_request(force_n.map(|axis| axis as f32).into())) {
+            Ok(()) => {
+                (self.open, self.asked_s) = (self.open + 1, self.now_s);
+                self.pushes = force_n != Vector3::zeros();
+            }
+            Err(loss) => self.lose(loss),
+        }
+    }
+
+    /// It is lost. The loop gives it no force any more, and it may still listen: its last one must not stay.
+    fn lose(&mut self, loss: Loss) {
+        self.health.lose(loss);
+        self.line.send(&force_request([0.0; 3])).ok();
+    }
+
+    fn reading(&self, state: &State) -> HandleReading {
+        let [position_m, velocity_m_s] =
+            [state.position_m, state.velocity_m_s].map(|values| Vector3::from(values).map(f64::from));
+        HandleReading {
+            position_m: position_m - self.centre_m,
+            orientation: None,
+            gripper_rad: None,
+            velocity_m_s: Some(velocity_m_s),
+            buttons: 0,
+        }
+    }
+
+    /// Takes what has arrived; the newest state.
+    fn take(&mut self) -> Option<State> {
+        let mut newest = None;
+        for _ in 0..READS_MAX {
+            match self.line.receive(self.decoder.room()) {
+                Ok(0) => break,
+                Ok(count) => self.decoder.filled(count),
+                Err(loss) => {
+                    self.lose(loss);
+                    return None;
+                }
+            }
+            while let Some(next) = self.decoder.next() {
+                self.open = self.open.saturating_sub(1);
+                match next {
+                    Next::State(state) => {
+                        (newest, self.bad_in_a_row) = (Some(state), 0);
+                        self.skipped_before = self.decoder.skipped();
+                        self.health.accept(self.now_s);
+                    }
+                    Next::Impossible => {
+                        self.health.refused += 1;
+                        self.bad_in_a_row += 1;
+                    }
+                }
+            }
+        }
+        newest
+    }
+
+    /// Gives up an answer that did not come, with what came of it.
+    fn give_up(&mut self) {
+        if self.open > 0 && self.now_s - self.asked_s > ANSWER_MAX_S {
+            self.health.lost += u64::from(std::mem::take(&mut self.open));
+            self.health.damaged += u64::from(self.decoder.clear() > 0);
+        }
+        self.health.skipped_bytes = self.decoder.skipped();
+    }
+
+    fn watch(&mut self, first_s: f64) {
+        let cause = if self.bad_in_a_row >= BAD_MAX {
+            Loss::Implausible
+        } else if self.decoder.skipped() - self.skipped_before > SKIPPED_MAX {
+            Loss::Corrupt
+        } else if self.now_s - self.health.newest_s.unwrap_or(first_s) > SILENCE_S {
+            // With no answer few questions are asked, so what was wrong with the last ones decides.
+            if self.bad_in_a_row > 0 {
+                Loss::Implausible
+            } else if self.decoder.skipped() > self.skipped_before {
+                Loss::Corrupt
+            } else {
+                Loss::Silent
+            }
+        } else {
+            return;
+        };
+        self.lose(cause);
+    }
+}
+
+impl Device for Driver {
+    type Reading = HandleReading;
+
+    fn poll(&mut self, now_s: f64) -> Option<Stamped<HandleReading>> {
+        if self.is_lost() || !now_s.is_finite() {
+            return None;
+        }
+        let first_s = *self.first_s.get_or_insert(now_s);
+        self.now_s = now_s;
+        let answers_on = self.asked_on;
+        let newest = self.take();
+        self.give_up();
+        self.watch(first_s);
+        // Where the loop sets no force the handle is still asked where it is, with none.
+        if !std::mem::take(&mut self.told) {
+            self.ask(Vector3::zeros());
+        }
+        if self.is_lost() {
+            return None;
+        }
+        let state = newest?;
+        self.reported = Some(answers_on);
+        Some(Stamped { device_s: None, arrival_s: now_s, value: self.reading(&state) })
+    }
+
+    fn about(&self) -> (&Health, &Identity) {
+        (&self.health, &self.identity)
+    }
+}
+
+impl Leader for Driver {
+    fn switch_force(&mut self, on: bool) {
+        self.wanted.store(on, Ordering::Release);
+    }
+
+    fn set_force(&mut self, force_n: Vector3<f64>, _gripper_n: f64) {
+        let is_finite = force_n.iter().all(|axis| axis.is_finite());
+        // Axis by axis first, so that the squares of large numbers stay finite.
+        let cut_n = force_n.map(|axis| if is_finite { axis.clamp(-self.force_max_n, self.force_max_n) } else { 0.0 });
+        self.ask(cut_n.cap_magnitude(self.force_max_n));
+        self.told = true;
+    }
+
+    fn force_change(&mut self) -> Option<bool> {
+        self.reported.take()
+    }
+
+    fn attach(&self, lever: &Lever) {
+        let wanted = Arc::clone(&self.wanted);
+        let writer = Arc::clone(&self.writer);
+        lever.attach(move || {
+            wanted.store(false, Ordering::Release);
+            // The loop stands still: its last force must not stay.
+            if let Some(writer) = &mut *writer.lock().unwrap_or_else(PoisonError::into_inner) {
+                writer.write_all(&force_request([0.0; 3])).ok();
+            }
+        });
+    }
+}
+
+impl Drop for Driver {
+    fn drop(&mut self) {
+        // Whatever its state: a handle that answers no longer may still listen.
+        self.line.send(&force_request([0.0; 3])).ok();
+        self.writer.lock().unwrap_or_else(PoisonError::into_inner).take();
+    }
+}

@@ -1,0 +1,70 @@
+//! Settings of a Haply handle in a rig file.
+
+use serde::{Deserialize, Serialize};
+
+use crate::Trouble;
+
+/// Largest force that may be asked of an Inverse3, N.
+pub const FORCE_LIMIT_N: f64 = 10.0;
+/// Middle of the workspace of an Inverse3 that stands on its base, m from its origin (the manufacturer's example of
+/// position control).
+pub const CENTRE_M: [f64; 3] = [0.0186, -0.153, 0.151];
+/// How far the middle may be from the origin, m.
+const CENTRE_MAX_M: f64 = 0.5;
+
+/// Settings of one handle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, tag = "make", rename = "haply")]
+pub struct Settings {
+    /// Its device file.
+    pub port: String,
+    /// Required device id, four hexadecimal digits as `nima devices` prints it; any if omitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub serial_number: Option<String>,
+    /// Largest force, N, above 0 to 10.
+    #[serde(default = "Settings::usual_force_max_n")]
+    pub force_max_n: f64,
+    /// Where positions are counted from, m in the device's axes.
+    #[serde(default = "Settings::usual_centre_m")]
+    pub centre_m: [f64; 3],
+}
+
+impl Settings {
+    const fn usual_force_max_n() -> f64 {
+        4.0
+    }
+
+    const fn usual_centre_m() -> [f64; 3] {
+        CENTRE_M
+    }
+
+    /// The usual settings at this port.
+    pub fn at(port: impl Into<String>) -> Self {
+        Self {
+            port: port.into(),
+            serial_number: None,
+            force_max_n: Self::usual_force_max_n(),
+            centre_m: Self::usual_centre_m(),
+        }
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first value outside its range.
+    pub fn check(&self) -> Result<(), Trouble> {
+        let refuse = |key: &str, value: String, allowed: &str| {
+            Err(Trouble::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })
+        };
+        if self.port.trim().is_empty() {
+            return refuse("port", "\"\"".to_owned(), "it must name the handle's device file");
+        }
+        if !(self.force_max_n > 0.0 && self.force_max_n <= FORCE_LIMIT_N) {
+            return refuse("force_max_n", self.force_max_n.to_string(), "above 0 to 10 N");
+        }
+        if !self.centre_m.iter().all(|axis| axis.abs() <= CENTRE_MAX_M) {
+            return refuse("centre_m", format!("{:?}", self.centre_m), "three lengths up to 0.5 m");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,19 @@
+//! `nima emulate haply`: an Inverse3 on a pseudo-terminal, whose grip goes round and gives way to the force. Settings: `id` (four
+//! hexadecimal digits), `model`, `firmware`, `link` (name of the line).
+
+use std::{io::Result, path::PathBuf};
+
+use super::{Emulated, Felt};
+use crate::emulators::{Emulator, Settings, alone::unusable};
+
+pub(in crate::emulators) fn handle(settings: &Settings) -> Result<Box<dyn Emulator>> {
+    let mut usual = Emulated::default();
+    if let Some(id) = settings.get::<String>("id")? {
+        let number = u16::from_str_radix(&id, 16);
+        usual.info.id = number.map_err(|_| unusable("id", &id, "give four hexadecimal digits, as in 049D"))?;
+    }
+    usual.info.model = settings.get_or("model", usual.info.model)?;
+    usual.info.firmware = settings.get_or("firmware", usual.info.firmware)?;
+    usual.link = settings.get::<PathBuf>("link")?;
+    Ok(usual.with(Felt::default().on_a_circle()))
+}

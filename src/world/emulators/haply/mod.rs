@@ -1,0 +1,172 @@
+//! An emulated Inverse3 on a pseudo-terminal: it answers every request at once, as the manufacturer's own client expects.
+//!
+//! Where the grip is comes from its [`Body`], which is told the force that is on the hand. The wire has no checksum and
+//! no fault bits. Kinematics, gravity compensation, power and temperatures are not emulated; nor is what a real handle
+//! does when its line falls silent, which is not documented: here the last force stays.
+
+pub(super) mod alone;
+#[cfg(test)]
+mod tests;
+
+use std::{
+    io,
+    path::PathBuf,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+use nalgebra::Vector3;
+use nima_devices::haply::{
+    CENTRE_M,
+    codec::{DeviceInfo, FORCE, FORCE_BYTES, STATE, State, WAKE_UP, force_of},
+};
+
+use crate::emulators::{EmulatedFault, Emulator, End, Peer, Turn, wires::terminal};
+
+/// Where the grip is at a time (s since the emulator began) with this force on the hand (N, in the device's axes).
+pub type Body = Box<dyn FnMut(f64, &Vector3<f64>) -> State + Send>;
+
+/// Requests of the manufacturer's client that no driver of ours makes: torques and angles of the joints, a position.
+const TORQUES: u8 = 0x1A;
+const ANGLES: u8 = 0x1C;
+const POSITION: u8 = 0x2C;
+/// Code of the joints' answer.
+const JOINTS: u8 = 0x1B;
+/// A request that is not whole after so long is given up, s.
+const PAUSE_S: f64 = 0.02;
+
+/// How an emulated handle is.
+#[derive(Clone, Debug)]
+pub struct Emulated {
+    /// Its identity.
+    pub info: DeviceInfo,
+    /// The name of its line; a folder of its own where none is given.
+    pub link: Option<PathBuf>,
+}
+
+impl Default for Emulated {
+    fn default() -> Self {
+        let info = DeviceInfo { id: 0x049D, model: 4, hardware: 2, firmware: 9, uuid: *b"nima-emulated-01" };
+        Self { info, link: None }
+    }
+}
+
+impl Emulated {
+    /// With where the grip is.
+    pub fn with(self, body: Body) -> Box<dyn Emulator> {
+        let Self { info, link } = self;
+        Box::new(Device { info, link, body, heard: Vec::new(), heard_s: 0.0, force_n: Vector3::zeros(), frozen: None })
+    }
+}
+
+/// The force on the hand, for whoever looks from outside.
+#[derive(Clone, Debug, Default)]
+pub struct Felt(Arc<Mutex<Vector3<f64>>>);
+
+impl Felt {
+    /// The newest force, N.
+    pub fn force_n(&self) -> Vector3<f64> {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A grip that a soft spring (300 N/m) leads along a circle of 10 mm about the middle of the workspace, and that gives way to the
+    /// force.
+    pub fn on_a_circle(&self) -> Body {
+        const SPRING_N_M: f64 = 300.0;
+        const RADIUS_M: f64 = 0.01;
+        const RATE_RAD_S: f64 = 1.9;
+        let felt = self.clone();
+        Box::new(move |now_s, force_n| {
+            *felt.0.lock().unwrap_or_else(PoisonError::into_inner) = *force_n;
+            let (sine, cosine) = (RATE_RAD_S * now_s).sin_cos();
+            let round_m = Vector3::new(cosine, sine, 0.0) * RADIUS_M;
+            let at_m = Vector3::from(CENTRE_M) + round_m + force_n / SPRING_N_M;
+            let velocity_m_s = Vector3::new(-sine, cosine, 0.0) * (RADIUS_M * RATE_RAD_S);
+            let short = |vector: Vector3<f64>| -> [f32; 3] { vector.map(|axis| axis as f32).into() };
+            State { position_m: short(at_m), velocity_m_s: short(velocity_m_s) }
+        })
+    }
+}
+
+struct Device {
+    info: DeviceInfo,
+    link: Option<PathBuf>,
+    body: Body,
+    /// The beginning of a request.
+    heard: Vec<u8>,
+    heard_s: f64,
+    force_n: Vector3<f64>,
+    /// What it repeats while it is frozen.
+    frozen: Option<State>,
+}
+
+impl Device {
+    /// Length of a request, bytes; `None` for a code that it does not know.
+    const fn length_of(code: u8) -> Option<usize> {
+        match code {
+            WAKE_UP => Some(1),
+            FORCE | TORQUES | ANGLES | POSITION => Some(FORCE_BYTES),
+            _ => None,
+        }
+    }
+
+    fn state(&mut self, now_s: f64, fault: EmulatedFault) -> State {
+        let mut state = (self.body)(now_s, &self.force_n);
+        if fault == EmulatedFault::Freeze {
+            state = *self.frozen.get_or_insert(state);
+        } else {
+            self.frozen = None;
+        }
+        if fault == EmulatedFault::NotANumber {
+            state.position_m[1] = f32::NAN;
+        }
+        state
+    }
+
+    /// Answers the first request of what was heard; false if it is not whole.
+    fn answer(&mut self, to: Peer, turn: &mut Turn<'_>) -> bool {
+        let Some(code) = self.heard.first().copied() else { return false };
+        let Some(length) = Self::length_of(code) else {
+            self.heard.remove(0);
+            return true;
+        };
+        if self.heard.len() < length {
+            return false;
+        }
+        let request: Vec<u8> = self.heard.drain(..length).collect();
+        let mut answer = match code {
+            WAKE_UP => self.info.encode().to_vec(),
+            TORQUES | ANGLES => [vec![JOINTS], vec![0; 24]].concat(),
+            _ => {
+                let force_n = force_of(&request).filter(|force_n| force_n.iter().all(|axis| axis.is_finite()));
+                self.force_n = Vector3::from(force_n.unwrap_or_default()).map(f64::from);
+                self.state(turn.now_s, turn.fault).encode().to_vec()
+            }
+        };
+        if turn.fault == EmulatedFault::WrongFrame && answer[0] == STATE {
+            answer[0] = JOINTS;
+        }
+        turn.send(to, &answer);
+        true
+    }
+}
+
+impl Emulator for Device {
+    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+        Ok(vec![terminal(self.link.as_deref(), "haply", None)?])
+    }
+
+    fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
+        if turn.now_s - self.heard_s > PAUSE_S {
+            self.heard.clear();
+        }
+        self.heard_s = turn.now_s;
+        self.heard.extend_from_slice(bytes);
+        while self.answer(from, turn) {}
+    }
+
+    fn pass(&mut self, _: &mut Turn<'_>) {}
+
+    fn lose(&mut self, _: Peer) {
+        self.heard.clear();
+    }
+}

@@ -1,0 +1,86 @@
+//! A haptic handle that leads the right hand of a simulated rig, in place of the simulated hand: a person feels the simulated tissue.
+//!
+//! The loop gets position, orientation and gripper of the handle in the handle's own frame, as from a rig of devices, and its force goes
+//! there in the same tick. Without a reading that is not too old the side has no sample: the loop then goes to a fault. Drives are on only
+//! once the handle has told that its force is.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::kinematics::Hand;
+use nima_devices::{HandleReading, Health, Leader, Lever, Slot, Stamped, Standing};
+use nima_machine::rig::{GUIDE_MAX_M, Inputs, LeaderSettings, Outputs, RigError, RosterEntry};
+
+/// A reading older than this counts as missing, s: as on a rig of devices.
+const OLDEST_S: f64 = 0.020;
+
+/// The handle on the desk.
+#[derive(Debug)]
+pub(super) struct Held {
+    slot: Slot<Box<dyn Leader>>,
+    lever: Lever,
+    newest: Option<Stamped<HandleReading>>,
+    driven: bool,
+    force_is_on: bool,
+}
+
+impl Held {
+    /// Begins to open it.
+    pub(super) fn start(settings: &LeaderSettings) -> Result<(Self, RosterEntry), RigError> {
+        let lever = Lever::default();
+        let (slot, entry) = settings.start(&lever)?;
+        Ok((Self { slot, lever, newest: None, driven: false, force_is_on: false }, entry))
+    }
+
+    pub(super) const fn health(&self) -> &Health {
+        self.slot.health()
+    }
+
+    pub(super) fn lever(&self) -> Lever {
+        self.lever.clone()
+    }
+
+    fn is_there(&self) -> bool {
+        self.slot.health().standing == Standing::Connected
+    }
+
+    /// Reads what it has sent; where it is now, m, as far as the simulated hand can follow it.
+    pub(super) fn poll(&mut self, now_s: f64) -> Option<Vector3<f64>> {
+        if let Some(reading) = self.slot.poll(now_s) {
+            self.newest = Some(reading);
+        }
+        let changed = self.slot.device().and_then(|handle| handle.force_change());
+        self.force_is_on = changed.unwrap_or(self.force_is_on) && self.is_there();
+        let fresh = self.newest.filter(|reading| self.is_there() && now_s - reading.arrival_s <= OLDEST_S);
+        self.newest = fresh;
+        fresh.map(|reading| reading.value.position_m.map(|axis| axis.clamp(-GUIDE_MAX_M, GUIDE_MAX_M)))
+    }
+
+    /// The measurements of its side with this hand in place of the simulated one.
+    pub(super) fn led(&self, now_s: f64, simulated: &Inputs) -> Option<Inputs> {
+        let (inputs, reading) = (*simulated, self.newest?);
+        let HandleReading { position_m, orientation, gripper_rad, .. } = reading.value;
+        let turn = orientation.unwrap_or_else(UnitQuaternion::identity);
+        let mut frames = inputs.frames;
+        frames.leader_from_handle = Some(nalgebra::Isometry3::from_parts(position_m.into(), turn));
+        Some(Inputs {
+            hand: Hand { position_m, orientation },
+            gripper_rad: gripper_rad.or(inputs.gripper_rad),
+            frames,
+            powered: inputs.powered && self.force_is_on,
+            age_s: inputs.age_s.max(now_s - reading.arrival_s),
+            ..inputs
+        })
+    }
+
+    /// Gives the loop's force to the hand.
+    pub(super) fn write(&mut self, outputs: &Outputs) {
+        let switched = std::mem::replace(&mut self.driven, outputs.drives) != outputs.drives;
+        let Some(handle) = self.slot.device() else { return };
+        // Switched on only by an engagement: a handle that was opened again stays off until the next one.
+        if switched {
+            handle.switch_force(outputs.drives);
+        }
+        let (force_n, gripper_n) =
+            if outputs.drives { (outputs.hand_force_n, outputs.gripper_n) } else { (Vector3::zeros(), 0.0) };
+        handle.set_force(force_n, gripper_n);
+    }
+}

@@ -1,0 +1,119 @@
+//! The rig of a Haply handle: the handle is emulated on its line, the hand feels the simulated tissue.
+#![cfg(target_os = "linux")]
+use std::time::{Duration, Instant};
+
+use nalgebra::Vector3;
+use nima_core::impedance::Mode;
+use nima_devices::{
+    Loss, Standing,
+    haply::{Settings, codec::State},
+};
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Event, LoopState, Tick},
+    rig::LeaderSettings,
+    runtime::Handle,
+};
+use nima_testing::real_time::{alone, judged};
+use nima_world::{
+    Plan,
+    emulators::{
+        EmulatedFault, Serving,
+        haply::{Emulated, Felt},
+    },
+    scene::Scene,
+};
+
+/// How far the hand goes down into the tissue, m, and how fast, m/s.
+const DEEP_M: f64 = 0.08;
+const SPEED_M_S: f64 = 0.02;
+const WAIT: Duration = Duration::from_secs(15);
+
+/// A hand that rests for two seconds and then goes down, held by a stiff spring.
+fn pressing(felt: &Felt, begins: std::sync::Arc<std::sync::atomic::AtomicBool>) -> Serving {
+    let mut body = felt.on_a_circle();
+    let mut since_s = None;
+    let emulated = Emulated::default().with(Box::new(move |now_s, force_n| {
+        let mut state: State = body(0.0, force_n);
+        let down_m = if begins.load(std::sync::atomic::Ordering::Relaxed) {
+            (SPEED_M_S * (now_s - *since_s.get_or_insert(now_s))).min(DEEP_M)
+        } else {
+            0.0
+        };
+        state.position_m[2] -= down_m as f32;
+        state.velocity_m_s = [0.0; 3];
+        state
+    }));
+    emulated.serve().unwrap()
+}
+
+struct Bench {
+    handle: Handle,
+    newest: Option<Tick>,
+    lost: Vec<Loss>,
+}
+
+impl Bench {
+    fn until(&mut self, what: &str, good: impl Fn(&Self) -> bool) {
+        let begin = Instant::now();
+        while !good(self) {
+            assert!(
+                begin.elapsed() < WAIT,
+                "never came: {what}; {:?}",
+                self.newest.map(|tick| (tick.state, tick.tip_m))
+            );
+            std::thread::sleep(Duration::from_millis(1));
+            let (newest, lost) = (&mut self.newest, &mut self.lost);
+            self.handle.drain_ticks(|tick| *newest = Some(*tick));
+            self.handle.drain_events(|event| {
+                if let Event::Device(event) = event
+                    && let Standing::Lost(loss) = event.standing
+                {
+                    assert_eq!(event.of_side, [true, false], "the right force needs the handle");
+                    lost.push(loss);
+                }
+            });
+        }
+    }
+
+    fn is(&self, state: LoopState) -> bool {
+        self.newest.is_some_and(|tick| tick.state == state)
+    }
+}
+
+#[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
+fn a_haply_handle_feels_the_simulated_tissue_and_a_silent_one_takes_the_force_away() {
+    let _alone = alone();
+    judged(|| {
+        let (felt, begins) = (Felt::default(), std::sync::Arc::default());
+        let serving = pressing(&felt, std::sync::Arc::clone(&begins));
+        let mut rig = RigConfig::load("haply-desk").unwrap();
+        assert!(!rig.is_harmless() && !rig.has_simulated_hand(), "nobody else than a person engages it");
+        rig.desk.as_mut().unwrap().handle = Some(LeaderSettings::Haply(Settings::at(serving.endpoint.as_str())));
+        rig.validate().unwrap();
+        assert_eq!(rig.device_names(), ["right handle (Haply)"]);
+        (rig.mode, rig.gates.static_hold) = (Mode::Dfr, true);
+        let scene = Scene::load("peg_transfer").unwrap();
+        let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
+        let handle = nima_world::start(&plan).unwrap();
+        assert_eq!(handle.roster()[0].name, "right handle");
+        let mut bench = Bench { handle, newest: None, lost: Vec::new() };
+        bench.until("half a second", |bench| bench.newest.is_some_and(|tick| tick.t_s > 0.5));
+        assert!(bench.is(LoopState::Idle) && felt.force_n() == Vector3::zeros());
+        bench.until("connected", |bench| {
+            bench.handle.healths().is_none_or(|h| h.devices[0].standing == Standing::Connected)
+        });
+        assert!(bench.handle.send(Command::Engage));
+        bench.until("engaged", |bench| bench.is(LoopState::Engaged));
+        begins.store(true, std::sync::atomic::Ordering::Relaxed);
+        bench.until("a force", |_| felt.force_n().z > 0.3);
+        // What the hand feels is what came out of the gates.
+        let rendered_n = bench.newest.unwrap().rendered_n;
+        assert!((rendered_n - felt.force_n()).norm() < 0.5, "{rendered_n} and {}", felt.force_n());
+        serving.faults.set(EmulatedFault::Silence);
+        bench.until("a fault", |bench| matches!(bench.newest.unwrap().state, LoopState::Faulted(_)));
+        bench.until("the loss", |bench| bench.lost == [Loss::Silent]);
+        bench.until("no force", |_| felt.force_n() == Vector3::zeros());
+    });
+}

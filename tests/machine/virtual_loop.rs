@@ -1,12 +1,17 @@
 //! The whole loop on the virtual clock, over whole scenes, including faults.
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering::Relaxed},
+};
+
 use nalgebra::Vector3;
-use nima_core::impedance::{Mode, ModeSet, OwnMotion};
+use nima_core::impedance::{Mode, ModeSet, OwnMotion, Parcel};
 use nima_machine::{
     config::RigConfig,
-    messages::{Command, Fault, LoopState, Refusal, Tick},
+    messages::{Command, Event, Fault, LoopState, Refusal, Tick},
     rig::{Inputs, Outputs, Sensed, Side},
     runtime::Summary,
-    teleop::{Calibrations, Pair, Timing},
+    teleop::{Calibrations, Link, Pair, ProgrammedLink, Timing},
 };
 use nima_tests::plan;
 use nima_world::{Plan, World, run_virtual};
@@ -222,6 +227,77 @@ fn a_silent_or_poisoned_source_takes_the_force_away_within_20_ms_and_latches() {
             );
         }
     }
+}
+
+#[test]
+fn who_engages_right_after_a_silence_waits_for_the_first_new_parcel() {
+    let mut bench = Bench::until_contact(Mode::Dfr);
+    for _ in 0..300 {
+        bench.step(|_| None);
+    }
+    bench.step(Some);
+    let now_s = 1e-3 * bench.tick as f64;
+    bench.control.obey(Command::ReleaseStop, now_s).unwrap();
+    bench.control.obey(Command::Engage, now_s).unwrap();
+    let ticks: Vec<Tick> = (0..100).map(|_| bench.step(Some)).collect();
+    let waited = ticks.iter().take_while(|tick| tick.state == LoopState::Ready).count();
+    assert!((48..=52).contains(&waited), "the link has 50 ms: {waited}");
+    assert!(ticks[waited..].iter().all(|tick| tick.state == LoopState::Engaged), "{:?}", ticks[99].state);
+}
+
+/// A link that can be cut.
+#[derive(Debug)]
+struct Cut {
+    link: ProgrammedLink,
+    is_cut: Arc<AtomicBool>,
+}
+
+impl Link for Cut {
+    fn set_delay(&mut self, delay_s: f64) {
+        self.link.set_delay(delay_s);
+    }
+
+    fn clear(&mut self) {
+        self.link.clear();
+    }
+
+    fn send(&mut self, parcel: &Parcel) {
+        if !self.is_cut.load(Relaxed) {
+            self.link.send(parcel);
+        }
+    }
+
+    fn receive(&mut self, now_s: f64) -> Option<&Parcel> {
+        self.link.receive(now_s)
+    }
+}
+
+#[test]
+fn over_a_link_that_stays_silent_nobody_is_engaged() {
+    let Plan { rig, scene, .. } = plan("peg_transfer");
+    let is_cut = Arc::new(AtomicBool::new(false));
+    let link = Cut { link: ProgrammedLink::new(rig.rate_hz, rig.delay_s), is_cut: Arc::clone(&is_cut) };
+    let mut control = Pair::over(&rig, Side::Right, &Calibrations::default(), link).unwrap();
+    let (mut world, mut outputs) = (World::new(&scene, rig.rate_hz), Outputs::SAFE);
+    let mut refused = Vec::new();
+    for tick in 0..4000 {
+        let now_s = f64::from(tick) * 1e-3;
+        control.clear_events();
+        if tick == 500 {
+            is_cut.store(true, Relaxed);
+        } else if tick == 1000 {
+            control.obey(Command::Engage, now_s).unwrap();
+        }
+        let inputs = world.exchange(now_s, &outputs);
+        let told = control.step(false, inputs, &Timing { now_s, ..Timing::default() });
+        outputs = told.0;
+        assert!(matches!(told.1.state, LoopState::Idle | LoopState::Ready), "{:?}", told.1.state);
+        refused.extend(control.events().filter_map(|event| match event {
+            Event::CommandRefused { why, .. } => Some(*why),
+            _ => None,
+        }));
+    }
+    assert_eq!(refused, [Refusal::StillPresent(Fault::LinkSilent)]);
 }
 
 #[test]

@@ -104,6 +104,8 @@ pub struct Pair<L: Link = ProgrammedLink> {
     /// Share of samples missing lately, and whether the last one was present.
     gaps: f64,
     was_there: bool,
+    /// Age, beyond its delay, of what the link within this process delivers, s.
+    link_age_s: f64,
     hand_force_n: Vector3<f64>,
     command_m: Option<Vector3<f64>>,
     speed: Speed<3>,
@@ -172,6 +174,7 @@ impl<L: Link> Pair<L> {
             last_now_s: None,
             gaps: 0.0,
             was_there: false,
+            link_age_s: 0.0,
             hand_force_n: Vector3::zeros(),
             command_m: None,
             speed: Speed::new(rig.gates.handle_step_m, rig.rate_hz),
@@ -312,7 +315,11 @@ impl<L: Link> Pair<L> {
         let age_s = parcel.map_or(f64::INFINITY, |parcel| now_s - parcel.t_s - self.delay_s + seen.age_s);
         // Over a network a parcel may be younger than the delay says; its force still ends with the line.
         let age_s = age_s.max(seen.silent_s);
-        if parcel_is_there && age_s > LINK_SILENT_AFTER_S {
+        let is_old = parcel_is_there && age_s > LINK_SILENT_AFTER_S;
+        // Right after a silence of the devices the link within this process still delivers what is from before it: an engagement waits for
+        // the first new parcel.
+        self.link_age_s = if parcel_is_there && !self.far.is_there { age_s } else { 0.0 };
+        if is_old && !(self.link_is_old() && self.state() == LoopState::Ready) {
             self.fail_if_driven(Fault::LinkSilent, now_s);
         }
         let permits = self.state().permits();

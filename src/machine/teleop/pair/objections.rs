@@ -58,6 +58,8 @@ impl<L: Link> Pair<L> {
             Refusal::EndoscopeUnseen
         } else if !self.force.source.is_usable() {
             Refusal::ForceUnknown
+        } else if self.link_is_old() {
+            Refusal::StillPresent(Fault::LinkSilent)
         } else if !seen.present {
             Refusal::HandAbsent
         } else if seen.clutch {

@@ -125,6 +125,7 @@ impl<L: Link> Pair<L> {
             powered: inputs.is_some_and(|inputs| inputs.powered),
             agreed: inputs.is_some_and(|inputs| inputs.view != View::Unseen)
                 && self.force.source.is_usable()
+                && !self.link_is_old()
                 && moved_m <= AT_REST_M,
             present: switches.presence.unwrap_or(true) && !self.hand_is_gone,
             clutch: switches.clutch,
@@ -136,6 +137,11 @@ impl<L: Link> Pair<L> {
                 self.tell(Event::CommandRefused { t_s: now_s, side: self.side, command: Command::Engage, why });
             }
         }
+    }
+
+    /// Whether what the link within this process delivers is from before a silence.
+    pub(super) fn link_is_old(&self) -> bool {
+        self.link_age_s > LINK_SILENT_AFTER_S
     }
 
     /// Whether so many samples are missing that the identification would learn from interpolated data: more than one in

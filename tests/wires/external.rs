@@ -175,15 +175,26 @@ impl Bench {
         self.newest.map_or(0.0, |tick| tick.rendered_n.norm())
     }
 
+    fn is_faulted(&self) -> bool {
+        matches!(self.state(), LoopState::Faulted(_))
+    }
+
     /// Engages by command, and waits until the hand feels the sensor's force.
     fn engage(&mut self) {
+        // What is known may be from before a loss.
+        self.healths = [Health::default(); 3];
         self.until("all connected", |bench| bench.healths.iter().all(|h| h.standing == Standing::Connected));
-        if matches!(self.state(), LoopState::Faulted(_)) {
+        // A release is refused until the first readings are there.
+        let begin = Instant::now();
+        while self.is_faulted() && begin.elapsed() < WAIT {
             assert!(self.handle.send(Command::ReleaseStop));
+            (0..20).for_each(|_| self.look());
         }
         self.until("idle", |bench| bench.state() == LoopState::Idle);
         assert!(self.handle.send(Command::Engage));
-        self.until("a force", |bench| bench.state() == LoopState::Engaged && bench.rendered_n() > FELT_N);
+        let felt = |bench: &Self| bench.state() == LoopState::Engaged && bench.rendered_n() > FELT_N;
+        self.until("a force", |bench| felt(bench) || bench.is_faulted());
+        assert!(felt(self), "not engaged: {:?}", self.state());
     }
 
     /// What happens after `act` to the program of these devices: the cause, and after what time the force is gone, s.
@@ -194,7 +205,7 @@ impl Bench {
         assert!(self.rendered_n() > 0.0);
         self.ticks.clear();
         act();
-        self.until("a fault", |bench| matches!(bench.state(), LoopState::Faulted(_)));
+        self.until("a fault", Self::is_faulted);
         self.until("a loss", |bench| bench.lost.iter().any(|(device, _)| devices.contains(device)));
         let last = self.ticks.iter().filter(|tick| tick.rendered_n.norm() > 0.0).map(|tick| tick.t_s).next_back();
         let gone_s = last.unwrap_or(at_s) - at_s;
@@ -271,8 +282,7 @@ fn when_a_program_in_c_dies_or_stands_still_the_force_is_gone_and_the_cause_is_t
         std::thread::sleep(Duration::from_millis(300));
         arm.signal(libc::SIGCONT);
         bench.until("connected again", |bench| bench.healths.iter().all(|h| h.standing == Standing::Connected));
-        let faulted = matches!(bench.state(), LoopState::Faulted(_));
-        assert!(faulted && bench.rendered_n() == 0.0, "nothing resumes by itself: {:?}", bench.state());
+        assert!(bench.is_faulted() && bench.rendered_n() == 0.0, "nothing resumes by itself: {:?}", bench.state());
         bench.engage();
 
         assert_eq!(judge(&mut bench, "handle stopped", stop, &mut hand, HANDLE), Loss::Silent);

@@ -15,7 +15,9 @@ CENTRE_M, RADIUS_M, RATE_RAD_S, SPRING_N_M = (0.0186, -0.153, 0.151), 0.01, 1.9,
 def run(nima):
     peer = Peer("HaplyHardwareAPI")
     with Emulator(nima, "haply", "--set", "id=0A1B", "--set", "model=5", "--set", "firmware=7") as emulator:
-        device = HaplyHardwareAPI.Inverse3(HaplyHardwareAPI.SerialStream(emulator.endpoint))
+        # The client does not keep its stream: it must live as long as the device.
+        stream = HaplyHardwareAPI.SerialStream(emulator.endpoint)
+        device = HaplyHardwareAPI.Inverse3(stream)
         identity = device.device_wakeup_dict()
         peer.check("device id", int(identity["device_id"]) == 0x0A1B, identity)
         for force in ([0.0, 0.0, 0.0], [1.5, 0.0, 0.0], [0.0, -2.0, 3.0]):

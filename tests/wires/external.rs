@@ -340,7 +340,10 @@ fn minute(examples: &Examples, seconds: u64) {
     bench.ticks.clear();
     while begin.elapsed() < Duration::from_secs(seconds) && bench.state() == LoopState::Engaged {
         bench.look();
-        rates_hz.push(bench.healths.map(|health| health.rate_hz));
+        // The first rate is told half a second after opening.
+        if begin.elapsed() > Duration::from_secs(1) {
+            rates_hz.push(bench.healths.map(|health| health.rate_hz));
+        }
     }
     let (last, after) = (bench.newest.unwrap(), bench.healths);
     let mut ages_s: Vec<f64> = bench.ticks.iter().filter_map(|tick| tick.sample_to_force_s).collect();

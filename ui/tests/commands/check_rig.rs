@@ -83,11 +83,13 @@ fn a_rig_that_is_not_ready_fails_in_one_line_and_its_record_says_why_and_what_to
 #[test]
 fn a_rig_of_real_devices_is_sent_to_the_console_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    let output = nima(folder.path(), &["--rig", "paper"]);
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        !output.status.success() && told.lines().count() == 1 && told.contains("check it in `nima console`"),
-        "{told}"
-    );
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    for rig in ["paper", "haply-desk"] {
+        let output = nima(folder.path(), &["--rig", rig]);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            !output.status.success() && told.lines().count() == 1 && told.contains("check it in `nima console`"),
+            "{told}"
+        );
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
 }

@@ -32,6 +32,23 @@ fn a_port_that_is_not_there_and_a_port_where_nobody_listens_are_told_with_their_
 }
 
 #[test]
+fn the_handle_that_leads_a_simulated_rig_is_tested_and_keeps_the_real_clock() {
+    let folder = tempfile::tempdir().unwrap();
+    let rig = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../config/rigs/haply-desk.toml")).unwrap();
+    let path = folder.path().join("my-handle.toml");
+    std::fs::write(&path, rig.replace("/dev/ttyACM0", "/dev/no-such-port")).unwrap();
+    let output = nima(&["--rig", path.to_str().unwrap()]);
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(!output.status.success() && told.contains("right handle"), "{told}");
+    assert!(told.contains("/dev/no-such-port is not there"), "{told}");
+    let mut run = Command::new(env!("CARGO_BIN_EXE_nima"));
+    run.args(["run", "--virtual", "--seconds", "1", "--rig"]).arg(&path);
+    let refused = run.env("NIMA_DATA_DIR", folder.path()).output().unwrap();
+    let why = String::from_utf8(refused.stderr).unwrap();
+    assert!(!refused.status.success() && why.contains("remove --virtual"), "{why}");
+}
+
+#[test]
 fn the_rules_and_the_command_that_installs_them_are_printed() {
     assert!(text(&["--udev-rules"]).contains("1451"));
     let command = text(&["--udev"]);

@@ -61,6 +61,21 @@ fn another_scene_and_another_rig_start_idle_and_are_offered_again() {
 }
 
 #[test]
+fn the_handle_that_leads_a_simulated_rig_is_looked_for_before_it_is_started() {
+    let folder = tempfile::tempdir().unwrap();
+    let rig = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../config/rigs/haply-desk.toml")).unwrap();
+    let rig = rig.replace("/dev/ttyACM0", "/dev/no-such-port").replace("Haply desk", "My handle");
+    std::fs::create_dir_all(folder.path().join("rigs")).unwrap();
+    std::fs::write(folder.path().join("rigs/my-handle.toml"), rig).unwrap();
+    let mut harness = console(folder.path());
+    press(&mut harness, "Rig");
+    assert!(harness.query_by_label("Check the devices").is_none());
+    pick(&mut harness, "My handle");
+    pick(&mut harness, "Check the devices");
+    wait(&mut harness, "it is missing", |harness| harness.query_by_label_contains("/dev/no-such-port").is_some());
+}
+
+#[test]
 fn a_rig_is_made_from_another_and_used() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = console(folder.path());

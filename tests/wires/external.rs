@@ -406,6 +406,8 @@ fn the_examples_in_python_lead_the_loop_too() {
         let arm = Examples::Python.start("arm_and_sensor", &ports[1..]);
         let mut bench = Bench::new(rig(ports));
         bench.engage();
+        bench.ticks.clear();
+        bench.until("a while", |bench| bench.ticks.len() > 300);
         drop(bench);
         for line in hand.counted().into_iter().chain(arm.counted()) {
             assert!(line["taken"].as_u64().unwrap() > 100 && line["damaged"] == 0, "{line}");

@@ -193,3 +193,20 @@ fn who_is_not_the_handle_is_told_with_what_to_do() {
     }
     assert_eq!(force_request([0.0; 3])[1..], [0; 12]);
 }
+
+#[test]
+fn a_force_is_taken_back_at_once_also_from_a_handle_that_does_not_answer() {
+    let ((fake, mut driver), mut now_s) = (opened(&Settings::at("/dev/ttyACM0")), 0.0);
+    driver.switch_force(true);
+    ticks(&mut driver, &mut now_s, 5, Vector3::x());
+    fake.change(|inner| inner.answers = false);
+    ticks(&mut driver, &mut now_s, 3, Vector3::x());
+    assert_eq!(fake.newest_n(), Vector3::x());
+    ticks(&mut driver, &mut now_s, 1, Vector3::zeros());
+    assert_eq!(fake.newest_n(), Vector3::zeros(), "although older answers are missing");
+    ticks(&mut driver, &mut now_s, 10, Vector3::x());
+    assert_eq!(fake.newest_n(), Vector3::x(), "it is asked again");
+    ticks(&mut driver, &mut now_s, 20, Vector3::x());
+    assert!(matches!(driver.health().standing, Standing::Lost(Loss::Silent)));
+    assert_eq!(fake.newest_n(), Vector3::zeros(), "it may still listen");
+}

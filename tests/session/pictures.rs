@@ -82,7 +82,7 @@ struct Streaming {
 const KEY_EVERY: u8 = 10;
 
 fn is_key(data: &[u8]) -> bool {
-    data[0] % KEY_EVERY == 0
+    data[0].is_multiple_of(KEY_EVERY)
 }
 
 impl PictureSource for Streaming {

@@ -225,21 +225,24 @@ mod tests {
         let of = |length, is_key| Compressed { format: Format::H264 { is_key }, ..picture(length) };
         let reel = Reel::default();
         let end = reel.end();
+        let put = |pictures: &[Compressed]| {
+            for picture in pictures {
+                reel.put(picture);
+            }
+        };
         let lengths = || -> Vec<usize> { std::iter::from_fn(|| end.take()).map(|taken| taken.bytes.len()).collect() };
-        [of(1, false), of(2, true), of(3, false)].iter().for_each(|picture| reel.put(picture));
+        put(&[of(1, false), of(2, true), of(3, false)]);
         assert_eq!(lengths(), [2, 3]);
         reel.begins();
-        [of(4, false), of(5, true), of(6, false)].iter().for_each(|picture| reel.put(picture));
+        put(&[of(4, false), of(5, true), of(6, false)]);
         assert_eq!(lengths(), [5, 6], "the camera was opened again");
         // One has no room: those that refer to it are left out too.
-        [of(7, true), of(33 << 20, false), of(8, false), of(9, true), of(10, false)]
-            .iter()
-            .for_each(|picture| reel.put(picture));
+        put(&[of(7, true), of(33 << 20, false), of(8, false), of(9, true), of(10, false)]);
         assert_eq!((lengths(), end.dropped()), (vec![7, 9, 10], 1));
         reel.rest(true);
         reel.put(&of(11, true));
         reel.rest(false);
-        [of(12, false), of(13, true)].iter().for_each(|picture| reel.put(picture));
+        put(&[of(12, false), of(13, true)]);
         assert_eq!(lengths(), [13]);
     }
 

@@ -18,7 +18,7 @@ use nima_session::{
 };
 
 use super::poses::Pose;
-use crate::console::chain;
+use crate::console::{chain, text};
 
 /// The tip of a picture is that of the last tick before it, within this time, ns.
 const TICK_NS: u64 = 20_000_000;
@@ -145,7 +145,7 @@ impl Stream {
         let damaged = |reason: String| Damage::Undecodable { reason };
         let units = pictures.leading_to(time_ns, self.stands_ns, h264::is_key);
         let units = units.map_err(|error| damaged(chain(&error)))?;
-        let mut shown = Err(damaged("the picture that it builds upon is not in the session".to_owned()));
+        let mut shown = Err(damaged(text::eyes::BASE_MISSING.to_owned()));
         self.stands_ns = None;
         for (left, unit) in (0..units.len()).rev().zip(&units) {
             match self.decoder.take(&unit.data, h264::is_key(&unit.data), left == 0) {

@@ -15,6 +15,7 @@ pub(in crate::console) const SIZE_CURE: &str =
 pub(in crate::console) const FORCES_DRAWN: &str = "Forces are drawn at the tips; O hides them";
 pub(in crate::console) const FORCES_AHEAD: &str = "Forces of now, ahead of the picture; O hides them";
 pub(in crate::console) const FORCES_HIDDEN: &str = "O draws the forces at the tips";
+pub(in crate::console) const BASE_MISSING: &str = "the picture that it builds upon is not in the session";
 pub(in crate::console) const NOT_RECORDED: &str = "Not in the session: only JPEGs and H.264 are recorded";
 pub(in crate::console) const LEFT_HALF: &str = "Left half; V shows the right one";
 pub(in crate::console) const RIGHT_HALF: &str = "Right half; V shows both";

@@ -314,6 +314,13 @@ impl RigConfig {
         let ages = gates.fade_after_s >= 0.0 && gates.zero_after_s > gates.fade_after_s;
         ranges.check("gates.zero_after_s", gates.zero_after_s, ages, "later than fade_after_s")?;
         self.endoscope.as_ref().map_or(Ok(()), |endoscope| endoscope.check(&ranges))?;
+        let camera = self.endoscope.as_ref().and_then(|endoscope| endoscope.camera);
+        if camera.is_some_and(|camera| camera.n_from_camera_m.is_some()) {
+            let is_marked = self.devices.as_ref().is_some_and(|devices| devices.endoscope.is_some());
+            let markers = if is_marked { 1.0 } else { 0.0 };
+            let key = "endoscope.camera.n_from_camera_m (markers on the endoscope)";
+            ranges.check(key, markers, is_marked, "1: [devices.endoscope] names the tracker's tool")?;
+        }
         let devices = self.devices.as_ref().map_or(Ok(()), rig::Settings::check);
         let desk = self.desk.as_ref().map_or(Ok(()), rig::DeskSettings::check);
         devices

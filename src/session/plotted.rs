@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use nalgebra::Vector3;
+use nalgebra::{Isometry3, Vector3};
 use nima_core::impedance::{AXES, Sample};
 use nima_machine::rig::Side;
 use nima_recording::{
@@ -15,7 +15,7 @@ use nima_recording::{
 
 use crate::{
     cut::BEGINNING,
-    topics::{STATES, columns::Columns},
+    topics::{FRAMES_TOPIC, STATES, columns::Columns, endoscope_of},
 };
 
 /// Why the plots of a session cannot be read.
@@ -87,6 +87,12 @@ pub fn arm(reader: &Reader, path: &Path, asked: Option<Side>) -> Result<Side, Pl
         (Some(arm), there) if there.contains(&arm) => Ok(arm),
         (Some(arm), _) => Err(PlottedError::NoArm { path, arm }),
     }
+}
+
+/// Where the endoscope's marker was in these times (ns), the newest last; nothing where no tracker saw it, or the file has no frames.
+pub fn endoscope(reader: &Reader, times_ns: Range<u64>) -> Vec<Isometry3<f64>> {
+    let messages = reader.messages(&[FRAMES_TOPIC], times_ns);
+    messages.filter_map(|message| endoscope_of(message.ok()?.data())).collect()
 }
 
 /// Calls `each` with every tick of this arm between these times (ns). A tick that was not written to its end is left out.

@@ -24,7 +24,7 @@ pub(crate) use objects::{
     HAPPENINGS_TOPIC, JAWS_PLOT, MARKS_TOPIC, RINGS_TOPIC, TASK_TOPIC, happenings_channel, jaws_of, marks,
     marks_channel, marks_of, rings, rings_channel, rings_of, standing_of,
 };
-pub(crate) use scene::{ARROWS_TOPIC, FRAMES_TOPIC};
+pub(crate) use scene::{ARROWS_TOPIC, FRAMES_TOPIC, endoscope_of};
 pub(crate) use timing::{TIMES, TIMING_TOPIC};
 
 use crate::{

@@ -1,4 +1,4 @@
-//! The endoscope of an emulated rig sees both instruments where the simulated world has them.
+//! The endoscope of an emulated rig sees both instruments where the simulated world has them, also after it was pushed.
 #![cfg(target_os = "linux")]
 use std::{
     net::TcpListener,
@@ -6,14 +6,27 @@ use std::{
     time::{Duration, Instant},
 };
 
-use nima_endoscope::Feed;
-use nima_machine::{config::Endoscope, rig::Side};
-use nima_testing::real_time::alone;
+use nalgebra::{Isometry3, Vector2, Vector3};
+use nima_endoscope::{Camera, Feed, Picture};
+use nima_machine::{
+    config::Endoscope,
+    rig::{DeviceRig, Rig, SIDES, Side},
+};
+use nima_testing::real_time::{alone, judged};
 use nima_tests::emulated::{elsewhere, started_in};
 use nima_world::{
-    emulators::endoscope::{camera_of, usual},
+    emulators::{
+        EmulatedFault,
+        endoscope::{camera_of, usual},
+    },
     scene::Scene,
 };
+
+use super::sides::hand_eye;
+
+fn free_port() -> u16 {
+    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+}
 
 #[test]
 fn both_tips_are_in_the_picture_where_the_world_has_them() {
@@ -21,7 +34,7 @@ fn both_tips_are_in_the_picture_where_the_world_has_them() {
     let folder = tempfile::tempdir().unwrap();
     let (devices, scene) = (elsewhere(folder.path()), Scene::load("bimanual").unwrap());
     let mut rig = started_in(&scene, &devices);
-    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let port = free_port();
     let mut settings = usual(&scene);
     settings.k1 = 0.3;
     let url = format!("http://127.0.0.1:{port}/");
@@ -48,4 +61,79 @@ fn both_tips_are_in_the_picture_where_the_world_has_them() {
         let [r, g, b] = [0, 1, 2].map(|colour| picture.rgba[at + colour]);
         assert!(g > 150 && r < 90 && b < 150, "{side:?}: {r} {g} {b} at {place_px}");
     }
+}
+
+/// The colour of the tips.
+fn is_tip(pixel: &[u8]) -> bool {
+    pixel[1] > 150 && pixel[0] < 90 && pixel[2] < 150
+}
+
+/// The middle of the tip that is seen near here, px; `None` where there is none.
+fn tip_px(picture: &Picture, near_px: &Vector2<f64>) -> Option<Vector2<f64>> {
+    let width = picture.size_px[0];
+    let places = picture.rgba.chunks_exact(4).enumerate().filter(|(_, pixel)| is_tip(pixel));
+    let places = places.map(|(at, _)| Vector2::new((at % width) as f64 + 0.5, (at / width) as f64 + 0.5));
+    let near: Vec<_> = places.filter(|place_px| (place_px - near_px).norm() < 40.0).collect();
+    (near.len() > 20).then(|| near.iter().sum::<Vector2<f64>>() / near.len() as f64)
+}
+
+/// Reads the rig for so long; gives the mean place of the endoscope's marker, and its last orientation.
+fn marker(rig: &mut DeviceRig, begin: Instant, last: Duration) -> Option<Isometry3<f64>> {
+    let (end, mut seen) = (Instant::now() + last, Vec::new());
+    while Instant::now() < end {
+        let inputs = rig.read(begin.elapsed().as_secs_f64());
+        seen.extend(inputs.iter().flatten().filter_map(|inputs| inputs.view.world_from_n().copied()));
+        thread::sleep(Duration::from_millis(1));
+    }
+    let newest = seen.last()?;
+    let mean_m = seen.iter().map(|pose| pose.translation.vector).sum::<Vector3<f64>>() / seen.len() as f64;
+    Some(Isometry3::from_parts(mean_m.into(), newest.rotation))
+}
+
+#[test]
+fn the_camera_goes_with_the_marker_on_a_pushed_endoscope() {
+    let _alone = alone();
+    judged(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let (mut devices, scene) = (elsewhere(folder.path()), Scene::load("bimanual").unwrap());
+        let mut emulated = started_in(&scene, &devices);
+        for (set, side) in [&mut devices.right, &mut devices.left].into_iter().zip(Side::ALL) {
+            hand_eye(set.as_mut().unwrap(), &emulated.truth(side).unwrap());
+        }
+        let settings = usual(&scene);
+        let url = format!("http://127.0.0.1:{}/", free_port());
+        let endoscope = Endoscope { url: url.clone(), camera: Some(settings), ..Endoscope::default() };
+        emulated.show(&endoscope, &devices, &scene).unwrap();
+        let (mut rig, _) = DeviceRig::start(&devices, 1e-3, [false; SIDES]).unwrap();
+        let begin = Instant::now();
+        let mut seen = None;
+        while seen.is_none() && begin.elapsed() < Duration::from_mins(2) {
+            seen = marker(&mut rig, begin, Duration::from_millis(500));
+        }
+        let fixed = camera_of(&settings);
+        let n_from_camera = seen.expect("the tracker sees the endoscope").inverse() * fixed.world_from_camera;
+
+        let feed = Feed::start(url.parse().unwrap(), Some(settings.size_px), || {}).unwrap();
+        assert!(emulated.set_fault("endoscope", EmulatedFault::Moved));
+        // The first picture from there takes some tenths of a second to make.
+        let end = Instant::now() + Duration::from_secs(20);
+        let misses_px = loop {
+            let world_from_n = marker(&mut rig, begin, Duration::from_millis(500)).unwrap();
+            let camera = Camera { world_from_camera: world_from_n * n_from_camera, ..fixed };
+            let picture = feed.look(Instant::now()).picture;
+            let misses = Side::ALL.map(|side| {
+                let tip_m = emulated.truth(side).unwrap().tip_m;
+                let [before_px, drawn_px] = [&fixed, &camera].map(|camera| camera.project(&tip_m).unwrap());
+                assert!((before_px - drawn_px).norm() > 20.0 || Instant::now() < end, "{before_px} {drawn_px}");
+                let is_px = tip_px(&picture.as_ref()?.1, &drawn_px)?;
+                Some((is_px - drawn_px).norm()).filter(|_| (before_px - drawn_px).norm() > 20.0)
+            });
+            if let [Some(right_px), Some(left_px)] = misses {
+                break [right_px, left_px];
+            }
+            assert!(Instant::now() < end, "{misses:?}");
+        };
+        println!("{misses_px:?} px");
+        assert!(misses_px.iter().all(|miss_px| *miss_px < 5.0), "{misses_px:?} px");
+    });
 }

@@ -63,7 +63,8 @@ fn rig(folder: &Path) -> Settings {
     devices
 }
 
-fn hand_eye(set: &mut ArmSet, truth: &Truth) {
+/// What hand-eye calibrations without error would write.
+pub(crate) fn hand_eye(set: &mut ArmSet, truth: &Truth) {
     let base = nima_core::kinematics::Arm::new(&set.mount).unwrap();
     let base = Isometry3::from_parts(base.world_from_base().translation, base.world_from_base().rotation.into());
     let base_from_c = base.inverse() * truth.world_from_c;

@@ -7,21 +7,31 @@ use nima_machine::config::RigFile;
 
 const CAMERA: &str = "endoscope.camera";
 
-/// The changes that put this lens into a rig file. The camera's place was found with another lens and is taken away, unless a new one is given,
-/// with its error on held-out points, px.
-pub(crate) fn changes(file: &RigFile, lens: &Lens, place: Option<(&Isometry3<f64>, f64)>) -> Vec<RigChange> {
+/// Where a camera was found to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FoundPlace {
+    /// In the workspace, or in the frame of the endoscope's marker.
+    pub(crate) pose: Isometry3<f64>,
+    pub(crate) on_marker: bool,
+    /// Its error on held-out points, px.
+    pub(crate) checked_px: f64,
+}
+
+/// The changes that put this lens into a rig file. The camera's place was found with another lens and is taken away, unless a new one is given.
+pub(crate) fn changes(file: &RigFile, lens: &Lens, place: Option<FoundPlace>) -> Vec<RigChange> {
     let [width, height] = lens.size_px;
     let Bend { k1, k2, p1, p2 } = lens.bend;
     let (focal_px, centre_px) = (lens.focal_px, lens.centre_px);
     let term = |value: f64| (value != 0.0).then(|| format!("{value:.6}"));
-    let place_m = place.map(|(pose, _)| pose.translation.vector);
-    let angles_deg = place.map(|(pose, _)| to_roll_pitch_yaw_deg(&pose.rotation));
-    let of_place: [Option<String>; 3] = [
-        place_m.map(|place| format!("[{:.6}, {:.6}, {:.6}]", place.x, place.y, place.z)),
-        angles_deg.map(|angles| format!("[{:.4}, {:.4}, {:.4}]", angles.x, angles.y, angles.z)),
-        place.map(|(_, checked_px)| format!("{checked_px:.2}")),
-    ];
-    let [position, angles, checked] = of_place;
+    let at = |place: &FoundPlace| {
+        let (at_m, deg) = (place.pose.translation.vector, to_roll_pitch_yaw_deg(&place.pose.rotation));
+        let at_m = format!("[{:.6}, {:.6}, {:.6}]", at_m.x, at_m.y, at_m.z);
+        [at_m, format!("[{:.4}, {:.4}, {:.4}]", deg.x, deg.y, deg.z)]
+    };
+    let in_world = place.as_ref().filter(|place| !place.on_marker).map(at);
+    let on_marker = place.as_ref().filter(|place| place.on_marker).map(at);
+    let [position, angles] = in_world.map_or([None, None], |parts| parts.map(Some));
+    let [marker_m, marker_deg] = on_marker.map_or([None, None], |parts| parts.map(Some));
     let is_square = (focal_px.x - focal_px.y).abs() < 0.005;
     let values = [
         ("size_px", Some(format!("[{width}, {height}]"))),
@@ -34,7 +44,9 @@ pub(crate) fn changes(file: &RigFile, lens: &Lens, place: Option<(&Isometry3<f64
         ("p2", term(p2)),
         ("position_m", position),
         ("world_from_camera_deg", angles),
-        ("checked_px", checked),
+        ("n_from_camera_m", marker_m),
+        ("n_from_camera_deg", marker_deg),
+        ("checked_px", place.map(|place| format!("{:.2}", place.checked_px))),
     ];
     let change = |(name, after): (&str, Option<String>)| {
         let key = format!("{CAMERA}.{name}");
@@ -71,7 +83,8 @@ mod tests {
         lens.bend.p1 = 0.002;
         lens.focal_px.y = 740.5;
         let pose = Isometry3::new([0.01, -0.09, 0.08].into(), [-2.1, 0.2, 0.1].into());
-        let all = changes(&RigFile::of(name).unwrap(), &lens, Some((&pose, 2.5)));
+        let place = FoundPlace { pose, on_marker: false, checked_px: 2.5 };
+        let all = changes(&RigFile::of(name).unwrap(), &lens, Some(place));
         change_rig(name, folder.path(), &all).unwrap();
         let camera = RigConfig::load(name).unwrap().endoscope.unwrap().camera.unwrap();
         assert_eq!((camera.size_px, camera.k2, camera.checked_px), ([1280, 720], 0.0, Some(2.5)));
@@ -80,6 +93,12 @@ mod tests {
         let moved = again.world_from_camera.inverse() * pose;
         assert!(moved.translation.vector.norm() < 1e-5 && moved.rotation.angle() < 1e-5, "{moved}");
         assert!(std::fs::read_to_string(&path).unwrap().contains("# the tower"));
+        // On the endoscope's marker: where it was in the workspace is forgotten.
+        let place = FoundPlace { on_marker: true, ..place };
+        let all = changes(&RigFile::of(name).unwrap(), &lens, Some(place));
+        let after = |key: &str| all.iter().find(|change| change.key.ends_with(key)).unwrap().after.clone();
+        assert_eq!((after(".position_m"), after(".world_from_camera_deg")), (None, None));
+        assert!(after(".n_from_camera_m").is_some() && after(".n_from_camera_deg").is_some());
         // Another lens: where the camera is is not known any more.
         let all = changes(&RigFile::of(name).unwrap(), &Lens::simple([1280, 720], 700.0, 0.0), None);
         change_rig(name, folder.path(), &all).unwrap();

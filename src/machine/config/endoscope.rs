@@ -112,6 +112,12 @@ pub struct EndoscopeCamera {
     /// Roll, pitch, yaw of the camera's frame in the workspace, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub world_from_camera_deg: Option<Vector3<f64>>,
+    /// Place of the lens in the frame of the endoscope's marker (`devices.endoscope`), m: the camera then follows the endoscope.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub n_from_camera_m: Option<Vector3<f64>>,
+    /// Roll, pitch, yaw of the camera's frame in that of the marker, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub n_from_camera_deg: Option<Vector3<f64>>,
     /// How far touched points were beside where the camera saw them, px: root mean square of held-out points, by the wizard.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub checked_px: Option<f64>,
@@ -181,12 +187,32 @@ impl EndoscopeCamera {
         if let Some(checked_px) = self.checked_px {
             ranges.not_negative("endoscope.camera.checked_px", checked_px)?;
         }
-        let given = [self.position_m, self.world_from_camera_deg].map(|part| part.is_some());
-        let count = f64::from(u8::from(given[0]) + u8::from(given[1]));
-        let whole = "2: position_m and world_from_camera_deg, or none of them";
-        ranges.check("endoscope.camera (parts of its place)", count, given[0] == given[1], whole)?;
-        ranges.finite("endoscope.camera.position_m", &self.position_m.unwrap_or_default())?;
-        ranges.finite("endoscope.camera.world_from_camera_deg", &self.world_from_camera_deg.unwrap_or_default())
+        self.check_place(ranges)
+    }
+
+    fn check_place(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
+        let in_world = [
+            ("endoscope.camera.position_m", self.position_m),
+            ("endoscope.camera.world_from_camera_deg", self.world_from_camera_deg),
+        ];
+        let on_marker = [
+            ("endoscope.camera.n_from_camera_m", self.n_from_camera_m),
+            ("endoscope.camera.n_from_camera_deg", self.n_from_camera_deg),
+        ];
+        let wholes = [
+            "2: position_m and world_from_camera_deg, or none of them",
+            "2: n_from_camera_m and n_from_camera_deg, or none of them",
+        ];
+        for (parts, whole) in [in_world, on_marker].into_iter().zip(wholes) {
+            let count = parts.iter().filter(|(_, part)| part.is_some()).count();
+            ranges.check("endoscope.camera (parts of its place)", count as f64, count != 1, whole)?;
+            for (key, part) in parts {
+                ranges.finite(key, &part.unwrap_or_default())?;
+            }
+        }
+        let places = [in_world, on_marker].iter().filter(|parts| parts[0].1.is_some()).count();
+        let one = "1: in the workspace, or on the endoscope's marker";
+        ranges.check("endoscope.camera (places)", places as f64, places < 2, one)
     }
 }
 
@@ -233,6 +259,14 @@ mod tests {
             ("k1 = -0.3", "focal_y_px = 0.0", "focal_y_px is 0"),
             ("k1 = -0.3", "checked_px = -1.0", "checked_px"),
             ("position_m = [0.0, -0.1, 0.09]", "", "position_m and world_from_camera_deg"),
+            ("position_m", "n_from_camera_m", "position_m and world_from_camera_deg"),
+            ("k1 = -0.3", "n_from_camera_m = [0.0, 0.0, 0.1]", "n_from_camera_m and n_from_camera_deg"),
+            ("k1 = -0.3", "n_from_camera_m = [0.0, 0.0, 0.1]\nn_from_camera_deg = [0.0, 0.0, 0.0]", "places"),
+            (
+                "position_m = [0.0, -0.1, 0.09]\nworld_from_camera_deg",
+                "n_from_camera_m = [0.0, 0.0, 0.1]\nn_from_camera_deg",
+                "[devices.endoscope]",
+            ),
             ("mirror", "mirrors", "mirrors"),
             ("\"both\"", "\"middle\"", "middle"),
             ("0.004", "4.0", "baseline_m is 4"),

@@ -31,6 +31,8 @@ pub(super) struct Shared {
     pub(super) c_from_m: Option<Isometry3<f64>>,
     /// Orientation of the endoscope in the camera's frame: `c_from_view`.
     pub(super) c_from_view: View,
+    /// The endoscope's marker in the camera's frame.
+    pub(super) c_from_n: Option<Isometry3<f64>>,
 }
 
 impl Shared {

@@ -201,11 +201,12 @@ impl DeviceRig {
             }
             _ => None,
         };
+        let c_from_n = self.endoscope.and_then(|endoscope| c_from(endoscope.tool));
         let c_from_view = self.endoscope.map_or(View::Fixed, |endoscope| {
             let n_from_view = from_roll_pitch_yaw_deg(&endoscope.n_from_view_deg);
-            c_from(endoscope.tool).map_or(View::Unseen, |c_from_n| View::Seen(c_from_n.rotation * n_from_view))
+            c_from_n.map_or(View::Unseen, |c_from_n| View::Seen(c_from_n.rotation * n_from_view))
         });
-        Shared { tissue_n, c_from_m: c_from(side.index()), c_from_view }
+        Shared { tissue_n, c_from_m: c_from(side.index()), c_from_view, c_from_n }
     }
 
     /// Compares each arm, while its drives are off, with the other one's settings.

@@ -28,7 +28,7 @@ mod side;
 mod starting;
 mod watch;
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{calibration::frames::FrameSample, frames::WristSample, kinematics::Hand};
 use nima_devices::{ClearFaults, Health, Lever, SlotView, Standing};
 
@@ -95,6 +95,36 @@ pub enum View {
     Unseen,
     /// `world_from_view`, measured by a tracker.
     Seen(UnitQuaternion<f64>),
+    /// The same where hand-eye calibrations tell where the tracker stands: so the place of the marker is known too.
+    SeenAt {
+        /// How the picture is turned.
+        world_from_view: UnitQuaternion<f64>,
+        /// The endoscope's marker.
+        world_from_n: Isometry3<f64>,
+    },
+}
+
+impl View {
+    /// Orientation of the picture, where a tracker measures it.
+    pub const fn world_from_view(&self) -> Option<&UnitQuaternion<f64>> {
+        match self {
+            Self::Seen(world_from_view) | Self::SeenAt { world_from_view, .. } => Some(world_from_view),
+            Self::Fixed | Self::Unseen => None,
+        }
+    }
+
+    /// The endoscope's marker, where its place is known.
+    pub const fn world_from_n(&self) -> Option<&Isometry3<f64>> {
+        match self {
+            Self::SeenAt { world_from_n, .. } => Some(world_from_n),
+            Self::Fixed | Self::Unseen | Self::Seen(_) => None,
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        self.world_from_view().is_none_or(|q| q.coords.iter().all(|x| x.is_finite()))
+            && self.world_from_n().is_none_or(|pose| pose.to_homogeneous().iter().all(|x| x.is_finite()))
+    }
 }
 
 /// The measurements of an arm pair at one time.
@@ -166,7 +196,7 @@ impl Inputs {
             && self.world_from_jaws.is_none_or(|q| q.coords.iter().all(|x| x.is_finite()))
             && self.gripper_rad.is_none_or(f64::is_finite)
             && self.grip_n.is_none_or(f64::is_finite)
-            && !matches!(self.view, View::Seen(q) if !q.coords.iter().all(|x| x.is_finite()))
+            && self.view.is_finite()
             && self.age_s.is_finite()
             && self.silent_s.is_finite()
     }

@@ -72,11 +72,43 @@ choice!(FarStop {
     10 => Other {},
 });
 
-choice!(View {
+/// How the endoscope is turned, as the loop uses it. Where its marker is serves the picture alone, and is in the frames that are plotted.
+enum Turned {
+    Fixed,
+    Unseen,
+    Seen(UnitQuaternion<f64>),
+}
+
+choice!(Turned {
     0 => Fixed {},
     1 => Unseen {},
     2 => Seen { 0: world_from_view: UnitQuaternion<f64> },
 });
+
+impl Put for View {
+    const COLUMNS: usize = Turned::COLUMNS;
+
+    fn put(&self, to: &mut impl Sink) {
+        let turned = match self {
+            Self::Fixed => Turned::Fixed,
+            Self::Unseen => Turned::Unseen,
+            Self::Seen(world_from_view) | Self::SeenAt { world_from_view, world_from_n: _ } => {
+                Turned::Seen(*world_from_view)
+            }
+        };
+        turned.put(to);
+    }
+}
+
+impl Take for View {
+    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        Ok(match Turned::take(from)? {
+            Turned::Fixed => Self::Fixed,
+            Turned::Unseen => Self::Unseen,
+            Turned::Seen(world_from_view) => Self::Seen(world_from_view),
+        })
+    }
+}
 
 record!(WristSample {
     raw: Wrench,

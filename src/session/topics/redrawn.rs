@@ -5,7 +5,7 @@ use nima_recording::messages::foxglove::{FrameTransform, FrameTransforms, SceneE
 
 use super::scene::{DRAWN, WORLD, name_of_arrows, name_of_frame};
 
-/// The frames of tips and leaders.
+/// The frames of tips and leaders. Where the endoscope was tells of the room, and its pictures are left out.
 pub(crate) fn frames(time_ns: u64, of: &FrameTransforms) -> FrameTransforms {
     let names = Side::ALL.into_iter().flat_map(|side| DRAWN.map(|name| name_of_frame(side, name)));
     let anew = |name: String| {

@@ -1,6 +1,6 @@
 //! The 3-D view of a session: where tip and leader stand, and the forces at the tip as arrows.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_machine::{messages::Tick, rig::Side};
 use nima_recording::{
     messages::foxglove::{
@@ -30,6 +30,9 @@ pub(crate) const ARROWS_TOPIC: &str = "arrows";
 pub(super) const WORLD: &str = "world";
 /// What is drawn of a side, as a frame.
 pub(super) const DRAWN: [&str; 2] = ["tip", "leader"];
+
+/// The endoscope's marker, as a frame; only where its place is known.
+pub(crate) const ENDOSCOPE: &str = "endoscope";
 
 /// Name of a frame of a side.
 pub(super) fn name_of_frame(side: Side, what: &str) -> String {
@@ -72,6 +75,15 @@ impl Scene {
         let timestamp = Some(Timestamp::of_ns(time_ns));
         let (mut frames, mut scene) = (FrameTransforms::default(), SceneUpdate::default());
         for tick in ticks {
+            if let Some(world_from_n) = tick.view.world_from_n().filter(|_| !has_endoscope(&frames)) {
+                frames.transforms.push(FrameTransform {
+                    timestamp,
+                    parent_frame_id: WORLD.to_owned(),
+                    child_frame_id: ENDOSCOPE.to_owned(),
+                    translation: Some(vector(&world_from_n.translation.vector)),
+                    rotation: Some(quaternion(&world_from_n.rotation)),
+                });
+            }
             for (name, at_m) in DRAWN.into_iter().zip([tick.tip_m, tick.leader_m]) {
                 frames.transforms.push(FrameTransform {
                     timestamp,
@@ -93,6 +105,20 @@ impl Scene {
         out.message(self.frames, time_ns, &frames.encode_to_vec())?;
         out.message(self.arrows, time_ns, &scene.encode_to_vec())
     }
+}
+
+fn has_endoscope(frames: &FrameTransforms) -> bool {
+    frames.transforms.iter().any(|frame| frame.child_frame_id == ENDOSCOPE)
+}
+
+/// The endoscope's marker among recorded frames.
+pub(crate) fn endoscope_of(data: &[u8]) -> Option<Isometry3<f64>> {
+    let frames = FrameTransforms::decode(data).ok()?;
+    let frame = frames.transforms.iter().find(|frame| frame.child_frame_id == ENDOSCOPE)?;
+    let (at, turn) = (frame.translation?, frame.rotation?);
+    let turn = UnitQuaternion::try_new(nalgebra::Quaternion::new(turn.w, turn.x, turn.y, turn.z), 1e-6)?;
+    let world_from_n = Isometry3::from_parts(Vector3::new(at.x, at.y, at.z).into(), turn);
+    world_from_n.to_homogeneous().iter().all(|number| number.is_finite()).then_some(world_from_n)
 }
 
 /// A force (N) at a place (m); none where there is no force.

@@ -28,7 +28,7 @@ mod tests;
 
 use std::{
     sync::{
-        Arc, Mutex, PoisonError,
+        Arc, Mutex, OnceLock, PoisonError,
         atomic::{AtomicBool, AtomicU32, Ordering},
     },
     time::Instant,
@@ -50,7 +50,7 @@ pub use stand_in::provide_handles;
 
 use crate::{
     Hand,
-    emulators::{EmulatedFault, Serving},
+    emulators::{EmulatedFault, FaultSwitch, Serving},
     scene::Scene,
 };
 
@@ -167,6 +167,8 @@ pub struct EmulatedRig {
     sides: [Option<Shared>; SIDES],
     pedal: Arc<AtomicU32>,
     markers_exchanged: Arc<AtomicBool>,
+    /// The fault of the endoscope, on which the tracker's marker is, once its picture is served.
+    endoscope: Arc<OnceLock<FaultSwitch>>,
 }
 
 impl std::fmt::Debug for EmulatedRig {
@@ -226,8 +228,9 @@ impl EmulatedRig {
         let sides = sides.map(|side| side.map(|side| Shared { begin, side: Arc::new(Mutex::new(side)) }));
         let pedal = Arc::new(AtomicU32::new(0));
         let markers_exchanged = Arc::new(AtomicBool::new(false));
-        let devices = serving::all(devices, &sides, &pedal, &markers_exchanged)?;
-        Ok(Self { devices, sides, pedal, markers_exchanged })
+        let endoscope = Arc::default();
+        let devices = serving::all(devices, &sides, &pedal, &markers_exchanged, &endoscope)?;
+        Ok(Self { devices, sides, pedal, markers_exchanged, endoscope })
     }
 
     /// Everything that serves.

@@ -43,6 +43,7 @@ impl EmulatedRig {
         };
         let serving = emulated.with(scene, Box::new(body)).serve();
         let serving = serving.map_err(|source| EmulatedRigError::Serve { device: NAME.to_owned(), source })?;
+        self.endoscope.set(serving.faults.clone()).ok();
         self.devices.push(EmulatedDevice { name: NAME.to_owned(), serving });
         Ok(())
     }

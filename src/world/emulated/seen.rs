@@ -5,7 +5,7 @@ use nima_core::{frames::from_roll_pitch_yaw_deg, noise::Noise};
 use nima_devices::Tracked;
 use nima_machine::rig::{ArmSet, EndoscopeSettings};
 
-use crate::scene::Scene;
+use crate::{emulators::endoscope::push, scene::Scene};
 
 /// Distance of the camera from the workspace's middle, m.
 const CAMERA_M: f64 = 1.5;
@@ -13,6 +13,8 @@ const CAMERA_M: f64 = 1.5;
 const CAMERA_DEG: Vector3<f64> = Vector3::new(90.0, 0.0, 0.0);
 /// The marker sits so far down the shaft from the wrist sensor, m.
 const MARKER_M: f64 = 0.08;
+/// Where the marker on the endoscope is before somebody pushes it: on its shaft outside of the patient, m.
+const ENDOSCOPE_M: Vector3<f64> = Vector3::new(0.0, -0.25, 0.26);
 /// Noise of a marker's place per axis, m.
 const MARKER_NOISE_M: f64 = 0.000_25;
 /// Residual of a marker that is well seen, m.
@@ -38,10 +40,24 @@ impl Camera {
         }
     }
 
-    /// The marker on the endoscope.
-    pub(super) fn endoscope(&self, world_from_view: &UnitQuaternion<f64>, endoscope: &EndoscopeSettings) -> Tracked {
+    /// The marker on the endoscope, before or after a push.
+    pub(super) fn endoscope(
+        &mut self,
+        world_from_view: &UnitQuaternion<f64>,
+        endoscope: &EndoscopeSettings,
+        is_moved: bool,
+    ) -> Tracked {
         let view_from_n = from_roll_pitch_yaw_deg(&endoscope.n_from_view_deg).inverse();
-        seen(self.c_from_world * world_from_view * view_from_n, Vector3::zeros())
+        let mut world_from_n = Isometry3::from_parts(ENDOSCOPE_M.into(), world_from_view * view_from_n);
+        if is_moved {
+            world_from_n = push() * world_from_n;
+        }
+        let miss_m = self.miss_m();
+        seen(self.c_from_world * world_from_n.rotation, self.c_from_world * world_from_n.translation.vector + miss_m)
+    }
+
+    fn miss_m(&mut self) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| MARKER_NOISE_M * self.noise.gaussian())
     }
 
     /// The marker on an instrument whose wrist sensor is turned like this, with its origin here (m); `noisy` is its
@@ -54,7 +70,7 @@ impl Camera {
     ) -> Tracked {
         let marker_m = sensor_m + world_from_s1 * Vector3::new(0.0, 0.0, MARKER_M);
         let c_from_m = noisy.unwrap_or(self.c_from_world * world_from_s1 * self.s1_from_m);
-        let miss_m = Vector3::from_fn(|_, _| MARKER_NOISE_M * self.noise.gaussian());
+        let miss_m = self.miss_m();
         seen(c_from_m, self.c_from_world * marker_m + miss_m)
     }
 

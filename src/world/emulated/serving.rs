@@ -4,7 +4,7 @@ use std::{
     net::{Ipv4Addr, SocketAddrV4},
     path::{Path, PathBuf},
     sync::{
-        Arc,
+        Arc, OnceLock,
         atomic::{AtomicBool, AtomicU32, Ordering},
     },
 };
@@ -15,7 +15,7 @@ use nima_devices::{ForceReading, PedalReading, Tracked, bota, dynamixel, force_d
 use nima_machine::rig::{ArmSet, EndoscopeSettings, SIDES, SensorSettings, Settings, Side};
 
 use super::{EmulatedDevice, EmulatedRigError, Shared, SideWorld, places};
-use crate::emulators::{self, Emulator};
+use crate::emulators::{self, EmulatedFault, Emulator, FaultSwitch};
 
 type Sides = [Option<Shared>; SIDES];
 type Served = Result<EmulatedDevice, EmulatedRigError>;
@@ -41,6 +41,7 @@ pub(super) fn all(
     sides: &Sides,
     pedal_switches: &Arc<AtomicU32>,
     markers_exchanged: &Arc<AtomicBool>,
+    endoscope: &Arc<OnceLock<FaultSwitch>>,
 ) -> Result<Vec<EmulatedDevice>, EmulatedRigError> {
     settings.check()?;
     let mut devices = Vec::new();
@@ -58,7 +59,8 @@ pub(super) fn all(
         devices.push(sensor("tissue sensor".to_owned(), chosen, Side::Right, under_the_tissue(sides))?);
     }
     if let Some(chosen) = &settings.tracker {
-        devices.push(tracker(chosen, settings.endoscope, sides, Arc::clone(markers_exchanged))?);
+        let marked = settings.endoscope.map(|settings| (settings, Arc::clone(endoscope)));
+        devices.push(tracker(chosen, marked, sides, Arc::clone(markers_exchanged))?);
     }
     if let Some(chosen) = &settings.pedal {
         devices.push(pedal(chosen, pedal_switches)?);
@@ -162,7 +164,7 @@ fn servos(side: Side, chosen: &dynamixel::Settings) -> Served {
 
 fn tracker(
     chosen: &ndi::Settings,
-    endoscope: Option<EndoscopeSettings>,
+    endoscope: Option<(EndoscopeSettings, Arc<OnceLock<FaultSwitch>>)>,
     sides: &Sides,
     exchanged: Arc<AtomicBool>,
 ) -> Served {
@@ -177,10 +179,11 @@ fn tracker(
         0 | 1 if exchanged.load(Ordering::Acquire) => 1 - number,
         _ => number,
     };
-    let body = move |_: f64, number: usize| match (worlds.get(on(number)), endoscope, worlds.first()) {
+    let body = move |_: f64, number: usize| match (worlds.get(on(number)), &endoscope, worlds.first()) {
         (Some(world), ..) => world.with(SideWorld::marker),
-        (None, Some(endoscope), Some(world)) if endoscope.tool == number => {
-            world.with(|side, _| side.endoscope(&endoscope))
+        (None, Some((endoscope, fault)), Some(world)) if endoscope.tool == number => {
+            let is_moved = fault.get().is_some_and(|fault| fault.get() == EmulatedFault::Moved);
+            world.with(|side, _| side.endoscope(endoscope, is_moved))
         }
         _ => Tracked::Missing { out_of_volume: false },
     };

@@ -201,10 +201,10 @@ impl SideWorld {
         self.flawed.tracked(now_s, marker)
     }
 
-    /// What it tells of the marker on the endoscope, which stands still. An Omega stands below the endoscope's picture, and the
-    /// hand goes the picture's ways.
-    pub(super) fn endoscope(&self, endoscope: &EndoscopeSettings) -> Tracked {
-        self.camera.endoscope(&world_from_view(&self.hand), endoscope)
+    /// What it tells of the marker on the endoscope, which stands still unless somebody has pushed it. An Omega stands below the endoscope's
+    /// picture, and the hand goes the picture's ways.
+    pub(super) fn endoscope(&mut self, endoscope: &EndoscopeSettings, is_moved: bool) -> Tracked {
+        self.camera.endoscope(&world_from_view(&self.hand), endoscope, is_moved)
     }
 
     /// What only a simulation knows.

@@ -49,6 +49,8 @@ pub enum EmulatedFault {
     WrongSize,
     /// Pictures of another format.
     OtherFormat,
+    /// Somebody has pushed the endoscope aside.
+    Moved,
 }
 
 impl EmulatedFault {
@@ -67,7 +69,8 @@ impl EmulatedFault {
         Self::NotANumber,
     ];
     /// Those that only a camera has.
-    pub const OF_PICTURES: [Self; 5] = [Self::Black, Self::Torn, Self::Late, Self::WrongSize, Self::OtherFormat];
+    pub const OF_PICTURES: [Self; 6] =
+        [Self::Black, Self::Torn, Self::Late, Self::WrongSize, Self::OtherFormat, Self::Moved];
 
     /// Its name on the command line.
     pub const fn name(self) -> &'static str {
@@ -89,6 +92,7 @@ impl EmulatedFault {
             Self::Late => "late",
             Self::WrongSize => "wrong-size",
             Self::OtherFormat => "other-format",
+            Self::Moved => "moved",
         }
     }
 

@@ -63,9 +63,18 @@ impl ArmPair {
 
     fn view(&self, world_from_s1: &UnitQuaternion<f64>, shared: &Shared) -> View {
         let View::Seen(c_from_view) = shared.c_from_view else { return shared.c_from_view };
-        self.s1_from_m.zip(shared.m_from_c()).map_or(View::Unseen, |(s1_from_m, m_from_c)| {
-            View::Seen(world_from_tracked_view(&(world_from_s1 * s1_from_m), &m_from_c, &c_from_view))
-        })
+        let Some((s1_from_m, m_from_c)) = self.s1_from_m.zip(shared.m_from_c()) else { return View::Unseen };
+        let world_from_view = world_from_tracked_view(&(world_from_s1 * s1_from_m), &m_from_c, &c_from_view);
+        match self.world_from_c().zip(shared.c_from_n) {
+            Some((world_from_c, c_from_n)) => View::SeenAt { world_from_view, world_from_n: world_from_c * c_from_n },
+            None => View::Seen(world_from_view),
+        }
+    }
+
+    /// Where the tracker stands, as the hand-eye calibration found it: steadier than by way of the instrument's marker, whose noise would be
+    /// seen at the end of a lever of some decimetres.
+    fn world_from_c(&self) -> Option<Isometry3<f64>> {
+        self.hand_eye.map(|hand_eye| rigid(self.mount.world_from_base()) * hand_eye.base_from_c)
     }
 
     /// What the frame calibrations are made of; the other side's poses are added by the rig.

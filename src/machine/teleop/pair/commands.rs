@@ -10,7 +10,7 @@ use nima_core::{
 use super::Pair;
 use crate::{
     messages::{Command, Event, Fault, LoopState, Refusal},
-    rig::{GRIP_MAX_RAD, GUIDE_MAX_M, Prompt, View},
+    rig::{GRIP_MAX_RAD, GUIDE_MAX_M, Prompt},
     teleop::Link,
 };
 
@@ -161,8 +161,8 @@ impl<L: Link> Pair<L> {
         if let (LoopState::Engaged, Some(seen)) = (to, self.last_inputs) {
             // Only here: if the endoscope turns while engaged, the mapping must not turn the motion under the
             // operator's hand.
-            if let View::Seen(world_from_view) = seen.view {
-                let mapping = self.teleoperation.seen(&world_from_view, self.hand_eye.mapping().scale());
+            if let Some(world_from_view) = seen.view.world_from_view() {
+                let mapping = self.teleoperation.seen(world_from_view, self.hand_eye.mapping().scale());
                 self.hand_eye.set_mapping(mapping);
             }
             // The mapping starts at the present positions of hand and tip, so the first command is the present tip

@@ -119,8 +119,18 @@ pub fn usual(scene: &Scene) -> EndoscopeCamera {
         p2: 0.0,
         position_m: Some(MIDDLE_M + back_m),
         world_from_camera_deg: Some(Vector3::new(-90.0 - PITCH.to_degrees(), 0.0, yaw.to_degrees())),
+        n_from_camera_m: None,
+        n_from_camera_deg: None,
         checked_px: None,
     }
+}
+
+/// How a push moves the endoscope in the workspace ([`EmulatedFault::Moved`](super::EmulatedFault)): it turns in its own trocar, which gives way.
+pub fn push() -> Isometry3<f64> {
+    let trocar_m = Vector3::new(0.0, -0.15, 0.14);
+    let turn = UnitQuaternion::from_euler_angles(0.03, -0.02, 0.06);
+    Isometry3::from_parts((trocar_m + Vector3::new(0.006, 0.004, -0.002)).into(), turn)
+        * Isometry3::from_parts((-trocar_m).into(), UnitQuaternion::identity())
 }
 
 /// The lens that a rig file describes.

@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use nalgebra::Isometry3;
-use nima_endoscope::{Board, time_code};
+use nima_endoscope::{Board, Camera, time_code};
 
-use super::{Emulated, Instrument, board::Drawn, draw::Painter};
+use super::{Emulated, Instrument, board::Drawn, draw::Painter, push};
 use crate::{emulators::EmulatedFault, scene::Scene};
 
 /// What is before the lens.
@@ -24,8 +24,12 @@ pub(super) enum Seen {
 
 /// What draws it.
 enum Easel {
-    /// One for each lens.
-    Scene(Vec<Painter>),
+    /// One for each lens; and the same where a push moves the endoscope, once it has been pushed.
+    Scene {
+        here: Vec<Painter>,
+        moved: Option<Vec<Painter>>,
+        scene: Box<Scene>,
+    },
     Board(Box<Drawn>),
 }
 
@@ -45,14 +49,12 @@ pub(super) struct Shot<'a> {
 impl Studio {
     /// Takes some tenths of a second.
     pub(super) fn new(emulated: Emulated, subject: &Subject) -> Self {
-        let camera = emulated.camera;
         let easel = match subject {
             Subject::Scene(scene) => {
-                let second = emulated.baseline_m.map(|baseline_m| camera.beside(baseline_m));
-                let lenses = [Some(camera), second].into_iter().flatten();
-                Easel::Scene(lenses.map(|camera| Painter::new(camera, scene)).collect())
+                let here = painters(emulated.camera, emulated.baseline_m, scene);
+                Easel::Scene { here, moved: None, scene: scene.clone() }
             }
-            Subject::Board(board) => Easel::Board(Box::new(Drawn::new(*board, &camera.lens))),
+            Subject::Board(board) => Easel::Board(Box::new(Drawn::new(*board, &emulated.camera.lens))),
         };
         Self { emulated, easel, rgb: Vec::new(), size_px: [0; 2] }
     }
@@ -63,7 +65,7 @@ impl Studio {
         if fault == EmulatedFault::Freeze && !self.rgb.is_empty() {
             return Shot { rgb: &self.rgb, size_px: self.size_px };
         }
-        self.draw(seen);
+        self.draw(seen, fault == EmulatedFault::Moved);
         if self.emulated.square_px > 0 {
             time_code::draw(since.as_micros() as u64, self.emulated.square_px, &mut self.rgb, self.size_px[0]);
         }
@@ -75,10 +77,14 @@ impl Studio {
         Shot { rgb: &self.rgb, size_px: self.size_px }
     }
 
-    fn draw(&mut self, seen: &Seen) {
-        let [width, height] = self.emulated.camera.lens.size_px;
+    fn draw(&mut self, seen: &Seen, is_moved: bool) {
+        let Emulated { camera, baseline_m, .. } = self.emulated;
+        let [width, height] = camera.lens.size_px;
         match (&mut self.easel, seen) {
-            (Easel::Scene(painters), Seen::Instruments(instruments)) => {
+            (Easel::Scene { here, moved, scene }, Seen::Instruments(instruments)) => {
+                let there = || Camera { world_from_camera: push() * camera.world_from_camera, ..camera };
+                let painters =
+                    if is_moved { moved.get_or_insert_with(|| painters(there(), baseline_m, scene)) } else { here };
                 self.size_px = [width * painters.len(), height];
                 self.rgb.resize(3 * self.size_px[0] * height, 0);
                 for (number, painter) in painters.iter_mut().enumerate() {
@@ -94,9 +100,15 @@ impl Studio {
                 self.rgb.extend_from_slice(drawn.draw(camera_from_board));
             }
             // Made as pairs where the emulator is made.
-            (Easel::Scene(_), Seen::Board(_)) | (Easel::Board(_), Seen::Instruments(_)) => {}
+            (Easel::Scene { .. }, Seen::Board(_)) | (Easel::Board(_), Seen::Instruments(_)) => {}
         }
     }
+}
+
+/// One for each lens.
+fn painters(camera: Camera, baseline_m: Option<f64>, scene: &Scene) -> Vec<Painter> {
+    let second = baseline_m.map(|baseline_m| camera.beside(baseline_m));
+    [Some(camera), second].into_iter().flatten().map(|camera| Painter::new(camera, scene)).collect()
 }
 
 /// Every second pixel of every second row.

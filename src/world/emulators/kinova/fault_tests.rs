@@ -33,7 +33,8 @@ fn is_noticed(fault: EmulatedFault, health: &Health, before: &Health) -> bool {
         | EmulatedFault::Torn
         | EmulatedFault::Late
         | EmulatedFault::WrongSize
-        | EmulatedFault::OtherFormat => true,
+        | EmulatedFault::OtherFormat
+        | EmulatedFault::Moved => true,
     }
 }
 

@@ -26,7 +26,8 @@ fn outcome(fault: EmulatedFault) -> Outcome {
         | EmulatedFault::Torn
         | EmulatedFault::Late
         | EmulatedFault::WrongSize
-        | EmulatedFault::OtherFormat => Lags,
+        | EmulatedFault::OtherFormat
+        | EmulatedFault::Moved => Lags,
         EmulatedFault::Reorder => Disorder,
         EmulatedFault::Loss | EmulatedFault::Freeze | EmulatedFault::Silence => Lost(&[Loss::Silent]),
         EmulatedFault::Garbage | EmulatedFault::BadChecksum => Lost(&[Loss::Corrupt, Loss::Silent]),

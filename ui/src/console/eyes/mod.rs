@@ -2,10 +2,13 @@
 //! happens now. Nothing of it touches the loop.
 
 mod aim;
+mod corner;
 mod halves;
 mod hidden;
+pub(in crate::console) mod mount;
 mod overlay;
 mod place;
+mod plate;
 mod poses;
 mod projector;
 #[cfg(test)]
@@ -17,22 +20,24 @@ use std::{
     time::{Duration, Instant},
 };
 
-use egui::{Align2, Color32, Context, Key, Mesh, Painter, Rect, Sense, Ui, vec2};
-use nalgebra::Vector3;
+use egui::{Color32, Context, Key, Mesh, Painter, Rect, Sense, Ui};
+use nalgebra::{Isometry3, Vector3};
 use nima_endoscope::{Address, Camera, FROZEN, Feed, Look, Picture, Reel, Standing, Wrong};
 use nima_machine::{
-    config::{Endoscope, EndoscopeCamera, StereoView},
+    config::{Endoscope, StereoView},
     messages::Tick,
     rig::{SIDES, Side},
 };
-use nima_world::emulators::endoscope::camera_of;
 
 #[cfg(test)]
 use self::place::Place;
 use self::{
     aim::Aim,
+    corner::Corner,
     halves::{Half, Shown},
+    mount::Mount,
     overlay::Instrument,
+    plate::wrong_ui,
     poses::{Pose, Poses},
     projector::Projector,
 };
@@ -41,20 +46,12 @@ use super::{double_buffer::DoubleBuffer, live::Live, settings::PictureSettings, 
 /// A camera whose check was worse is not trusted, in widths of the picture: 10 px of 1280. Its forces are drawn with this opacity.
 const OFF: f64 = 10.0 / 1280.0;
 const DOUBTFUL: f32 = 0.35;
-/// The figures stand still for so long, so that they can be read.
-const FIGURES_EVERY: Duration = Duration::from_millis(250);
 /// Time from one frame to the next where the words have a clock, and no picture wakes the window.
 const CLOCK: Duration = Duration::from_millis(100);
 /// From this rate on pictures wake the window often enough.
 const WAKES_HZ: f64 = 24.0;
 /// What remains of a picture that is not of now.
 const PAST: Color32 = Color32::from_gray(110);
-/// Size of the words about what is wrong, and of what to do, points.
-const WRONG_SIZE: f32 = 24.0;
-const CURE_SIZE: f32 = 16.0;
-/// Distance of words from the edge of the picture, and from a tip, points.
-const MARGIN: f32 = 16.0;
-const CLEAR: f32 = 24.0;
 
 type Newest = Look<Arc<Picture>>;
 
@@ -65,6 +62,8 @@ struct Seen {
     nothing: Option<[String; 2]>,
     /// Where the tips were then, for a picture of the past.
     poses: Option<[Option<Pose>; SIDES]>,
+    /// The endoscope's marker when the picture was made, where its place is known.
+    world_from_n: Option<Isometry3<f64>>,
 }
 
 /// What was found for a moment of the past.
@@ -81,7 +80,7 @@ pub struct Eyes {
     projector: Option<Projector>,
     /// Why its address cannot be used.
     refused: Option<String>,
-    camera: Option<Camera>,
+    mount: Option<Mount>,
     screen: DoubleBuffer,
     /// Number of the picture on the screen.
     number: u64,
@@ -110,7 +109,7 @@ impl Eyes {
         let Self { hides_forces, settings, .. } = *self;
         *self = Self { wanted: wanted.cloned(), hides_forces, settings, ..Self::default() };
         let Some(endoscope @ Endoscope { url, camera, view, .. }) = wanted else { return };
-        self.camera = placed(camera.as_ref());
+        self.mount = camera.as_ref().and_then(Mount::of);
         self.view = *view;
         let address = match url.parse::<Address>() {
             Ok(address) => address,
@@ -137,7 +136,7 @@ impl Eyes {
         let settings = self.settings;
         *self = Self {
             settings,
-            camera: placed(endoscope.camera.as_ref()),
+            mount: endoscope.camera.as_ref().and_then(Mount::of),
             view: endoscope.view,
             projector: Some(Projector::start(session, move || ctx.request_repaint())),
             wanted: Some(endoscope),
@@ -178,7 +177,7 @@ impl Eyes {
 
     /// A tick of the loop: where a tip is at its time.
     pub(in crate::console) fn note(&mut self, tick: &Tick) {
-        if self.camera.is_some() {
+        if self.mount.is_some() {
             self.poses.note(tick, Instant::now());
         }
     }
@@ -206,7 +205,8 @@ impl Eyes {
     /// Draws the picture over the available space.
     pub(in crate::console) fn ui(&mut self, ui: &mut Ui, live: &Live) {
         let now = Instant::now();
-        let Seen { look, nothing, poses: then } = self.look(live, now);
+        let Seen { look, nothing, poses: then, world_from_n } = self.look(live, now);
+        let camera = self.mount.as_ref().and_then(|mount| mount.camera(world_from_n.as_ref()));
         self.rate_hz = look.as_ref().map_or(0.0, |look| look.rate_hz);
         let pressed = |key| ui.input(|input| input.modifiers.is_none() && input.key_pressed(key));
         let free = !ui.ctx().text_edit_focused();
@@ -225,7 +225,7 @@ impl Eyes {
         let shows_past = matches!(standing, Standing::Lost(_) | Standing::Wrong(Wrong::Frozen(_)));
         let halves = look
             .as_ref()
-            .and_then(|look| self.picture_ui(ui.ctx(), &painter, view, look, shows_past))
+            .and_then(|look| self.picture_ui(&painter, view, look, camera.as_ref(), shows_past))
             .unwrap_or_default();
         let fits = is_good || matches!(standing, Standing::Wrong(Wrong::Late(_) | Wrong::Damaged(_)));
         let mut tips = Vec::new();
@@ -262,7 +262,7 @@ impl Eyes {
             }
             wrong_ui(&painter, over, &tips, [&told, &cure], colour);
         }
-        self.figures_ui(&painter, view, (&tips, fits), look.as_ref(), now);
+        self.corner_ui(&painter, view, Corner { tips: &tips, fits, camera: camera.as_ref() }, look.as_ref(), now);
         if self.projector.is_none() {
             ui.ctx().request_repaint_after(until_told(look.as_ref(), is_good));
         }
@@ -278,14 +278,20 @@ impl Eyes {
     /// The newest picture, or that of the moment on the screen.
     fn look(&mut self, live: &Live, now: Instant) -> Seen {
         let Some(projector) = &mut self.projector else {
-            return Seen { look: self.feed.as_ref().map(|feed| feed.look(now)), nothing: None, poses: None };
+            let look = self.feed.as_ref().map(|feed| feed.look(now));
+            let age = look.as_ref().and_then(|look| look.age).unwrap_or_default();
+            return Seen { look, nothing: None, poses: None, world_from_n: self.poses.marker(now, age) };
         };
         let tone = self.settings.tone();
         projector.show(tone, live.ticks.iter().flatten().map(|tick| tick.t_s).fold(0.0, f64::max));
-        let nothing = |words: String| Seen { look: None, nothing: Some([words, String::new()]), poses: None };
+        let nothing =
+            |words: String| Seen { look: None, nothing: Some([words, String::new()]), poses: None, world_from_n: None };
         let Some(found) = projector.found() else { return nothing(text::eyes::SEARCHING.to_owned()) };
         match found.look() {
-            Ok(look) => Seen { look: Some(look), nothing: None, poses: Some(found.poses) },
+            Ok(look) => {
+                let (poses, world_from_n) = (Some(found.poses), found.world_from_n);
+                Seen { look: Some(look), nothing: None, poses, world_from_n }
+            }
             Err(why) => nothing(text::eyes::none_then(why)),
         }
     }
@@ -299,20 +305,20 @@ impl Eyes {
     /// Uploads a new picture and draws it as large as it can be; gives what is shown of it.
     fn picture_ui(
         &mut self,
-        ctx: &Context,
         painter: &Painter,
         view: Rect,
         look: &Newest,
+        camera: Option<&Camera>,
         shows_past: bool,
     ) -> Option<Vec<Half>> {
         let (number, picture) = look.picture.as_ref()?;
         if self.number != *number {
-            self.screen.upload(ctx, "endoscope", picture);
+            self.screen.upload(painter.ctx(), "endoscope", picture);
             self.number = *number;
         }
         let endoscope = self.wanted.as_ref()?;
         let shown = Shown { view: self.view, crop: self.settings.crop(), aim: self.aim };
-        let halves = halves::halves(view, picture.size_px, endoscope, shown, self.camera.as_ref());
+        let halves = halves::halves(view, picture.size_px, endoscope, shown, camera);
         for half in &halves {
             let mut mesh = Mesh::with_texture(self.screen.id()?);
             for (corner, at) in half.place.corners() {
@@ -325,74 +331,12 @@ impl Eyes {
         }
         Some(halves)
     }
-
-    /// Age, rate, and what the forces are, in a corner.
-    fn figures_ui(
-        &mut self,
-        painter: &Painter,
-        view: Rect,
-        (tips, fits): (&[egui::Pos2], bool),
-        look: Option<&Newest>,
-        now: Instant,
-    ) {
-        let Some(look) = look.filter(|look| look.picture.is_some()) else { return };
-        if self.shown.as_ref().is_none_or(|(at, _)| now.duration_since(*at) >= FIGURES_EVERY) {
-            let age = look.age.unwrap_or_default();
-            let figures = if look.standing == Standing::Still {
-                text::eyes::STILL.to_owned()
-            } else if self.projector.is_some() {
-                text::eyes::recorded(age)
-            } else {
-                text::eyes::figures(age, look.rate_hz)
-            };
-            self.shown = Some((now, figures));
-        }
-        let has_lens = self.wanted.as_ref().is_some_and(|wanted| wanted.camera.is_some());
-        let forces = match (&self.camera, self.hides_forces, self.off_px()) {
-            (None, ..) if has_lens => text::eyes::NO_PLACE.to_owned(),
-            (None, ..) => text::eyes::NO_CAMERA.to_owned(),
-            // Where the picture is not of now, they would be at a wrong place.
-            _ if !fits => String::new(),
-            (_, true, _) => text::eyes::FORCES_HIDDEN.to_owned(),
-            (_, false, Some(off_px)) => text::eyes::forces_off(off_px),
-            (_, false, None) if self.settings.forces_of_now && self.projector.is_none() => {
-                text::eyes::FORCES_AHEAD.to_owned()
-            }
-            (_, false, None) => text::eyes::FORCES_DRAWN.to_owned(),
-        };
-        let zoom = if self.aim.is_zoomed() { text::eyes::zoomed(self.aim.zoom) } else { String::new() };
-        let figures = self.shown.as_ref().map(|(_, figures)| figures.as_str()).unwrap_or_default();
-        let half = self.wanted.as_ref().map_or("", |endoscope| halves::told(self.view, endoscope));
-        let weak = theme::DARK.text_weak;
-        let is_wanted = self.wanted.as_ref().is_some_and(|wanted| wanted.record);
-        let is_missing = is_wanted && self.feed.as_ref().is_some_and(|feed| !feed.is_recordable());
-        let unrecorded = if is_missing { text::eyes::NOT_RECORDED } else { "" };
-        let lines = [
-            (figures, 15.0, theme::DARK.text),
-            (forces.as_str(), 13.0, weak),
-            (half, 13.0, weak),
-            (zoom.as_str(), 13.0, weak),
-            (unrecorded, 13.0, weak),
-        ];
-        let inner = view.shrink(MARGIN);
-        let corners = [
-            (inner.left_bottom(), Align2::LEFT_BOTTOM),
-            (inner.right_bottom(), Align2::RIGHT_BOTTOM),
-            (inner.left_top(), Align2::LEFT_TOP),
-        ];
-        plate(painter, &corners, tips, &lines);
-    }
 }
 
 /// Where the instrument of a side goes through the wall, m.
 fn trocar(live: &Live, side: Side) -> Option<Vector3<f64>> {
     let of_rig = live.rig.devices.as_ref().and_then(|devices| devices.arm(side)).map(|set| set.rcm.trocar_m);
     of_rig.or_else(|| live.scene.of_side(side).map(|scene| scene.trocar_m))
-}
-
-/// A camera whose place in the workspace is known.
-fn placed(camera: Option<&EndoscopeCamera>) -> Option<Camera> {
-    camera.filter(|camera| camera.position_m.is_some()).map(camera_of)
 }
 
 pub(in crate::console) fn wrong_told(wrong: &Wrong) -> [String; 2] {
@@ -411,45 +355,4 @@ fn until_told(look: Option<&Newest>, is_good: bool) -> Duration {
     let age = look.and_then(|look| look.age).unwrap_or_default();
     let frozen = FROZEN.saturating_sub(age) + Duration::from_millis(2);
     if is_good { frozen.max(Duration::from_millis(10)) } else { CLOCK }
-}
-
-fn wrong_ui(painter: &Painter, over: Rect, tips: &[egui::Pos2], [told, cure]: [&str; 2], colour: Color32) {
-    let inner = over.shrink(MARGIN);
-    let places = [
-        (inner.center_top() + vec2(0.0, MARGIN), Align2::CENTER_TOP),
-        (inner.center_bottom() - vec2(0.0, 4.0 * MARGIN), Align2::CENTER_BOTTOM),
-        (inner.left_center(), Align2::LEFT_CENTER),
-        (inner.right_center(), Align2::RIGHT_CENTER),
-    ];
-    plate(painter, &places, tips, &[(told, WRONG_SIZE, colour), (cure, CURE_SIZE, theme::DARK.text)]);
-}
-
-/// Words on a dark ground, legible over any tissue, at the first of these places that covers no tip.
-fn plate(painter: &Painter, places: &[(egui::Pos2, Align2)], tips: &[egui::Pos2], lines: &[(&str, f32, Color32)]) {
-    let width = (painter.clip_rect().width() - 4.0 * MARGIN).max(100.0);
-    let lines = lines.iter().filter(|(words, ..)| !words.is_empty()).map(|(words, size, colour)| {
-        let font = if *size > CURE_SIZE { theme::strong(*size) } else { theme::regular(*size) };
-        (painter.layout((*words).to_owned(), font, *colour, width), *colour)
-    });
-    let lines: Vec<_> = lines.collect();
-    let size =
-        lines.iter().fold(egui::Vec2::ZERO, |size, (line, _)| vec2(size.x.max(line.size().x), size.y + line.size().y));
-    let rects = places.iter().map(|(at, align)| (align.anchor_size(*at, size + vec2(20.0, 12.0)), *align));
-    let is_clear = |rect: &Rect| !tips.iter().any(|tip| rect.expand(CLEAR).contains(*tip));
-    let mut rects = rects.collect::<Vec<_>>().into_iter();
-    let Some(first) = rects.clone().find(|(rect, _)| is_clear(rect)).or_else(|| rects.next()) else { return };
-    let (rect, align) = first;
-    painter.rect_filled(rect, theme::CORNER, theme::VEIL);
-    let mut top = rect.top() + 6.0;
-    for (line, colour) in lines {
-        let inner = rect.shrink2(vec2(10.0, 0.0));
-        let left = match align.x() {
-            egui::Align::Min => inner.left(),
-            egui::Align::Center => inner.center().x - 0.5 * line.size().x,
-            egui::Align::Max => inner.right() - line.size().x,
-        };
-        let height = line.size().y;
-        painter.galley(egui::pos2(left, top), line, colour);
-        top += height;
-    }
 }

@@ -1,16 +1,20 @@
-//! Where the tips were in the last second and a half, so that what is drawn into a picture belongs to its moment.
+//! Where the tips and the endoscope's marker were in the last second and a half, so that what is drawn into a picture belongs to its moment.
 
 use std::{
     collections::VecDeque,
     time::{Duration, Instant},
 };
 
-use nalgebra::Vector3;
+use nalgebra::{Isometry3, Vector3};
 use nima_machine::{
     messages::Tick,
     rig::{SIDES, Side},
 };
 
+use super::mount::{STEADY_S, steadied};
+
+/// A marker that was last seen so long ago may be anywhere, s: some pictures of a tracker.
+const UNSEEN_S: f64 = 0.2;
 /// Time between two poses that are kept, s, and how long they are, s.
 const STEP_S: f64 = 0.005;
 const KEPT_S: f64 = 1.5;
@@ -27,6 +31,8 @@ pub(super) struct Pose {
 #[derive(Debug, Default)]
 pub(super) struct Poses {
     kept: [VecDeque<(f64, Pose)>; SIDES],
+    /// The endoscope's marker in the workspace (`world_from_n`), whichever side told it.
+    markers: VecDeque<(f64, Isometry3<f64>)>,
     begin: Option<Instant>,
     /// Least time from a tick until the window had it, on the window's clock minus the loop's, s; and when it was last seen.
     offset_s: Option<(f64, f64)>,
@@ -37,6 +43,40 @@ impl Poses {
         let pose = Pose { tip_m: tick.tip_m, measured_n: tick.measured_n };
         let begin = *self.begin.get_or_insert(now);
         self.take(tick.side, tick.t_s, pose, now.duration_since(begin).as_secs_f64());
+        if let Some(world_from_n) = tick.view.world_from_n() {
+            self.take_marker(tick.t_s, *world_from_n);
+        }
+    }
+
+    fn take_marker(&mut self, t_s: f64, world_from_n: Isometry3<f64>) {
+        if !world_from_n.to_homogeneous().iter().all(|x| x.is_finite()) {
+            return;
+        }
+        let last_s = self.markers.back().map(|(last_s, _)| *last_s);
+        // A loop that was started again begins at zero.
+        if last_s.is_some_and(|last_s| t_s < last_s - KEPT_S) {
+            self.markers.clear();
+        } else if last_s.is_some_and(|last_s| t_s < last_s + STEP_S) {
+            return;
+        }
+        self.markers.push_back((t_s, world_from_n));
+        while self.markers.front().is_some_and(|(first_s, _)| *first_s < t_s - KEPT_S) {
+            self.markers.pop_front();
+        }
+    }
+
+    /// The endoscope's marker when a picture was made that is so old now; `None` where the tracker did not see it then.
+    pub(super) fn marker(&self, now: Instant, age: Duration) -> Option<Isometry3<f64>> {
+        let now_s = now.duration_since(self.begin?).as_secs_f64();
+        self.marker_at(now_s - age.as_secs_f64())
+    }
+
+    fn marker_at(&self, window_s: f64) -> Option<Isometry3<f64>> {
+        let t_s = window_s - self.offset_s?.0;
+        let until = self.markers.partition_point(|(at_s, _)| *at_s <= t_s);
+        let before = || self.markers.range(..until).rev();
+        let (newest_s, _) = before().next().filter(|(newest_s, _)| *newest_s >= t_s - UNSEEN_S)?;
+        steadied(before().take_while(|(at_s, _)| *at_s >= newest_s - STEADY_S).map(|(_, pose)| *pose))
     }
 
     fn take(&mut self, side: Side, t_s: f64, pose: Pose, now_s: f64) {
@@ -100,6 +140,28 @@ mod tests {
         assert!((x_m(20.0) - 2.995).abs() < 6e-3, "nothing is newer than the newest");
         assert!(poses.kept[0].len() < 320);
         assert_eq!(poses.at_s(Side::Left, 9.0), None);
+    }
+
+    #[test]
+    fn the_marker_is_that_of_the_pictures_moment_and_nothing_once_it_is_not_seen() {
+        let mut poses = Poses::default();
+        let rest = Pose { tip_m: Vector3::zeros(), measured_n: Vector3::zeros() };
+        for tick in 0..1500 {
+            let t_s = f64::from(tick) * 1e-3;
+            poses.take(Side::Right, t_s, rest, 5.0 + t_s);
+            // It moves 5 mm at once after half a second, and is hidden after a second.
+            let x_m = if tick < 500 { 0.0 } else { 0.005 };
+            if tick < 1000 {
+                poses.take_marker(t_s, Isometry3::translation(x_m, 0.0, 0.0));
+            }
+        }
+        let x_m = |t_s: f64| poses.marker_at(5.0 + t_s).map(|pose| pose.translation.x);
+        for (t_s, expected_m) in [(0.49, 0.0), (0.51, 0.005), (1.1, 0.005)] {
+            assert!((x_m(t_s).unwrap() - expected_m).abs() < 1e-9, "{t_s}: {:?}", x_m(t_s));
+        }
+        assert_eq!(x_m(1.3), None);
+        poses.take_marker(-3.0, Isometry3::translation(1.0, 0.0, 0.0));
+        assert_eq!(poses.markers.len(), 1, "a loop that began again");
     }
 
     #[test]

@@ -10,6 +10,7 @@ use std::{
     time::Duration,
 };
 
+use nalgebra::Isometry3;
 use nima_endoscope::{Damage, FROZEN, Look, Picture, Standing, Tone, Wrong, h264, jpeg};
 use nima_machine::rig::{SIDES, Side};
 use nima_session::{
@@ -17,7 +18,10 @@ use nima_session::{
     plotted::{self, PlottedError},
 };
 
-use super::poses::Pose;
+use super::{
+    mount::{STEADY_S, steadied},
+    poses::Pose,
+};
 use crate::console::{chain, text};
 
 /// The tip of a picture is that of the last tick before it, within this time, ns.
@@ -37,6 +41,8 @@ pub(super) struct Found {
     damage: Option<Damage>,
     /// Tips and forces when it came.
     pub(super) poses: [Option<Pose>; SIDES],
+    /// The endoscope's marker when it came, where its place was known.
+    pub(super) world_from_n: Option<Isometry3<f64>>,
     /// Why the session cannot be read there.
     trouble: Option<String>,
 }
@@ -103,7 +109,7 @@ fn newest(wanted: &Receiver<(Tone, f64)>) -> Option<(Tone, f64)> {
 impl Found {
     const fn trouble(asked_s: f64, why: String) -> Self {
         let (picture, damage, came_s) = (None, None, None);
-        Self { asked_s, came_s, picture, damage, poses: [None; SIDES], trouble: Some(why) }
+        Self { asked_s, came_s, picture, damage, poses: [None; SIDES], world_from_n: None, trouble: Some(why) }
     }
 
     /// As of a feed at that moment; why there is nothing to see.
@@ -198,8 +204,8 @@ impl Projection {
             self.number += 1;
             (self.number, Arc::new(picture))
         });
-        let poses = self.poses(recorded.time_ns);
-        Found { asked_s: t_s, came_s: Some(came_s), picture, damage, poses, trouble: None }
+        let (poses, world_from_n) = (self.poses(recorded.time_ns), self.marker(recorded.time_ns));
+        Found { asked_s: t_s, came_s: Some(came_s), picture, damage, poses, world_from_n, trouble: None }
     }
 
     /// As then, the last whole one stays where one is damaged.
@@ -214,6 +220,12 @@ impl Projection {
             before_ns = recorded.time_ns.min(before_ns - 1);
         }
         None
+    }
+
+    /// Where the endoscope's marker was then.
+    fn marker(&self, time_ns: u64) -> Option<Isometry3<f64>> {
+        let times_ns = time_ns.saturating_sub((STEADY_S * 1e9) as u64)..time_ns.saturating_add(1);
+        steadied(plotted::endoscope(self.pictures.reader(), times_ns).into_iter().rev())
     }
 
     /// Where the tips were then; none where that is not plotted or cannot be read.

@@ -4,11 +4,11 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
-use egui::{Pos2, pos2};
+use egui::{Pos2, pos2, vec2};
 use nalgebra::{Vector2, Vector3};
 use nima_endoscope::time_code;
 use nima_world::{
-    emulators::endoscope::{Emulated, Instrument, SQUARE_PX, usual},
+    emulators::endoscope::{Emulated, Instrument, SQUARE_PX, camera_of, usual},
     scene::Scene,
 };
 

@@ -143,11 +143,14 @@ pub(in crate::console) fn touched(count: usize, tip: &str) -> String {
 }
 
 /// Why it may be saved.
-pub(in crate::console) fn proof(lens_px: Option<f64>, place_px: Option<f64>) -> String {
+pub(in crate::console) fn proof(lens_px: Option<f64>, place: Option<(f64, bool)>) -> String {
     let lens =
         lens_px.map_or("The lens is that of the rig file".to_owned(), |px| format!("Held-out corners: {px:.2} px"));
-    let place = place_px
-        .map_or("the place is not known, no forces are drawn".to_owned(), |px| format!("touched corners: {px:.1} px"));
+    let place = match place {
+        None => "the place is not known, no forces are drawn".to_owned(),
+        Some((px, true)) => format!("touched corners: {px:.1} px; the place follows the endoscope's marker"),
+        Some((px, false)) => format!("touched corners: {px:.1} px; the place holds until the endoscope is moved"),
+    };
     format!("{lens}; {place}")
 }
 

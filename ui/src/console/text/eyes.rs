@@ -23,6 +23,8 @@ pub(in crate::console) const RIGHT_WITHOUT_FORCES: &str =
     "Right half without forces: the rig file has no endoscope.baseline_m; V shows both";
 pub(in crate::console) const BOTH_HALVES: &str = "Both halves; V shows the left one";
 pub(in crate::console) const NO_CAMERA: &str = "No forces are drawn: the rig file has no [endoscope.camera]";
+pub(in crate::console) const NO_MARKER: &str =
+    "No forces are drawn: the tracker does not see the endoscope's marker, or there is no hand-eye calibration";
 
 pub(in crate::console) const NO_PLACE: &str =
     "No forces are drawn: the camera's place is not known; calibrate the camera";

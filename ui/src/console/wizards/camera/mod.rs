@@ -24,7 +24,7 @@ use self::{
     detector::{Detector, Found},
     picture::Shown,
     steps_ui::is_good,
-    tip::Tip,
+    tip::{Marker, Tip},
 };
 use super::{
     Binding, Saving,
@@ -35,7 +35,7 @@ use crate::{
         text::{self, camera as texts},
         widgets::card,
     },
-    lens::{changes, undone},
+    lens::{FoundPlace, changes, undone},
     words::camera as words,
 };
 
@@ -72,6 +72,8 @@ pub(super) struct CameraWizard {
     session: Option<Session>,
     report: Option<Report>,
     tip: Tip,
+    /// The marker on the endoscope while the board lies still, where its place is known.
+    marker: Marker,
     /// The board as it lies while it is touched, and a sight of it before, which must be the same.
     base: Option<Sight>,
     lying: Option<Sight>,
@@ -106,6 +108,7 @@ impl Default for CameraWizard {
             session: None,
             report: None,
             tip: Tip::default(),
+            marker: Marker::default(),
             base: None,
             lying: None,
             moved: false,
@@ -176,6 +179,7 @@ impl CameraWizard {
         }
         if self.touches.is_empty() && self.base.as_ref().is_some_and(|base| base.mean_move_px(sight) > limit_px) {
             (self.base, self.lying) = (None, Some(sight.clone()));
+            self.marker = Marker::default();
         }
     }
 
@@ -244,8 +248,17 @@ impl CameraWizard {
     /// The board lies elsewhere now: what was touched is forgotten.
     fn lay_anew(&mut self) {
         (self.base, self.lying, self.moved) = (None, None, false);
+        self.marker = Marker::default();
         self.touches.clear();
         self.find_place();
+    }
+
+    /// What is saved of the place: on the endoscope's marker, if the tracker saw it while the board lay.
+    fn found_place(&self) -> Option<FoundPlace> {
+        let placed = self.good_place()?;
+        let (world_from_camera, checked_px) = (placed.world_from_camera, placed.held_out_px);
+        let on_marker = self.marker.world_from_n().map(|world_from_n| world_from_n.inverse() * world_from_camera);
+        Some(FoundPlace { pose: on_marker.unwrap_or(world_from_camera), on_marker: on_marker.is_some(), checked_px })
     }
 
     fn good_place(&self) -> Option<&Placed> {
@@ -289,14 +302,16 @@ impl Wizard for CameraWizard {
             }
         }
         if self.frame.step == SAVE && self.pending.is_none() && self.undoable.is_empty() {
-            let place = self.good_place().map(|placed| (&placed.world_from_camera, placed.held_out_px));
             let file = RigFile::of(&binding.rig).ok();
-            self.pending = file.zip(self.lens()).map(|(file, lens)| changes(&file, &lens, place));
+            self.pending = file.zip(self.lens()).map(|(file, lens)| changes(&file, &lens, self.found_place()));
         }
     }
 
     fn tick(&mut self, tick: &Tick, _: f64) {
         self.tip.note(tick.t_s, tick.tip_m);
+        if self.frame.step == TOUCH && self.base.is_some() {
+            self.marker.note(tick.t_s, tick.view.world_from_n());
+        }
     }
 
     fn prompt(&self) -> Prompt {
@@ -341,7 +356,8 @@ impl Wizard for CameraWizard {
     fn proof(&self) -> Option<String> {
         self.lens()?;
         let held_out_px = self.report.as_ref().and_then(|report| Some(report.lens?.held_out_px));
-        Some(texts::proof(held_out_px.filter(|_| !self.keeps_lens), self.good_place().map(|placed| placed.held_out_px)))
+        let place = self.found_place().map(|place| (place.checked_px, place.on_marker));
+        Some(texts::proof(held_out_px.filter(|_| !self.keeps_lens), place))
     }
 
     fn made(&self, _: &Binding) -> Option<Saving> {

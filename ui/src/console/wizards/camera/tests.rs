@@ -97,11 +97,27 @@ fn lens_and_touched_corners_place_the_camera_and_a_board_that_moved_does_not() {
     assert!(moved.translation.vector.norm() < 0.2e-3 && moved.rotation.angle() < 2e-3, "{moved}");
     assert_eq!(wizard.next_corner(), None);
     assert!(wizard.proof().unwrap().contains("touched corners"));
+    let place = wizard.found_place().unwrap();
+    assert!(!place.on_marker && place.pose == placed_at(&wizard));
+    // A tracker sees the endoscope's marker: the place is that on the marker.
+    let world_from_n = Isometry3::new([0.0, -0.2, 0.3].into(), [0.4, 1.0, -2.0].into());
+    for step in 0..200 {
+        wizard.marker.note(f64::from(step) * 0.01, Some(&world_from_n));
+    }
+    let place = wizard.found_place().unwrap();
+    assert!(place.on_marker && wizard.proof().unwrap().contains("follows the endoscope's marker"));
+    let again = world_from_n * place.pose;
+    let off = again.inverse() * placed_at(&wizard);
+    assert!(off.translation.vector.norm() < 1e-9 && off.rotation.angle() < 1e-9, "{off}");
     // The endoscope is pushed.
     shown(&mut wizard, &pose([0.002, 0.01, 0.14], [0.4, 0.1, 0.2]));
     assert!(wizard.moved && wizard.good_place().is_none() && wizard.may_go_on(&binding).is_err());
     wizard.lay_anew();
     assert!(!wizard.moved && wizard.touches.is_empty());
+}
+
+fn placed_at(wizard: &CameraWizard) -> Isometry3<f64> {
+    wizard.good_place().unwrap().world_from_camera
 }
 
 #[test]

@@ -1,8 +1,10 @@
-//! The instrument's tip, while it is held still at a corner of the board.
+//! The instrument's tip, while it is held still at a corner of the board; and the endoscope's marker meanwhile.
 
 use std::collections::VecDeque;
 
-use nalgebra::Vector3;
+use nalgebra::{Isometry3, Vector3};
+
+use crate::console::eyes::mount::steadied;
 
 /// Time between two places that are kept, s, and how long they are, s.
 const STEP_S: f64 = 0.01;
@@ -42,5 +44,35 @@ impl Tip {
         }
         let mean_m = self.kept.iter().map(|(_, tip_m)| tip_m).sum::<Vector3<f64>>() / self.kept.len() as f64;
         self.kept.iter().all(|(_, tip_m)| (tip_m - mean_m).norm() < STILL_M).then_some(mean_m)
+    }
+}
+
+/// So much of the marker is averaged, s.
+const MARKED_S: f64 = 5.0;
+
+/// The endoscope's marker in the workspace.
+#[derive(Debug, Default)]
+pub(super) struct Marker {
+    kept: VecDeque<(f64, Isometry3<f64>)>,
+}
+
+impl Marker {
+    /// A tick; both sides tell the same.
+    pub(super) fn note(&mut self, t_s: f64, world_from_n: Option<&Isometry3<f64>>) {
+        if self.kept.back().is_some_and(|(last_s, _)| t_s < *last_s) {
+            self.kept.clear();
+        }
+        let Some(world_from_n) = world_from_n else { return };
+        if self.kept.back().is_none_or(|(last_s, _)| t_s >= last_s + STEP_S) {
+            self.kept.push_back((t_s, *world_from_n));
+        }
+        while self.kept.front().is_some_and(|(first_s, _)| *first_s < t_s - MARKED_S) {
+            self.kept.pop_front();
+        }
+    }
+
+    /// Its mean without noise; `None` where it was not seen.
+    pub(super) fn world_from_n(&self) -> Option<Isometry3<f64>> {
+        steadied(self.kept.iter().rev().map(|(_, pose)| *pose))
     }
 }

@@ -1,0 +1,85 @@
+//! The corner of the picture: its age and rate, and what the forces in it are.
+
+use std::time::{Duration, Instant};
+
+use egui::{Align2, Painter, Rect};
+use nima_endoscope::{Camera, Standing};
+
+use super::{
+    Eyes, Newest, halves,
+    plate::{MARGIN, plate},
+};
+use crate::console::{text, theme};
+
+/// The figures stand still for so long, so that they can be read.
+const FIGURES_EVERY: Duration = Duration::from_millis(250);
+
+/// What the corner is beside.
+#[derive(Clone, Copy)]
+pub(super) struct Corner<'a> {
+    /// Where the tips are on the screen.
+    pub(super) tips: &'a [egui::Pos2],
+    /// The picture is of now, and of the size that the forces are drawn for.
+    pub(super) fits: bool,
+    pub(super) camera: Option<&'a Camera>,
+}
+
+impl Eyes {
+    /// Age, rate, and what the forces are, in a corner.
+    pub(super) fn corner_ui(
+        &mut self,
+        painter: &Painter,
+        view: Rect,
+        Corner { tips, fits, camera }: Corner<'_>,
+        look: Option<&Newest>,
+        now: Instant,
+    ) {
+        let Some(look) = look.filter(|look| look.picture.is_some()) else { return };
+        if self.shown.as_ref().is_none_or(|(at, _)| now.duration_since(*at) >= FIGURES_EVERY) {
+            let age = look.age.unwrap_or_default();
+            let figures = if look.standing == Standing::Still {
+                text::eyes::STILL.to_owned()
+            } else if self.projector.is_some() {
+                text::eyes::recorded(age)
+            } else {
+                text::eyes::figures(age, look.rate_hz)
+            };
+            self.shown = Some((now, figures));
+        }
+        let has_lens = self.wanted.as_ref().is_some_and(|wanted| wanted.camera.is_some());
+        let forces = match (camera, self.hides_forces, self.off_px()) {
+            (None, ..) if self.mount.is_some() => text::eyes::NO_MARKER.to_owned(),
+            (None, ..) if has_lens => text::eyes::NO_PLACE.to_owned(),
+            (None, ..) => text::eyes::NO_CAMERA.to_owned(),
+            // Where the picture is not of now, they would be at a wrong place.
+            _ if !fits => String::new(),
+            (_, true, _) => text::eyes::FORCES_HIDDEN.to_owned(),
+            (_, false, Some(off_px)) => text::eyes::forces_off(off_px),
+            (_, false, None) if self.settings.forces_of_now && self.projector.is_none() => {
+                text::eyes::FORCES_AHEAD.to_owned()
+            }
+            (_, false, None) => text::eyes::FORCES_DRAWN.to_owned(),
+        };
+        let zoom = if self.aim.is_zoomed() { text::eyes::zoomed(self.aim.zoom) } else { String::new() };
+        let figures = self.shown.as_ref().map(|(_, figures)| figures.as_str()).unwrap_or_default();
+        let half = self.wanted.as_ref().map_or("", |endoscope| halves::told(self.view, endoscope));
+        let weak = theme::DARK.text_weak;
+        let is_wanted = self.wanted.as_ref().is_some_and(|wanted| wanted.record);
+        let is_missing = is_wanted && self.feed.as_ref().is_some_and(|feed| !feed.is_recordable());
+        let unrecorded = if is_missing { text::eyes::NOT_RECORDED } else { "" };
+        let lines = [
+            (figures, 15.0, theme::DARK.text),
+            (forces.as_str(), 13.0, weak),
+            (half, 13.0, weak),
+            (zoom.as_str(), 13.0, weak),
+            (unrecorded, 13.0, weak),
+        ];
+        let inner = view.shrink(MARGIN);
+        let corners = [
+            (inner.left_bottom(), Align2::LEFT_BOTTOM),
+            (inner.right_bottom(), Align2::RIGHT_BOTTOM),
+            (inner.left_top(), Align2::LEFT_TOP),
+        ];
+        plate(painter, &corners, tips, &lines);
+    }
+}

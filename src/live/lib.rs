@@ -4,6 +4,7 @@
 //! its own. Who watches cannot act: the server offers nothing but channels. A viewer that is too slow loses the oldest messages; neither
 //! the loop nor the recording waits for it.
 #![warn(missing_docs)]
+#![cfg(feature = "engine")]
 
 use std::{
     fmt,

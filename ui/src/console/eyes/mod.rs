@@ -192,12 +192,12 @@ impl Eyes {
     /// What is wrong, and what to do; how it stands and nothing, if all is well.
     fn standing_told(&self, standing: &Standing) -> [String; 2] {
         if let Some(refused) = &self.refused {
-            return [refused.clone(), text::eyes::REFUSED_CURE.to_owned()];
+            return [refused.clone(), text::eyes::REFUSED_CURE.get().to_owned()];
         }
         match standing {
-            Standing::Opening => [text::eyes::WAITING.to_owned(), String::new()],
-            Standing::Live => [text::eyes::LIVE.to_owned(), String::new()],
-            Standing::Still => [text::eyes::STILL.to_owned(), String::new()],
+            Standing::Opening => [text::eyes::WAITING.get().to_owned(), String::new()],
+            Standing::Live => [text::eyes::LIVE.get().to_owned(), String::new()],
+            Standing::Still => [text::eyes::STILL.get().to_owned(), String::new()],
             Standing::Wrong(wrong) => wrong_told(wrong),
             Standing::Lost(trouble) => [text::eyes::lost(&trouble.to_string()), trouble.cure().to_owned()],
         }
@@ -283,7 +283,7 @@ impl Eyes {
         let tone = self.settings.tone();
         projector.show(tone, live.ticks.iter().flatten().map(|tick| tick.t_s).fold(0.0, f64::max));
         let nothing = |words: String| Seen { look: None, nothing: Some([words, String::new()]), poses: None };
-        let Some(found) = projector.found() else { return nothing(text::eyes::SEARCHING.to_owned()) };
+        let Some(found) = projector.found() else { return nothing(text::eyes::SEARCHING.get().to_owned()) };
         match found.look() {
             Ok(look) => Seen { look: Some(look), nothing: None, poses: Some(found.poses) },
             Err(why) => nothing(text::eyes::none_then(why)),
@@ -339,7 +339,7 @@ impl Eyes {
         if self.shown.as_ref().is_none_or(|(at, _)| now.duration_since(*at) >= FIGURES_EVERY) {
             let age = look.age.unwrap_or_default();
             let figures = if look.standing == Standing::Still {
-                text::eyes::STILL.to_owned()
+                text::eyes::STILL.get().to_owned()
             } else if self.projector.is_some() {
                 text::eyes::recorded(age)
             } else {
@@ -349,16 +349,16 @@ impl Eyes {
         }
         let has_lens = self.wanted.as_ref().is_some_and(|wanted| wanted.camera.is_some());
         let forces = match (&self.camera, self.hides_forces, self.off_px()) {
-            (None, ..) if has_lens => text::eyes::NO_PLACE.to_owned(),
-            (None, ..) => text::eyes::NO_CAMERA.to_owned(),
+            (None, ..) if has_lens => text::eyes::NO_PLACE.get().to_owned(),
+            (None, ..) => text::eyes::NO_CAMERA.get().to_owned(),
             // Where the picture is not of now, they would be at a wrong place.
             _ if !fits => String::new(),
-            (_, true, _) => text::eyes::FORCES_HIDDEN.to_owned(),
+            (_, true, _) => text::eyes::FORCES_HIDDEN.get().to_owned(),
             (_, false, Some(off_px)) => text::eyes::forces_off(off_px),
             (_, false, None) if self.settings.forces_of_now && self.projector.is_none() => {
-                text::eyes::FORCES_AHEAD.to_owned()
+                text::eyes::FORCES_AHEAD.get().to_owned()
             }
-            (_, false, None) => text::eyes::FORCES_DRAWN.to_owned(),
+            (_, false, None) => text::eyes::FORCES_DRAWN.get().to_owned(),
         };
         let zoom = if self.aim.is_zoomed() { text::eyes::zoomed(self.aim.zoom) } else { String::new() };
         let figures = self.shown.as_ref().map(|(_, figures)| figures.as_str()).unwrap_or_default();
@@ -366,7 +366,7 @@ impl Eyes {
         let weak = theme::DARK.text_weak;
         let is_wanted = self.wanted.as_ref().is_some_and(|wanted| wanted.record);
         let is_missing = is_wanted && self.feed.as_ref().is_some_and(|feed| !feed.is_recordable());
-        let unrecorded = if is_missing { text::eyes::NOT_RECORDED } else { "" };
+        let unrecorded = if is_missing { text::eyes::NOT_RECORDED.get() } else { "" };
         let lines = [
             (figures, 15.0, theme::DARK.text),
             (forces.as_str(), 13.0, weak),
@@ -397,11 +397,11 @@ fn placed(camera: Option<&EndoscopeCamera>) -> Option<Camera> {
 
 pub(in crate::console) fn wrong_told(wrong: &Wrong) -> [String; 2] {
     let (words, cure) = match wrong {
-        Wrong::Frozen(stood) => (text::eyes::frozen(*stood), text::eyes::FROZEN_CURE),
-        Wrong::Black => (text::eyes::BLACK.to_owned(), text::eyes::BLACK_CURE),
-        Wrong::Late(late) => (text::eyes::late(*late), text::eyes::LATE_CURE),
-        Wrong::Damaged(damage) => (text::eyes::damaged(&damage.to_string()), text::eyes::DAMAGED_CURE),
-        Wrong::Size(has, wanted) => (text::eyes::size(*has, *wanted), text::eyes::SIZE_CURE),
+        Wrong::Frozen(stood) => (text::eyes::frozen(*stood), text::eyes::FROZEN_CURE.get()),
+        Wrong::Black => (text::eyes::BLACK.get().to_owned(), text::eyes::BLACK_CURE.get()),
+        Wrong::Late(late) => (text::eyes::late(*late), text::eyes::LATE_CURE.get()),
+        Wrong::Damaged(damage) => (text::eyes::damaged(&damage.to_string()), text::eyes::DAMAGED_CURE.get()),
+        Wrong::Size(has, wanted) => (text::eyes::size(*has, *wanted), text::eyes::SIZE_CURE.get()),
     };
     [words, cure.to_owned()]
 }

@@ -5,6 +5,7 @@
 pub mod command;
 pub mod console;
 mod emulators;
+pub mod language;
 pub mod leaving;
 mod lens;
 mod line;

@@ -11,6 +11,7 @@ use nima_machine::config::SchedulingClass;
 use nima_world::Plan;
 
 use super::{network::ToFollower, output, setup::Setup};
+use crate::language::Language;
 use crate::{
     console::{
         self, Begun, Options, app::start_recorded, in_force::InForce, pictures::Album, roles::Role, sessions::Sessions,
@@ -36,6 +37,9 @@ pub(super) struct Arguments {
     /// Start in this view (default: the one used last)
     #[arg(long)]
     role: Option<Role>,
+    /// Language of the window: en or de (default: the one chosen last, at first en); the command line stays English
+    #[arg(long, value_name = "LANGUAGE", hide_possible_values = true)]
+    language: Option<Language>,
     /// Open this calibration wizard at the start
     #[arg(long, value_name = "WIZARD")]
     calibrate: Option<Which>,
@@ -107,6 +111,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         screenshot: arguments.screenshot.clone(),
         pictures: arguments.pictures.as_deref().map(Album::new),
         role: arguments.role,
+        language: arguments.language,
         session: arguments.session.clone(),
         wizard: arguments.calibrate,
         summary: arguments.summary.clone(),

@@ -32,6 +32,7 @@ use nima_world::{Plan, Watched, emulated::Screen, scene::Scene};
 
 use super::{
     Options,
+    alarms::judge,
     canvas::{Canvas, Surface, renderer_of},
     commands::Action,
     diary::Diary,
@@ -58,6 +59,7 @@ use super::{
     undo::History,
     wizards::Wizards,
 };
+use crate::language::{self, Language};
 use crate::{
     console::text,
     emulators::Emulators,
@@ -303,7 +305,7 @@ impl ConsoleApp {
     /// Applies the choice of the trade-off panel.
     fn apply_tradeoff(&mut self, rig: RigConfig) {
         let told = match self.restart(rig, self.live.scene.clone()) {
-            Ok(()) => text::tradeoff::APPLIED_BY_RESTART.to_owned(),
+            Ok(()) => text::tradeoff::APPLIED_BY_RESTART.get().to_owned(),
             Err(reason) => text::tradeoff::not_applied(&reason),
         };
         self.panels.tradeoff.tell(told);
@@ -329,7 +331,9 @@ impl ConsoleApp {
         let signs = self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble());
         let loop_s = self.live.first_tick().map(|tick| tick.t_s);
         self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound);
-        self.sessions.tell(&self.live.marks_s, &self.top_bar.alarms.log, loop_s);
+        let written = || judge(&self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble()));
+        let written = language::with(Language::English, written);
+        self.sessions.tell(&self.live.marks_s, &self.top_bar.alarms.log, &written, loop_s);
         let room = ui.available_rect_before_wrap();
         // An identity of its own: an alarm that comes or goes above must take no slider out of a hand.
         ui.scope_builder(UiBuilder::new().scope_id(Id::unique("page")), |ui| self.page_layout(ui));
@@ -342,6 +346,7 @@ impl ConsoleApp {
 
 impl eframe::App for ConsoleApp {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.speak();
         if self.only_flashes(ctx) {
             return;
         }
@@ -355,6 +360,7 @@ impl eframe::App for ConsoleApp {
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
+        self.speak();
         self.measure(&ctx, frame);
         // Not switched on again: a view that keeps changing its look would be worse.
         let slow = self.opened.elapsed() > WARM_UP && self.live.figures.frame_ms[0] > SLOW_MS;

@@ -33,24 +33,24 @@ impl Help {
         self.glossary_ui(ctx, room);
         let Some(step) = self.tour.filter(|_| on_view) else { return false };
         let (heading, words) = TOUR[step];
-        let window = Window::new(TOUR_WINDOW).title_bar(false).resizable(false).movable(false).constrain_to(room);
+        let window = Window::new(TOUR_WINDOW.get()).title_bar(false).resizable(false).movable(false).constrain_to(room);
         let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, room.top() + 12.0)).fixed_size(vec2(440.0, 0.0));
         window.show(ctx, |ui| {
-            ui.label(RichText::new(heading).font(theme::strong(18.0)));
-            ui.label(RichText::new(words).font(theme::regular(15.0)));
+            ui.label(RichText::new(heading.get()).font(theme::strong(18.0)));
+            ui.label(RichText::new(words.get()).font(theme::regular(15.0)));
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 ui.label(super::widgets::small(step_of(step + 1, TOUR.len())));
                 let size = vec2(96.0, 32.0);
-                if ui.add_enabled(step > 0, Button::new(STEP_BACK).min_size(size)).clicked() {
+                if ui.add_enabled(step > 0, Button::new(STEP_BACK.get()).min_size(size)).clicked() {
                     self.tour = Some(step - 1);
                 }
                 let last = step + 1 == TOUR.len();
-                let next = super::widgets::next_button(if last { BEGIN } else { NEXT_STEP }, true);
+                let next = super::widgets::next_button(if last { BEGIN.get() } else { NEXT_STEP.get() }, true);
                 if ui.add(next.min_size(size)).clicked() {
                     self.tour = if last { None } else { Some(step + 1) };
                 }
-                if !last && ui.add(Button::new(SKIP_THE_TOUR).min_size(size)).clicked() {
+                if !last && ui.add(Button::new(SKIP_THE_TOUR.get()).min_size(size)).clicked() {
                     self.tour = None;
                 }
             });
@@ -59,20 +59,20 @@ impl Help {
     }
 
     fn glossary_ui(&mut self, ctx: &Context, room: Rect) {
-        let window = Window::new(GLOSSARY_WINDOW).open(&mut self.glossary).constrain_to(room).collapsible(false);
+        let window = Window::new(GLOSSARY_WINDOW.get()).open(&mut self.glossary).constrain_to(room).collapsible(false);
         let height = (room.height() - 90.0).min(560.0);
         window.default_pos(room.center_top() + vec2(-230.0, 16.0)).fixed_size(vec2(460.0, height)).show(ctx, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                ui.label(RichText::new(KEYS_HEADING).font(theme::strong(16.0)));
+                ui.label(RichText::new(KEYS_HEADING.get()).font(theme::strong(16.0)));
                 for entry in table().iter().filter(|entry| !entry.keys.is_empty()) {
                     key_ui(ui, &entry.keys_told(), &key_meaning(&entry.title, entry.does));
                 }
                 for (key, meaning) in BY_HAND {
-                    key_ui(ui, key, meaning);
+                    key_ui(ui, key.get(), meaning.get());
                 }
                 ui.add_space(8.0);
-                ui.label(RichText::new(WORDS_HEADING).font(theme::strong(16.0)));
-                for (word, meaning) in GLOSSARY {
+                ui.label(RichText::new(WORDS_HEADING.get()).font(theme::strong(16.0)));
+                for (word, meaning) in terms() {
                     ui.label(RichText::new(word).font(theme::strong(14.0)));
                     ui.label(super::widgets::weak(meaning));
                     ui.add_space(4.0);
@@ -80,6 +80,13 @@ impl Help {
             });
         });
     }
+}
+
+/// The glossary in the order of the language.
+fn terms() -> [(&'static str, &'static str); GLOSSARY.len()] {
+    let mut terms = GLOSSARY.map(|(word, meaning)| (word.get(), meaning.get()));
+    terms.sort_by_key(|(word, _)| word.to_lowercase());
+    terms
 }
 
 /// A key and what it does.
@@ -94,10 +101,14 @@ fn key_ui(ui: &mut Ui, key: &str, meaning: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::language::{self, Language};
 
     #[test]
     fn the_glossary_is_in_order_and_every_meaning_is_a_sentence() {
-        assert!(GLOSSARY.is_sorted_by_key(|(word, _)| word.to_lowercase()));
-        assert!(GLOSSARY.iter().all(|(word, meaning)| meaning.ends_with('.') && meaning.len() > word.len()));
+        for language in [Language::English, Language::German] {
+            let terms = language::with(language, terms);
+            assert!(terms.is_sorted_by_key(|(word, _)| word.to_lowercase()));
+            assert!(terms.iter().all(|(word, meaning)| meaning.ends_with('.') && meaning.len() > word.len()));
+        }
     }
 }

@@ -69,7 +69,7 @@ impl InForce {
             } else if rig.devices.is_some() {
                 Bound::Waiting
             } else {
-                let nameless = Bound::Nameless(text::calibrations::RIG_WITHOUT_SENSOR);
+                let nameless = Bound::Nameless(text::calibrations::RIG_WITHOUT_SENSOR.get());
                 rig.simulated_wrist(side).map_or(nameless, |wrist| Bound::To(wrist.clone()))
             };
             self.go_over(side, bound);
@@ -101,7 +101,9 @@ impl InForce {
         let before = now.last.clone();
         let bound = match handle.force_sensor(side).filter(|_| change.is_there()) {
             None => Bound::Waiting,
-            Some(sensor) if sensor.serial.is_empty() => Bound::Nameless(text::calibrations::SENSOR_WITHOUT_SERIAL),
+            Some(sensor) if sensor.serial.is_empty() => {
+                Bound::Nameless(text::calibrations::SENSOR_WITHOUT_SERIAL.get())
+            }
             Some(sensor) => Bound::To(WristId { serial_number: sensor.serial, tool: tool.clone() }),
         };
         self.go_over(side, bound);
@@ -236,9 +238,9 @@ impl InForce {
         rig: &str,
         folder: Option<&Path>,
     ) -> Result<(RigConfig, PathBuf, String), String> {
-        let store = self.store.as_ref().ok_or(text::calibrations::NO_FOLDER)?;
+        let store = self.store.as_ref().ok_or(text::calibrations::NO_FOLDER.get())?;
         if self.sides[self.side.index()].wrist().is_none() {
-            return Err(text::calibrations::NO_SENSOR_TO_SAVE_FOR.to_owned());
+            return Err(text::calibrations::NO_SENSOR_TO_SAVE_FOR.get().to_owned());
         }
         let file = RigFile::of(rig).map_err(|error| chain(&error))?;
         let FrameSaving { mut record, numbers } = saving;
@@ -261,7 +263,7 @@ impl InForce {
         rig: &str,
         folder: Option<&Path>,
     ) -> Result<(PathBuf, RigConfig), String> {
-        let folder = folder.ok_or(text::calibrations::NO_FOLDER)?;
+        let folder = folder.ok_or(text::calibrations::NO_FOLDER.get())?;
         if changes.is_empty() {
             let config = RigConfig::load(rig).map_err(|error| chain(&error))?;
             return Ok((PathBuf::from(rig), config));
@@ -271,10 +273,10 @@ impl InForce {
 
     /// Saves a record and puts it in force; returns a text for the screen.
     pub fn save(&mut self, saving: Saving) -> Result<String, String> {
-        let store = self.store.as_ref().ok_or(text::calibrations::NO_FOLDER)?;
+        let store = self.store.as_ref().ok_or(text::calibrations::NO_FOLDER.get())?;
         let of_side = &mut self.sides[self.side.index()];
         if of_side.wrist().is_none() {
-            return Err(text::calibrations::NO_SENSOR_TO_SAVE_FOR.to_owned());
+            return Err(text::calibrations::NO_SENSOR_TO_SAVE_FOR.get().to_owned());
         }
         let path = of_side.save(store, saving)?;
         self.told = None;
@@ -307,6 +309,6 @@ impl InForce {
         let sides: Vec<_> = Side::ALL.into_iter().filter(at_wrist).collect();
         let name = |side: Side| (sides.len() > 1).then(|| side_name(side));
         let lines: Vec<_> = sides.iter().flat_map(|side| self.sides[side.index()].lines(name(*side))).collect();
-        if lines.is_empty() { vec![text::calibrations::NOT_NEEDED.to_owned()] } else { lines }
+        if lines.is_empty() { vec![text::calibrations::NOT_NEEDED.get().to_owned()] } else { lines }
     }
 }

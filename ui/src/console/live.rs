@@ -64,7 +64,7 @@ const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
 fn missing_line(line: &LineReport) -> Option<Missing> {
     let [cause, cure] = link_trouble(line.state)?;
     let was_there = line.figures.counts.delivered > 0;
-    Some(Missing { place: DEVICES_MAX, name: text::link::LINK.to_owned(), was_there, cause, cure })
+    Some(Missing { place: DEVICES_MAX, name: text::link::LINK.get().to_owned(), was_there, cause, cure })
 }
 
 /// What is on the screen.
@@ -80,10 +80,10 @@ pub enum Of {
 
 impl Of {
     /// Why controls that act on a machine are off.
-    pub(in crate::console) const fn blocked(self) -> &'static str {
+    pub(in crate::console) fn blocked(self) -> &'static str {
         match self {
-            Self::Elsewhere => text::monitor::BLOCKED,
-            Self::Now | Self::Past => text::past::BLOCKED,
+            Self::Elsewhere => text::monitor::BLOCKED.get(),
+            Self::Now | Self::Past => text::past::BLOCKED.get(),
         }
     }
 }
@@ -383,7 +383,9 @@ impl Live {
             };
             let (cause, cure) = match (entry.view.report().trouble, health.standing) {
                 (Some(trouble), _) => (trouble.to_string(), trouble.cure()),
-                (None, Standing::Lost(loss)) => (loss.cause().to_owned(), text::alarms::DEVICE_MISSING_CURE.to_owned()),
+                (None, Standing::Lost(loss)) => {
+                    (loss.cause().to_owned(), text::alarms::DEVICE_MISSING_CURE.get().to_owned())
+                }
                 // The first attempt to open a device takes some time.
                 (None, _) => return None,
             };

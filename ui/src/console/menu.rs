@@ -10,6 +10,7 @@ use super::{
     roles::Role,
     settings::{CROP_MOST_PERCENT, PictureSettings, Settings},
 };
+use crate::language::{Language, Text};
 
 /// Size that every view needs, in points; a larger scale than the window has space for is not used.
 const NEEDED: egui::Vec2 = vec2(1100.0, 680.0);
@@ -22,13 +23,13 @@ pub(super) fn menu_ui(
     can_undo: [bool; 2],
 ) -> Option<Action> {
     let mut wanted = None;
-    let button = Button::new(text::menu::VIEW).min_size(vec2(52.0, 30.0));
+    let button = Button::new(text::menu::VIEW.get()).min_size(vec2(52.0, 30.0));
     let menu = egui::containers::menu::MenuButton::from_button(button);
     let (response, _) = menu.ui(ui, |ui| {
         ui.set_width(300.0);
-        ui.label(text::menu::PALETTE);
+        ui.label(text::menu::PALETTE.get());
         ui.horizontal(|ui| {
-            for (name, light) in [(text::menu::DARK, false), (text::menu::LIGHT, true)] {
+            for (name, light) in [(text::menu::DARK.get(), false), (text::menu::LIGHT.get(), true)] {
                 let button = Button::selectable(settings.light == light, name).frame_when_inactive(true);
                 if ui.add(button.min_size(vec2(96.0, 30.0))).clicked() {
                     wanted = Some(Action::Light(light));
@@ -36,7 +37,9 @@ pub(super) fn menu_ui(
             }
         });
         ui.add_space(6.0);
-        ui.label(text::menu::SIZE);
+        wanted = wanted.or(languages_ui(ui, settings.language));
+        ui.add_space(6.0);
+        ui.label(text::menu::SIZE.get());
         ui.horizontal(|ui| {
             for percent in SIZES_PERCENT {
                 let chosen = settings.scale_percent == percent;
@@ -45,7 +48,7 @@ pub(super) fn menu_ui(
                 }
             }
         });
-        ui.label(super::widgets::small(text::menu::SIZE_NOTE));
+        ui.label(super::widgets::small(text::menu::SIZE_NOTE.get()));
         ui.add_space(6.0);
         if settings.role == Role::Technician {
             wanted = wanted.or(panels_ui(ui, &settings.layout));
@@ -68,7 +71,7 @@ pub(super) fn menu_ui(
         });
         wanted = wanted.or(entry_ui(ui, Action::Mark, 300.0));
     });
-    response.on_hover_text(text::menu::VIEW_HOVER);
+    response.on_hover_text(text::menu::VIEW_HOVER.get());
     wanted
 }
 
@@ -77,6 +80,21 @@ fn entry_ui(ui: &mut Ui, action: Action, width: f32) -> Option<Action> {
     let entry = Entry::of(action)?;
     let button = ui.add(Button::new(entry.with_keys()).min_size(vec2(width, 30.0)));
     button.on_hover_text(entry.does).clicked().then_some(action)
+}
+
+/// The languages, each by its name in itself; returns the command of the one that is pressed.
+fn languages_ui(ui: &mut Ui, now: Language) -> Option<Action> {
+    let mut wanted = None;
+    ui.label(text::menu::LANGUAGE.get()).on_hover_text(text::commands::LANGUAGE_DOES.get());
+    ui.horizontal(|ui| {
+        for language in Language::CHOICES {
+            let button = Button::selectable(now == language, language.name()).frame_when_inactive(true);
+            if ui.add(button.min_size(vec2(96.0, 30.0))).clicked() {
+                wanted = Some(Action::Speak(language));
+            }
+        }
+    });
+    wanted
 }
 
 /// A switch that is now so; returns its command when it is pressed.
@@ -96,16 +114,21 @@ fn sound_ui(ui: &mut Ui, on: bool, alarms: &mut Alarms) -> Option<Action> {
 
 /// How the endoscope's picture is shown, and whether it is recorded.
 fn picture_ui(ui: &mut Ui, settings: &mut Settings) -> Option<Action> {
-    ui.label(text::menu::PICTURE);
+    ui.label(text::menu::PICTURE.get());
     let picture = &mut settings.picture;
-    ui.add(Slider::new(&mut picture.brightness_percent, -50..=50).text(text::menu::BRIGHTNESS).suffix(" %"));
+    ui.add(Slider::new(&mut picture.brightness_percent, -50..=50).text(text::menu::BRIGHTNESS.get()).suffix(" %"));
     ui.add(
-        Slider::new(&mut picture.contrast_percent, 25..=400).logarithmic(true).text(text::menu::CONTRAST).suffix(" %"),
+        Slider::new(&mut picture.contrast_percent, 25..=400)
+            .logarithmic(true)
+            .text(text::menu::CONTRAST.get())
+            .suffix(" %"),
     );
-    ui.add(Slider::new(&mut picture.gamma_percent, 25..=400).logarithmic(true).text(text::menu::GAMMA).suffix(" %"));
+    ui.add(
+        Slider::new(&mut picture.gamma_percent, 25..=400).logarithmic(true).text(text::menu::GAMMA.get()).suffix(" %"),
+    );
     ui.horizontal(|ui| {
-        ui.label(text::menu::CROP).on_hover_text(text::menu::CROP_HOVER);
-        for (percent, edge) in picture.crop_percent.iter_mut().zip(text::menu::EDGES) {
+        ui.label(text::menu::CROP.get()).on_hover_text(text::menu::CROP_HOVER.get());
+        for (percent, edge) in picture.crop_percent.iter_mut().zip(text::menu::EDGES.map(Text::get)) {
             let value = DragValue::new(percent).range(0..=CROP_MOST_PERCENT).suffix(" %");
             let response = ui.add(value).on_hover_text(edge);
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, edge));
@@ -121,14 +144,15 @@ fn picture_ui(ui: &mut Ui, settings: &mut Settings) -> Option<Action> {
 /// Switches for the panels on the desk.
 fn panels_ui(ui: &mut Ui, layout: &Layout) -> Option<Action> {
     let mut wanted = None;
-    ui.label(text::menu::PANELS).on_hover_text(text::menu::PANELS_HOVER);
+    ui.label(text::menu::PANELS.get()).on_hover_text(text::menu::PANELS_HOVER.get());
     for pair in Panel::ALL.chunks(2) {
         ui.horizontal(|ui| {
             for panel in pair {
                 let open = layout.is_open(*panel);
                 let button = Button::selectable(open, panel.title()).frame_when_inactive(true);
                 let response = ui.add(button.min_size(vec2(146.0, 26.0)));
-                let meaning = if open { text::menu::PANEL_OPEN_HOVER } else { text::menu::PANEL_CLOSED_HOVER };
+                let meaning =
+                    if open { text::menu::PANEL_OPEN_HOVER.get() } else { text::menu::PANEL_CLOSED_HOVER.get() };
                 if response.on_hover_text(format!("{}\n{meaning}", panel.meaning())).clicked() {
                     wanted = Some(Action::Panel(*panel));
                 }

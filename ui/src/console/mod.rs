@@ -60,6 +60,7 @@ use start::Choice;
 
 pub use app::ConsoleApp;
 
+use crate::language::{self, Language};
 use crate::line::{LineDoor, Reopen};
 use crate::{emulators::Emulators, leaving::Leave};
 
@@ -74,6 +75,8 @@ pub struct Options {
     pub pictures: Option<pictures::Album>,
     /// Start in this role instead of the last one.
     pub role: Option<roles::Role>,
+    /// Speak this language instead of the last one.
+    pub language: Option<Language>,
     /// Show this recorded session at the start.
     pub session: Option<PathBuf>,
     /// Open this wizard at the start.
@@ -106,7 +109,10 @@ pub(crate) struct Begun {
 /// Opens the console for a running loop; returns when the window is closed and the loop has ended.
 pub(crate) fn run(begun: Begun, options: Options) -> anyhow::Result<()> {
     let create: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(console(cc, begun, options))));
-    open_window(text::top_bar::NIMA_CONSOLE, create)
+    let ended = open_window(text::top_bar::NIMA_CONSOLE.get(), create);
+    // What is told from here on is told on the terminal.
+    language::set(Language::English);
+    ended
 }
 
 /// Opens a window; returns when it is closed.

@@ -138,7 +138,7 @@ impl Monitor {
                     self.live = Some(Box::new(Live::of_elsewhere(*rig, *scene)));
                     (self.trouble, self.heard) = (None, Instant::now());
                 }
-                Heard::Rests => (self.live, self.trouble) = (None, Some(text::monitor::RESTS.to_owned())),
+                Heard::Rests => (self.live, self.trouble) = (None, Some(text::monitor::RESTS.get().to_owned())),
                 Heard::Trouble(why) => self.trouble = Some(why),
                 Heard::Shows(moments) => {
                     let Some(live) = &mut self.live else { continue };
@@ -172,8 +172,8 @@ impl Monitor {
         Panel::top("watching").exact_size(HEAD).resizable(false).frame(frame).show(ui, |ui| {
             ui.horizontal_centered(|ui| {
                 let word =
-                    RichText::new(text::monitor::WATCHING).font(theme::strong(26.0)).color(theme::now().watching);
-                ui.label(word).on_hover_text(text::monitor::WATCHING_HOVER);
+                    RichText::new(text::monitor::WATCHING.get()).font(theme::strong(26.0)).color(theme::now().watching);
+                ui.label(word).on_hover_text(text::monitor::WATCHING_HOVER.get());
                 ui.add_space(10.0);
                 let scene = self.live.as_ref().map(|live| live.scene.name.clone()).unwrap_or_default();
                 let words = text::monitor::rig_and_scene(&self.rig, &scene);
@@ -210,7 +210,7 @@ impl Monitor {
         let stale = self.stale();
         let Self { live, settings, panels, in_force, outbox, .. } = self;
         let Some(live) = live else {
-            let words = stale.unwrap_or_else(|| text::monitor::CONNECTING.to_owned());
+            let words = stale.unwrap_or_else(|| text::monitor::CONNECTING.get().to_owned());
             ui.centered_and_justified(|ui| ui.label(weak(words)));
             return;
         };

@@ -25,6 +25,7 @@ use super::{
     alarms::{Alarm, Kind, Priority, Signs, judge, log::AlarmLog},
     chain, text,
 };
+use crate::language::{self, Language};
 use crate::{
     pictures, recording,
     watching::{self, Servers},
@@ -196,14 +197,15 @@ impl Sessions {
     }
 
     /// Adds to the session the marks (s on the loop's clock) and the alarms of the screen that it has not: each alarm when its cause
-    /// appears, and when that ends. `now_s` is the time of the last tick; faults are in the session anyway.
-    pub(crate) fn tell(&mut self, marks_s: &VecDeque<f64>, alarms: &AlarmLog, now_s: Option<f64>) {
+    /// appears, and when that ends. `written` are those alarms in English, for the file. `now_s` is the time of the last tick; faults are in
+    /// the session anyway.
+    pub(crate) fn tell(&mut self, marks_s: &VecDeque<f64>, alarms: &AlarmLog, written: &[Alarm], now_s: Option<f64>) {
         let (Some(Now { recorder, told, .. }), Some(now_s)) = (&mut self.now, now_s) else { return };
         let before_s = told.last_mark_s;
         for &t_s in marks_s.iter().filter(|t_s| before_s.is_none_or(|last_s| **t_s > last_s)) {
             told.marks += 1;
             told.last_mark_s = Some(t_s);
-            let words = text::sessions::mark(told.marks);
+            let words = language::with(Language::English, || text::sessions::mark(told.marks));
             recorder.note(t_s, Note { kind: NoteKind::Mark, warns: false, words });
         }
         let live: Vec<&Alarm> = alarms.live().into_iter().map(|entry| &entry.alarm).collect();
@@ -211,14 +213,16 @@ impl Sessions {
         told.alarms.retain(|before| {
             let stays = live.iter().any(|alarm| alarm.kind == before.kind);
             if !stays {
-                alarm(false, text::sessions::alarm_over(&before.cause));
+                alarm(false, language::with(Language::English, || text::sessions::alarm_over(&before.cause)));
             }
             stays
         });
         for new in live {
             let known = told.alarms.iter().any(|alarm| alarm.kind == new.kind);
             if !known && !matches!(new.kind, Kind::Fault(_)) {
-                alarm(new.priority < Priority::Low, text::sessions::alarm(&new.cause));
+                let new = written.iter().find(|alarm| alarm.kind == new.kind).unwrap_or(new);
+                let words = language::with(Language::English, || text::sessions::alarm(&new.cause));
+                alarm(new.priority < Priority::Low, words);
                 told.alarms.push(new.clone());
             }
         }
@@ -386,8 +390,9 @@ mod tests {
             let signs = Signs { running: true, bias_moved_n: present, ..Signs::default() };
             log.update(&judge(&signs), &Moment::now(Some(now_s), now_s));
             // Told once, however often the window is drawn.
-            sessions.tell(&marks_s, &log, Some(now_s));
-            sessions.tell(&marks_s, &log, Some(now_s));
+            for _ in 0..2 {
+                sessions.tell(&marks_s, &log, &judge(&signs), Some(now_s));
+            }
         }
         let path = sessions.shown().unwrap().path;
         handle.stop_and_join().unwrap();

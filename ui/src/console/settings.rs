@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{desk::Layout, roles::Role, start::Choice};
 use crate::console::text;
+use crate::language::Language;
 
 const FILE: &str = "console.json";
 const SET_ASIDE: &str = "console.corrupted.json";
@@ -36,6 +37,8 @@ pub struct Settings {
     pub records_picture: bool,
     /// How the endoscope's picture is shown.
     pub picture: PictureSettings,
+    /// The language of the window.
+    pub language: Language,
     /// Whether the tour was finished or skipped.
     pub toured: bool,
     /// Scale of the user interface, percent; [`SCALES`].
@@ -108,6 +111,7 @@ impl Default for Settings {
             light: false,
             records_picture: true,
             picture: PictureSettings::default(),
+            language: Language::default(),
             toured: false,
             scale_percent: 100,
             recent: Vec::new(),
@@ -235,7 +239,7 @@ mod tests {
             std::fs::write(folder.path().join(FILE), text).unwrap();
             let kept = Kept::open(folder.path());
             assert_eq!((kept.now.role, &kept.now.layout), (Role::Surgeon, &Layout::default()));
-            assert!(kept.told().unwrap().starts_with(text::settings::LAYOUT_LOST));
+            assert!(kept.told().unwrap().starts_with(text::settings::LAYOUT_LOST.get()));
             assert!(folder.path().join(FILE).exists());
         }
     }

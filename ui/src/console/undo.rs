@@ -5,6 +5,7 @@
 //! sound, nor what is recorded. The history ends with the window.
 
 use super::{desk::Layout, panels::ForcesView, scene3d::extras::Extras, settings::PictureSettings};
+use crate::language::Language;
 
 /// Most steps that can be taken back.
 const STEPS: usize = 100;
@@ -16,6 +17,7 @@ const SAME_STEP_S: f64 = 0.6;
 pub(super) struct Look {
     pub(super) layout: Layout,
     pub(super) light: bool,
+    pub(super) language: Language,
     pub(super) scale_percent: u16,
     pub(super) picture: PictureSettings,
     pub(super) extras: Extras,
@@ -36,10 +38,11 @@ enum Change {
 impl Look {
     /// How it differs from this one. Which tab is in front is no change: it would be in the way of what matters.
     fn change(&self, other: &Self) -> Option<Change> {
-        let Self { layout, light, scale_percent, picture, extras, traces } = self;
+        let Self { layout, light, language, scale_percent, picture, extras, traces } = self;
         let at_once = layout.places != other.layout.places
             || layout.closed != other.layout.closed
             || *light != other.light
+            || *language != other.language
             || *scale_percent != other.scale_percent
             || *extras != other.extras
             || traces.side != other.traces.side;
@@ -127,6 +130,7 @@ mod tests {
         Look {
             layout: Layout::default(),
             light: false,
+            language: Language::English,
             scale_percent: 100,
             picture: PictureSettings::default(),
             extras: Extras::default(),

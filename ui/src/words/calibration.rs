@@ -8,18 +8,27 @@ use nima_core::calibration::{
 use nima_recording::tip_force::Lack;
 
 use super::Words;
+use crate::language::{Text, told, word};
 
-const NO_WRIST_FORCE: &str = "no gravity-free force at the wrist; connect the sensor and calibrate gravity";
-const NO_TISSUE_FORCE: &str = "the sensor under the tissue sends no data; connect it";
-const NO_CHAIN: &str =
-    "the tracker does not see the marker, or the arm sends no data; clear the line of sight and check the arm";
+const NO_WRIST_FORCE: Text = Text::of(
+    "no gravity-free force at the wrist; connect the sensor and calibrate gravity",
+    "no gravity-free force at the wrist; connect the sensor and calibrate gravity",
+);
+const NO_TISSUE_FORCE: Text = Text::of(
+    "the sensor under the tissue sends no data; connect it",
+    "the sensor under the tissue sends no data; connect it",
+);
+const NO_CHAIN: Text = Text::of(
+    "the tracker does not see the marker, or the arm sends no data; clear the line of sight and check the arm",
+    "the tracker does not see the marker, or the arm sends no data; clear the line of sight and check the arm",
+);
 
 impl Words for Verdict {
     fn words(self) -> &'static str {
         match self {
-            Self::Accepted => "Accepted",
-            Self::InsufficientMotion => "Insufficient motion",
-            Self::PoorData => "Poor data",
+            Self::Accepted => word("Accepted", "Accepted"),
+            Self::InsufficientMotion => word("Insufficient motion", "Insufficient motion"),
+            Self::PoorData => word("Poor data", "Poor data"),
         }
     }
 }
@@ -27,10 +36,13 @@ impl Words for Verdict {
 impl Words for Missing {
     fn words(self) -> &'static str {
         match self {
-            Self::WristForce => NO_WRIST_FORCE,
-            Self::TissueForce => NO_TISSUE_FORCE,
-            Self::Chain => NO_CHAIN,
-            Self::Sense => "a sample is not finite or not newer than the previous one; check the sensors",
+            Self::WristForce => NO_WRIST_FORCE.get(),
+            Self::TissueForce => NO_TISSUE_FORCE.get(),
+            Self::Chain => NO_CHAIN.get(),
+            Self::Sense => word(
+                "a sample is not finite or not newer than the previous one; check the sensors",
+                "a sample is not finite or not newer than the previous one; check the sensors",
+            ),
         }
     }
 }
@@ -38,10 +50,13 @@ impl Words for Missing {
 impl Words for Lack {
     fn words(self) -> &'static str {
         match self {
-            Self::WristForce => NO_WRIST_FORCE,
-            Self::TissueForce => NO_TISSUE_FORCE,
-            Self::Chain => NO_CHAIN,
-            Self::Pose => "no depth through the trocar or no orientation; mount the trocar and check the arm",
+            Self::WristForce => NO_WRIST_FORCE.get(),
+            Self::TissueForce => NO_TISSUE_FORCE.get(),
+            Self::Chain => NO_CHAIN.get(),
+            Self::Pose => word(
+                "no depth through the trocar or no orientation; mount the trocar and check the arm",
+                "no depth through the trocar or no orientation; mount the trocar and check the arm",
+            ),
         }
     }
 }
@@ -49,29 +64,52 @@ impl Words for Lack {
 /// Why a push was not recorded, and what to do.
 pub(crate) fn refusal(refusal: &Refusal) -> String {
     match refusal {
-        Refusal::TooShort => "the push was too short; hold it for half a second".to_owned(),
-        Refusal::Moved { by_n } => format!("the force varied by {by_n:.2} N; hold it still"),
-        Refusal::MissedTissue => "the sensor under the tissue measured nothing; push onto the tissue".to_owned(),
-        Refusal::Full => "the session is full; remove a push first".to_owned(),
+        Refusal::TooShort => word(
+            "the push was too short; hold it for half a second",
+            "the push was too short; hold it for half a second",
+        )
+        .to_owned(),
+        Refusal::Moved { by_n } => {
+            told!("the force varied by {by_n:.2} N; hold it still", "the force varied by {by_n:.2} N; hold it still")
+        }
+        Refusal::MissedTissue => word(
+            "the sensor under the tissue measured nothing; push onto the tissue",
+            "the sensor under the tissue measured nothing; push onto the tissue",
+        )
+        .to_owned(),
+        Refusal::Full => {
+            word("the session is full; remove a push first", "the session is full; remove a push first").to_owned()
+        }
     }
 }
 
 /// Whether a saved gravity calibration still holds, and what to do.
 pub(crate) fn drift(drift: Drift) -> String {
     match drift {
-        Drift::Waiting => "being checked: do not touch the tool for a moment".to_owned(),
+        Drift::Waiting => word(
+            "being checked: do not touch the tool for a moment",
+            "being checked: do not touch the tool for a moment",
+        )
+        .to_owned(),
         Drift::NotChecked(why) => {
             let why = match why {
-                NotChecked::NoSample => "no data from the sensor, or its orientation is unknown",
-                NotChecked::Moving => "the tool moves",
-                NotChecked::Touched => "something touches the tool",
-                NotChecked::InTrocar => "the instrument is in the trocar; start with it outside",
-                NotChecked::Engaged => "the loop was engaged too early",
+                NotChecked::NoSample => word(
+                    "no data from the sensor, or its orientation is unknown",
+                    "no data from the sensor, or its orientation is unknown",
+                ),
+                NotChecked::Moving => word("the tool moves", "the tool moves"),
+                NotChecked::Touched => word("something touches the tool", "something touches the tool"),
+                NotChecked::InTrocar => word(
+                    "the instrument is in the trocar; start with it outside",
+                    "the instrument is in the trocar; start with it outside",
+                ),
+                NotChecked::Engaged => word("the loop was engaged too early", "the loop was engaged too early"),
             };
-            format!("not checked: {why}")
+            told!("not checked: {why}", "not checked: {why}")
         }
-        Drift::Fine { by_n } => format!("{by_n:.2} N without contact, good"),
-        Drift::Moved { by_n } => format!(
+        Drift::Fine { by_n } => told!("{by_n:.2} N without contact, good", "{by_n:.2} N without contact, good"),
+        Drift::Moved { by_n } => told!(
+            "drifted by {by_n:.2} N: make sure that nothing touches the tool; if this stays, calibrate gravity again",
             "drifted by {by_n:.2} N: make sure that nothing touches the tool; if this stays, calibrate gravity again"
         ),
     }

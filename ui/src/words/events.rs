@@ -7,36 +7,44 @@ use nima_machine::{
 };
 
 use super::{Remedy as _, commands, refused_because};
+use crate::language::{told, word};
 
 /// What happened; `devices` are the names of the rig's devices, in the order of its roster.
 pub(crate) fn event(event: &Event, devices: &[String]) -> String {
     match *event {
         Event::StateChanged { side, from, to, .. } => {
-            format!("{} arm: from {} to {}", side.word(), from.word(), to.word())
+            told!("{} arm: from {} to {}", "{} arm: from {} to {}", side.word(), from.word(), to.word())
         }
         Event::FaultRaised { side, fault, .. } => {
             let of = match fault {
-                Fault::DeviceLost { device, .. } => format!(" of the {}", name_of(device, devices)),
+                Fault::DeviceLost { device, .. } => told!(" of the {}", " of the {}", name_of(device, devices)),
                 _ => String::new(),
             };
-            format!("{} arm: fault{of}: {}", side.word(), fault.cause())
+            told!("{} arm: fault{of}: {}", "{} arm: fault{of}: {}", side.word(), fault.cause())
         }
         Event::CommandRefused { side, command, why, .. } => {
-            format!("{} arm: refused: {}: {}", side.word(), commands::command(command), refused_because(why))
+            told!(
+                "{} arm: refused: {}: {}",
+                "{} arm: refused: {}: {}",
+                side.word(),
+                commands::command(command),
+                refused_because(why)
+            )
         }
         Event::Device(event) => device(&event, devices),
-        Event::Scheduling(granted) => {
-            granted.advice().map_or_else(|| "real-time scheduling granted".to_owned(), str::to_owned)
-        }
+        Event::Scheduling(granted) => granted.advice().map_or_else(
+            || word("real-time scheduling granted", "real-time scheduling granted").to_owned(),
+            str::to_owned,
+        ),
     }
 }
 
 /// What became of a device.
 pub(super) fn device(event: &DeviceEvent, devices: &[String]) -> String {
     let standing = match event.standing {
-        Standing::Closed => "closed",
-        Standing::Opening => "is being opened",
-        Standing::Connected => "connected",
+        Standing::Closed => word("closed", "closed"),
+        Standing::Opening => word("is being opened", "is being opened"),
+        Standing::Connected => word("connected", "connected"),
         Standing::Lost(loss) => loss.cause(),
     };
     format!("{}: {standing}", name_of(event.device, devices))
@@ -44,7 +52,7 @@ pub(super) fn device(event: &DeviceEvent, devices: &[String]) -> String {
 
 /// The name of a device by its place in the roster.
 fn name_of(device: u8, devices: &[String]) -> String {
-    devices.get(usize::from(device)).cloned().unwrap_or_else(|| format!("device {device}"))
+    devices.get(usize::from(device)).cloned().unwrap_or_else(|| told!("device {device}", "device {device}"))
 }
 
 #[cfg(test)]

@@ -2,30 +2,56 @@
 
 use nima_score::Event;
 
+use crate::language::{told, word};
+
 /// What happened. An event without a sentence of its own is told by its name and its values.
 pub(crate) fn happening(event: &Event) -> String {
     let number = |count: usize| count.saturating_add(1);
     match *event {
-        Event::Begun => "the trial begins".to_owned(),
-        Event::Ended => "the task is done".to_owned(),
-        Event::Aborted => "the trial was given up".to_owned(),
+        Event::Begun => word("the trial begins", "the trial begins").to_owned(),
+        Event::Ended => word("the task is done", "the task is done").to_owned(),
+        Event::Aborted => word("the trial was given up", "the trial was given up").to_owned(),
         Event::RingGrasped { ring, side } => {
-            format!("ring {} grasped by the {} instrument", number(ring), side.name())
+            told!(
+                "ring {} grasped by the {} instrument",
+                "ring {} grasped by the {} instrument",
+                number(ring),
+                side.name()
+            )
         }
         Event::RingLifted { ring, side } => {
-            format!("ring {} lifted off its peg by the {} instrument", number(ring), side.name())
+            told!(
+                "ring {} lifted off its peg by the {} instrument",
+                "ring {} lifted off its peg by the {} instrument",
+                number(ring),
+                side.name()
+            )
         }
-        Event::RingTransferred { ring, to } => format!("ring {} passed to the {} instrument", number(ring), to.name()),
+        Event::RingTransferred { ring, to } => {
+            told!("ring {} passed to the {} instrument", "ring {} passed to the {} instrument", number(ring), to.name())
+        }
         Event::RingPlaced { ring, side, peg } => {
-            format!("ring {} placed on peg {} by the {} instrument", number(ring), number(peg), side.name())
+            told!(
+                "ring {} placed on peg {} by the {} instrument",
+                "ring {} placed on peg {} by the {} instrument",
+                number(ring),
+                number(peg),
+                side.name()
+            )
         }
         Event::RingDropped { ring, side, in_view } => {
-            let out = if in_view { "" } else { ", out of view" };
-            format!("ring {} dropped by the {} instrument{out}", number(ring), side.name())
+            let out = if in_view { "" } else { word(", out of view", ", out of view") };
+            told!(
+                "ring {} dropped by the {} instrument{out}",
+                "ring {} dropped by the {} instrument{out}",
+                number(ring),
+                side.name()
+            )
         }
         Event::RingKnockedOff { ring, side } => {
-            let by = side.map_or_else(String::new, |side| format!(" by the {} instrument", side.name()));
-            format!("ring {} knocked off its peg{by}", number(ring))
+            let by = side
+                .map_or_else(String::new, |side| told!(" by the {} instrument", " by the {} instrument", side.name()));
+            told!("ring {} knocked off its peg{by}", "ring {} knocked off its peg{by}", number(ring))
         }
         other => plain(&other),
     }

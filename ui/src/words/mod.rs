@@ -6,6 +6,7 @@
 
 mod calibration;
 pub(crate) mod camera;
+mod causes;
 mod channels;
 mod commands;
 mod disk;
@@ -25,6 +26,7 @@ mod refusals;
 mod sides;
 
 pub(crate) use calibration::{drift, refusal};
+pub(crate) use causes::cause_words;
 pub(crate) use channels::{channel_group, channel_name, marker};
 pub(crate) use commands::operation;
 pub(crate) use disk::disk_full_in;
@@ -38,7 +40,7 @@ pub(crate) use known::Lines;
 pub(crate) use link::{link_rows, link_trouble, state_in_words};
 pub(crate) use modes::{mode_meaning, mode_name};
 pub(crate) use numbers::three_digits;
-pub(crate) use ready::{ask_words, cause_words, check_name, figure_words, lacks_words, unit};
+pub(crate) use ready::{ask_words, check_name, figure_words, lacks_words, unit};
 pub(crate) use refusals::{cure_of_refusal, refused_because};
 
 /// A value with a text for its cause and for its cure.

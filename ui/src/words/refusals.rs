@@ -6,71 +6,123 @@ use nima_machine::{
 };
 
 use super::Remedy as _;
+use crate::language::{told, word};
 
 /// The reason, a clause without a full stop.
 pub(crate) fn refused_because(why: Refusal) -> String {
     match why {
         Refusal::State(state) => in_state(state).to_owned(),
-        Refusal::StillPresent(fault) => format!("the cause of a fault is still present: {}", lower(fault.cause())),
-        Refusal::ForceUnknown => "the force at the tip is not known".to_owned(),
-        Refusal::Implausible(what) => format!("a measurement is not plausible: {}", lower(what.cause())),
+        Refusal::StillPresent(fault) => told!(
+            "the cause of a fault is still present: {}",
+            "the cause of a fault is still present: {}",
+            lower(fault.cause())
+        ),
+        Refusal::ForceUnknown => {
+            word("the force at the tip is not known", "the force at the tip is not known").to_owned()
+        }
+        Refusal::Implausible(what) => {
+            told!("a measurement is not plausible: {}", "a measurement is not plausible: {}", lower(what.cause()))
+        }
         Refusal::Obstacle(waiting @ Obstacle::Waiting(_)) => waiting.to_string(),
         Refusal::Obstacle(obstacle @ Obstacle::FarEnd) => obstacle.to_string(),
         Refusal::Obstacle(Obstacle::Exchanged(exchange)) => exchange.words().to_owned(),
-        Refusal::Obstacle(obstacle) => format!("the arm cannot start from where it is: {obstacle}"),
-        Refusal::EndoscopeUnseen => "the tracker does not see the endoscope".to_owned(),
-        Refusal::DrivesOff => "the drives did not obey in time".to_owned(),
-        Refusal::Moving => "the arm was not at rest".to_owned(),
-        Refusal::HandAbsent => "nobody holds the handle".to_owned(),
-        Refusal::ClutchPressed => "the clutch is pressed".to_owned(),
-        Refusal::NotChecked => "this rig requires a ready check, and none of the last 12 hours has passed".to_owned(),
-        Refusal::OutOfRange => "the value is outside its range".to_owned(),
-        Refusal::DelayIsMeasured => "the delay is that of the network, which is measured and not set".to_owned(),
-        Refusal::SimulatedOnly => "a person may hold the handle of this rig".to_owned(),
-        Refusal::NoSuchArm => "this rig has no arm on that side".to_owned(),
+        Refusal::Obstacle(obstacle) => told!(
+            "the arm cannot start from where it is: {obstacle}",
+            "the arm cannot start from where it is: {obstacle}"
+        ),
+        Refusal::EndoscopeUnseen => {
+            word("the tracker does not see the endoscope", "the tracker does not see the endoscope").to_owned()
+        }
+        Refusal::DrivesOff => word("the drives did not obey in time", "the drives did not obey in time").to_owned(),
+        Refusal::Moving => word("the arm was not at rest", "the arm was not at rest").to_owned(),
+        Refusal::HandAbsent => word("nobody holds the handle", "nobody holds the handle").to_owned(),
+        Refusal::ClutchPressed => word("the clutch is pressed", "the clutch is pressed").to_owned(),
+        Refusal::NotChecked => word(
+            "this rig requires a ready check, and none of the last 12 hours has passed",
+            "this rig requires a ready check, and none of the last 12 hours has passed",
+        )
+        .to_owned(),
+        Refusal::OutOfRange => word("the value is outside its range", "the value is outside its range").to_owned(),
+        Refusal::DelayIsMeasured => word(
+            "the delay is that of the network, which is measured and not set",
+            "the delay is that of the network, which is measured and not set",
+        )
+        .to_owned(),
+        Refusal::SimulatedOnly => {
+            word("a person may hold the handle of this rig", "a person may hold the handle of this rig").to_owned()
+        }
+        Refusal::NoSuchArm => word("this rig has no arm on that side", "this rig has no arm on that side").to_owned(),
     }
 }
 
 /// What the operator can do, a clause without a full stop.
-pub(crate) const fn cure_of_refusal(why: Refusal) -> &'static str {
+pub(crate) fn cure_of_refusal(why: Refusal) -> &'static str {
     match why {
-        Refusal::State(LoopState::Stopped) => "release the stop first",
-        Refusal::State(LoopState::Faulted(_)) => "remove its cause, then release the stop",
-        Refusal::State(LoopState::Disconnected) => "see the devices for what is missing and why",
-        Refusal::State(_) => "see the state of the loop",
-        Refusal::StillPresent(Fault::FarEnd { .. }) => {
-            "remove its cause there, then press Stop and Release stop here: that releases both machines"
+        Refusal::State(LoopState::Stopped) => word("release the stop first", "release the stop first"),
+        Refusal::State(LoopState::Faulted(_)) => {
+            word("remove its cause, then release the stop", "remove its cause, then release the stop")
         }
-        Refusal::StillPresent(_) => "remove the cause first",
-        Refusal::ForceUnknown => "calibrate gravity for this sensor and tool",
-        Refusal::Implausible(_) => "see the sensor and its cable",
-        Refusal::Obstacle(Obstacle::Exchanged(_)) => {
-            "put what is exchanged back, in the room or in the rig file; the ready check tells which it is"
+        Refusal::State(LoopState::Disconnected) => {
+            word("see the devices for what is missing and why", "see the devices for what is missing and why")
         }
-        Refusal::Obstacle(Obstacle::Waiting(_)) => "wait a moment, clear the tracker's view, then engage again",
-        Refusal::Obstacle(Obstacle::FarEnd) => "remove the reason at the follower's machine, then engage again",
-        Refusal::Obstacle(_) => "move the arm, then engage again",
-        Refusal::EndoscopeUnseen => "clear the tracker's view of the endoscope and of the arm, then engage again",
-        Refusal::DrivesOff => "look at the arm's and the handle's own lamps and buttons, then engage again",
-        Refusal::Moving => "let the arm come to rest, then engage again",
-        Refusal::HandAbsent => "hold the handle, then engage again",
-        Refusal::ClutchPressed => "release the clutch, then engage again",
-        Refusal::NotChecked => "press Ready check in the panel Calibration",
-        Refusal::OutOfRange => "choose a value within the range",
-        Refusal::DelayIsMeasured => "see the link for what the network takes",
-        Refusal::SimulatedOnly => "choose a simulated rig",
-        Refusal::NoSuchArm => "choose another arm",
+        Refusal::State(_) => word("see the state of the loop", "see the state of the loop"),
+        Refusal::StillPresent(Fault::FarEnd { .. }) => word(
+            "remove its cause there, then press Stop and Release stop here: that releases both machines",
+            "remove its cause there, then press Stop and Release stop here: that releases both machines",
+        ),
+        Refusal::StillPresent(_) => word("remove the cause first", "remove the cause first"),
+        Refusal::ForceUnknown => {
+            word("calibrate gravity for this sensor and tool", "calibrate gravity for this sensor and tool")
+        }
+        Refusal::Implausible(_) => word("see the sensor and its cable", "see the sensor and its cable"),
+        Refusal::Obstacle(Obstacle::Exchanged(_)) => word(
+            "put what is exchanged back, in the room or in the rig file; the ready check tells which it is",
+            "put what is exchanged back, in the room or in the rig file; the ready check tells which it is",
+        ),
+        Refusal::Obstacle(Obstacle::Waiting(_)) => word(
+            "wait a moment, clear the tracker's view, then engage again",
+            "wait a moment, clear the tracker's view, then engage again",
+        ),
+        Refusal::Obstacle(Obstacle::FarEnd) => word(
+            "remove the reason at the follower's machine, then engage again",
+            "remove the reason at the follower's machine, then engage again",
+        ),
+        Refusal::Obstacle(_) => word("move the arm, then engage again", "move the arm, then engage again"),
+        Refusal::EndoscopeUnseen => word(
+            "clear the tracker's view of the endoscope and of the arm, then engage again",
+            "clear the tracker's view of the endoscope and of the arm, then engage again",
+        ),
+        Refusal::DrivesOff => word(
+            "look at the arm's and the handle's own lamps and buttons, then engage again",
+            "look at the arm's and the handle's own lamps and buttons, then engage again",
+        ),
+        Refusal::Moving => {
+            word("let the arm come to rest, then engage again", "let the arm come to rest, then engage again")
+        }
+        Refusal::HandAbsent => word("hold the handle, then engage again", "hold the handle, then engage again"),
+        Refusal::ClutchPressed => {
+            word("release the clutch, then engage again", "release the clutch, then engage again")
+        }
+        Refusal::NotChecked => {
+            word("press Ready check in the panel Calibration", "press Ready check in the panel Calibration")
+        }
+        Refusal::OutOfRange => word("choose a value within the range", "choose a value within the range"),
+        Refusal::DelayIsMeasured => {
+            word("see the link for what the network takes", "see the link for what the network takes")
+        }
+        Refusal::SimulatedOnly => word("choose a simulated rig", "choose a simulated rig"),
+        Refusal::NoSuchArm => word("choose another arm", "choose another arm"),
     }
 }
 
-const fn in_state(state: LoopState) -> &'static str {
+fn in_state(state: LoopState) -> &'static str {
     match state {
-        LoopState::Disconnected => "a device is missing",
-        LoopState::Idle => "nothing is engaged or stopped",
-        LoopState::Ready => "an engagement has already begun",
-        LoopState::Engaged | LoopState::Clutched => "it is already engaged",
-        LoopState::Stopped => "the stop is latched",
-        LoopState::Faulted(_) => "a fault is latched",
+        LoopState::Disconnected => word("a device is missing", "a device is missing"),
+        LoopState::Idle => word("nothing is engaged or stopped", "nothing is engaged or stopped"),
+        LoopState::Ready => word("an engagement has already begun", "an engagement has already begun"),
+        LoopState::Engaged | LoopState::Clutched => word("it is already engaged", "it is already engaged"),
+        LoopState::Stopped => word("the stop is latched", "the stop is latched"),
+        LoopState::Faulted(_) => word("a fault is latched", "a fault is latched"),
     }
 }
 

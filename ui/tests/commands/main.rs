@@ -17,6 +17,7 @@ mod export;
 mod hostile_files;
 mod identify;
 mod installed;
+mod languages;
 mod packages;
 mod paper_rig;
 mod replay;

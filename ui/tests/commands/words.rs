@@ -3,12 +3,14 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::languages::pairs;
+
 /// Literals with words that are none of the screen's, by file: errors told on the terminal (`app/pace.rs`, `screenshot.rs`), a driver's
 /// name (`canvas/surface.rs`) and shader source (`scene3d/gl.rs`). A file that is not named here has none.
 const LEFT: [(&str, usize); 4] =
     [("app/pace.rs", 1), ("canvas/surface.rs", 1), ("scene3d/gl.rs", 2), ("screenshot.rs", 1)];
 
-fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
+pub(crate) fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
@@ -23,7 +25,7 @@ fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
 }
 
 /// The string literals of a source, without its comments, its attributes and its tests.
-fn literals(source: &str) -> Vec<String> {
+pub(crate) fn literals(source: &str) -> Vec<String> {
     let source = source.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     let mut literals = Vec::new();
     for line in joined(source) {
@@ -58,7 +60,7 @@ fn joined(source: &str) -> Vec<String> {
 }
 
 /// Two words, or one that begins a sentence: what stands between braces is no word.
-fn has_words(literal: &str) -> bool {
+pub(crate) fn has_words(literal: &str) -> bool {
     let mut depth = 0_i32;
     let plain: String = literal
         .chars()
@@ -103,18 +105,15 @@ fn every_sentence_is_in_the_text_modules() {
     );
 }
 
-/// Name and words of every constant in `text/`.
-fn constants() -> Vec<(String, String)> {
+/// Name and words, English and German, of every constant in `text/`.
+fn constants() -> Vec<(String, [String; 2])> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/console/text");
     let mut constants = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let source = std::fs::read_to_string(entry.unwrap().path()).unwrap();
         for part in source.split("const ").skip(1) {
-            let Some((name, rest)) = part.split_once(": &str =") else { continue };
-            let literal = rest.trim_start().trim_start_matches('"').replace("\\\"", "'");
-            let words: Vec<&str> =
-                literal.split('"').next().unwrap().split_whitespace().filter(|word| *word != "\\").collect();
-            constants.push((name.to_owned(), words.join(" ")));
+            let Some((name, rest)) = part.split_once(": Text =") else { continue };
+            constants.push((name.to_owned(), pairs(rest).remove(0)));
         }
     }
     assert!(constants.len() > 400, "{} found", constants.len());
@@ -131,7 +130,7 @@ fn a_constant_is_named_by_its_role() {
         let parts: Vec<&str> = name.split('_').collect();
         parts.len() >= 3 && words.len() > parts.len() && words.starts_with(&parts)
     };
-    let wrong: Vec<_> = constants().into_iter().filter(|(name, words)| first_words(name, words)).collect();
+    let wrong: Vec<_> = constants().into_iter().filter(|(name, [words, _])| first_words(name, words)).collect();
     assert!(wrong.is_empty(), "{} named by their first words: {wrong:#?}", wrong.len());
 }
 
@@ -140,6 +139,7 @@ fn one_sentence_has_no_full_stop_and_more_is_an_ellipsis() {
     let several = |words: &str| [". ", "! ", "? ", ".) "].iter().any(|end| words.contains(end));
     let wrong: Vec<_> = constants()
         .into_iter()
+        .flat_map(|(name, both)| both.map(|words| (name.clone(), words)))
         .filter(|(_, words)| words.contains("...") || (words.ends_with('.') && !several(words)))
         .collect();
     assert!(wrong.is_empty(), "{wrong:#?}");

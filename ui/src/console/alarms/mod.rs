@@ -54,11 +54,11 @@ impl Priority {
     }
 
     /// A word for the priority, for readers who cannot distinguish the colours.
-    pub const fn word(self) -> &'static str {
+    pub fn word(self) -> &'static str {
         match self {
-            Self::High => text::alarms::ALARM,
-            Self::Medium => text::alarms::WARNING,
-            Self::Low => text::alarms::NOTE,
+            Self::High => text::alarms::ALARM.get(),
+            Self::Medium => text::alarms::WARNING.get(),
+            Self::Low => text::alarms::NOTE.get(),
         }
     }
 }
@@ -157,8 +157,8 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
         alarms.push(Alarm {
             kind: Kind::StopStuck,
             priority: Priority::High,
-            cause: text::alarms::STOP_STUCK_CAUSE.to_owned(),
-            cure: text::alarms::STOP_STUCK_CURE.to_owned(),
+            cause: text::alarms::STOP_STUCK_CAUSE.get().to_owned(),
+            cure: text::alarms::STOP_STUCK_CURE.get().to_owned(),
         });
     }
     if let (Some(LoopState::Faulted(_)), Some((t_s, fault))) = (signs.state, signs.first_fault) {
@@ -173,8 +173,8 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
         alarms.push(Alarm {
             kind: Kind::Silence,
             priority: Priority::High,
-            cause: text::alarms::LOOP_SILENT_CAUSE.to_owned(),
-            cure: text::alarms::LOOP_SILENT_CURE.to_owned(),
+            cause: text::alarms::LOOP_SILENT_CAUSE.get().to_owned(),
+            cure: text::alarms::LOOP_SILENT_CURE.get().to_owned(),
         });
     }
     alarms.extend(signs.missing.iter().map(missing));
@@ -185,7 +185,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             kind: Kind::Missed,
             priority: if driven { Priority::Medium } else { Priority::Low },
             cause: text::alarms::periods_missed(100.0 * signs.missed_share),
-            cure: text::alarms::PERIODS_MISSED_CURE.to_owned(),
+            cure: text::alarms::PERIODS_MISSED_CURE.get().to_owned(),
         });
     }
     if let Some(by_n) = signs.bias_moved_n {
@@ -193,7 +193,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             kind: Kind::BiasMoved,
             priority: Priority::Medium,
             cause: text::alarms::bias_moved(by_n),
-            cure: text::alarms::BIAS_MOVED_CURE.to_owned(),
+            cure: text::alarms::BIAS_MOVED_CURE.get().to_owned(),
         });
     }
     if let Some(advice) = signs.scheduling.and_then(|scheduling| scheduling.advice()) {
@@ -209,16 +209,16 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
         alarms.push(Alarm {
             kind: Kind::Unchecked,
             priority: Priority::Low,
-            cause: text::alarms::UNCHECKED_CAUSE.to_owned(),
-            cure: text::alarms::UNCHECKED_CURE.to_owned(),
+            cause: text::alarms::UNCHECKED_CAUSE.get().to_owned(),
+            cure: text::alarms::UNCHECKED_CURE.get().to_owned(),
         });
     }
     if signs.control == Some(Control::HoldsAsked) {
         alarms.push(Alarm {
             kind: Kind::ControlAsked,
             priority: Priority::Low,
-            cause: text::link::CONTROL_ASKED_CAUSE.to_owned(),
-            cure: text::link::CONTROL_ASKED_CURE.to_owned(),
+            cause: text::link::CONTROL_ASKED_CAUSE.get().to_owned(),
+            cure: text::link::CONTROL_ASKED_CURE.get().to_owned(),
         });
     }
     if let Some(why) = &signs.unrecorded {
@@ -226,7 +226,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             kind: Kind::Unrecorded,
             priority: Priority::Low,
             cause: text::sessions::cause(why),
-            cure: text::sessions::CURE.to_owned(),
+            cure: text::sessions::CURE.get().to_owned(),
         });
     }
     alarms.sort_by_key(|alarm| alarm.priority);

@@ -59,13 +59,13 @@ impl Alarms {
             ui.horizontal(|ui| {
                 opened |= words_ui(ui, &first, others, colour);
                 at_the_right(ui, |ui| {
-                    let seen = ui.add_enabled(unseen, Button::new(text::alarms::ACKNOWLEDGE).min_size(BUTTON));
+                    let seen = ui.add_enabled(unseen, Button::new(text::alarms::ACKNOWLEDGE.get()).min_size(BUTTON));
                     let seen = seen
-                        .on_hover_text(text::alarms::ACKNOWLEDGE_HOVER)
-                        .on_disabled_hover_text(text::alarms::ACKNOWLEDGED_HOVER);
+                        .on_hover_text(text::alarms::ACKNOWLEDGE_HOVER.get())
+                        .on_disabled_hover_text(text::alarms::ACKNOWLEDGED_HOVER.get());
                     acknowledged = seen.clicked();
-                    let all = Button::new(text::alarms::SHOW_ALL).min_size(BUTTON);
-                    opened |= ui.add(all).on_hover_text(text::alarms::SHOW_ALL_HOVER).clicked();
+                    let all = Button::new(text::alarms::SHOW_ALL.get()).min_size(BUTTON);
+                    opened |= ui.add(all).on_hover_text(text::alarms::SHOW_ALL_HOVER.get()).clicked();
                 });
             });
         });
@@ -77,14 +77,15 @@ impl Alarms {
 
     /// Shows the list in `room`.
     pub fn list_ui(&mut self, ctx: &Context, room: Rect) {
-        let window = Window::new(text::alarms::LIST_TITLE).open(&mut self.list).constrain_to(room).collapsible(false);
+        let window =
+            Window::new(text::alarms::LIST_TITLE.get()).open(&mut self.list).constrain_to(room).collapsible(false);
         let size = vec2(560.0, (room.height() - 90.0).min(460.0));
         window.default_pos(room.center_top() + vec2(-280.0, 16.0)).fixed_size(size).show(ctx, |ui| {
-            ui.label(small(text::alarms::LIST_NOTE));
+            ui.label(small(text::alarms::LIST_NOTE.get()));
             ui.add_space(4.0);
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 if self.log.newest_first().next().is_none() {
-                    ui.label(weak(text::alarms::LIST_EMPTY));
+                    ui.label(weak(text::alarms::LIST_EMPTY.get()));
                 }
                 for entry in self.log.newest_first() {
                     entry_ui(ui, entry);
@@ -103,7 +104,7 @@ fn words_ui(ui: &mut Ui, first: &Entry, others: usize, colour: Color32) -> bool 
         ui.set_width(width);
         ui.spacing_mut().item_spacing.y = 1.0;
         let more = if others > 0 { text::alarms::others(others) } else { String::new() };
-        let seen = if first.acknowledged { text::alarms::ACKNOWLEDGED_REMARK } else { "" };
+        let seen = if first.acknowledged { text::alarms::ACKNOWLEDGED_REMARK.get() } else { "" };
         let alarm = &first.alarm;
         let cause =
             text::alarms::pinned(alarm.priority.word(), &alarm.cause, &first.began.utc, &(seen.to_owned() + &more));
@@ -121,10 +122,10 @@ fn entry_ui(ui: &mut Ui, entry: &Entry) {
     let at = |moment: &Moment| {
         moment.loop_s.map_or_else(|| moment.utc.clone(), |loop_s| format!("{} ({loop_s:.1} s)", moment.utc))
     };
-    let until = ended.as_ref().map_or_else(|| text::alarms::NOW.to_owned(), &at);
-    let mut standing = if ended.is_some() { text::alarms::ENDED } else { text::alarms::PRESENT }.to_owned();
+    let until = ended.as_ref().map_or_else(|| text::alarms::NOW.get().to_owned(), &at);
+    let mut standing = if ended.is_some() { text::alarms::ENDED.get() } else { text::alarms::PRESENT.get() }.to_owned();
     if *acknowledged {
-        standing.push_str(text::alarms::ACKNOWLEDGED_REMARK);
+        standing.push_str(text::alarms::ACKNOWLEDGED_REMARK.get());
     }
     let heading = text::alarms::entry(&at(began), &until, alarm.priority.word(), &standing);
     ui.add(Label::new(small(heading)).wrap());

@@ -105,6 +105,7 @@ impl ConsoleApp {
             Action::Tour => self.help.begin_tour(),
             Action::Palette => self.palette.toggle(),
             Action::Light(light) => settings.light = light,
+            Action::Speak(language) => settings.language = language,
             Action::Larger => settings.scale_by(1),
             Action::Smaller => settings.scale_by(-1),
             Action::Size(percent) => settings.scale_percent = percent,
@@ -141,18 +142,18 @@ impl ConsoleApp {
 
     /// The arrangement and the look of the screen, which can be taken back.
     fn look(&self) -> Look {
-        let Settings { layout, light, scale_percent, picture, .. } = &self.settings.now;
-        let (light, scale_percent, picture) = (*light, *scale_percent, *picture);
+        let Settings { layout, light, language, scale_percent, picture, .. } = &self.settings.now;
+        let (light, language, scale_percent, picture) = (*light, *language, *scale_percent, *picture);
         let (extras, traces) = (self.panels.scene.extras, self.panels.forces.view());
-        Look { layout: layout.clone(), light, scale_percent, picture, extras, traces }
+        Look { layout: layout.clone(), light, language, scale_percent, picture, extras, traces }
     }
 
     fn show_as(&mut self, look: Option<Look>) {
         let Some(look) = look else { return };
-        let Look { layout, light, scale_percent, picture, extras, traces } = look;
+        let Look { layout, light, language, scale_percent, picture, extras, traces } = look;
         let settings = &mut self.settings.now;
         (settings.layout, settings.light, settings.scale_percent) = (layout, light, scale_percent);
-        settings.picture = picture;
+        (settings.picture, settings.language) = (picture, language);
         self.panels.scene.extras = extras;
         self.panels.forces.show(traces);
     }

@@ -129,7 +129,7 @@ impl ConsoleApp {
             }
             Saving::Undo(changes) => {
                 let (path, rig) = self.in_force.change_rig(&changes, &self.running.rig, self.settings.folder())?;
-                (rig, path, text::frames::UNDONE.to_owned())
+                (rig, path, text::frames::UNDONE.get().to_owned())
             }
             saving => return Ok((self.live.rig.clone(), self.in_force.save(saving)?)),
         };

@@ -134,7 +134,7 @@ impl ConsoleApp {
         self.checking.saved = Some(match saved {
             Some(Ok(path)) => text::ready::saved(&path),
             Some(Err(error)) => text::ready::not_saved(&chain(&error)),
-            None => text::ready::not_saved(text::calibrations::NO_FOLDER),
+            None => text::ready::not_saved(text::calibrations::NO_FOLDER.get()),
         });
         self.checking.valid = None;
     }

@@ -51,7 +51,7 @@ fn write(folder: Option<&Path>, rig: &str, change: &Change) -> Result<Written, S
     let changed = file.rig().map_err(|error| chain(&error))?;
     let is_built_in = RigConfig::names().any(|name| name == rig);
     // A file of the user's needs no folder.
-    let folder = if is_built_in { folder.ok_or(text::start::NO_FOLDER)? } else { Path::new("") };
+    let folder = if is_built_in { folder.ok_or(text::start::NO_FOLDER.get())? } else { Path::new("") };
     let (path, new_name) = own_copy(&changed, rig, &folder.join("rigs"));
     if let Some(new_name) = new_name {
         file.set("name", new_name);
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn without_a_folder_or_a_file_nothing_is_written_and_the_cause_is_told() {
         let handles = Change::ExchangeSides(PartKind::Handle);
-        assert_eq!(write(None, "emulated", &handles).unwrap_err(), text::start::NO_FOLDER);
+        assert_eq!(write(None, "emulated", &handles).unwrap_err(), text::start::NO_FOLDER.get());
         assert!(write(None, "/no/such/rig.toml", &handles).unwrap_err().contains("/no/such/rig.toml"));
     }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use nima_world::Watched;
 
 use super::{ConsoleApp, WARM_UP};
+use crate::language;
 use crate::{
     console::{
         Options, frames::Meter, in_force::InForce, pictures::Photographer, screenshot, sessions::Sessions,
@@ -25,6 +26,8 @@ impl ConsoleApp {
         }
         self.photographer = self.options.pictures.clone().map(Photographer::new);
         self.settings.now.role = self.options.role.unwrap_or(self.settings.now.role);
+        self.settings.now.language = self.options.language.unwrap_or(self.settings.now.language);
+        self.speak();
         if let Some(which) = self.options.wizard {
             self.open_wizard(which);
         }
@@ -33,6 +36,11 @@ impl ConsoleApp {
         }
         self.leave_when_asked();
         self
+    }
+
+    /// The window's thread speaks the language of the settings; what is told without a window stays English.
+    pub(super) fn speak(&self) {
+        language::set(self.settings.now.language);
     }
 
     /// When the process is asked to end, the loop ends at once, even if the window is blocked, and then the window.

@@ -62,20 +62,20 @@ impl ConsoleApp {
         }
         match action {
             Action::Engage | Action::Release => self.may_step(action),
-            Action::View(_) => Reach::unless(self.is_calibrating().then_some(text::roles::SWITCH_DISABLED_HOVER)),
+            Action::View(_) => Reach::unless(self.is_calibrating().then_some(text::roles::SWITCH_DISABLED_HOVER.get())),
             Action::Rig | Action::Sessions | Action::Studies => self.may_turn_to(action),
             Action::Acknowledge => {
                 let is_quiet = !self.top_bar.alarms.log.has_unseen();
-                Reach::unless(is_quiet.then_some(text::commands::NO_ALARM))
+                Reach::unless(is_quiet.then_some(text::commands::NO_ALARM.get()))
             }
-            Action::Mark => Reach::unless(self.past.is_some().then_some(text::past::BLOCKED)),
+            Action::Mark => Reach::unless(self.past.is_some().then_some(text::past::BLOCKED.get())),
             Action::Keep => {
                 let nothing = self.sessions.shown().is_none();
-                Reach::unless(nothing.then_some(text::commands::NOTHING_RECORDED))
+                Reach::unless(nothing.then_some(text::commands::NOTHING_RECORDED.get()))
             }
-            Action::Undo => Reach::unless((!self.history.can_undo()).then_some(text::commands::NOTHING_TO_UNDO)),
-            Action::Redo => Reach::unless((!self.history.can_redo()).then_some(text::commands::NOTHING_TO_REDO)),
-            Action::PlainPicture => Reach::unless(self.shows_picture_plain().then_some(text::commands::IS_PLAIN)),
+            Action::Undo => Reach::unless((!self.history.can_undo()).then_some(text::commands::NOTHING_TO_UNDO.get())),
+            Action::Redo => Reach::unless((!self.history.can_redo()).then_some(text::commands::NOTHING_TO_REDO.get())),
+            Action::PlainPicture => Reach::unless(self.shows_picture_plain().then_some(text::commands::IS_PLAIN.get())),
             Action::Panel(_) | Action::ResetLayout => Reach::Can.only_if(self.role() == Role::Technician),
             Action::Check | Action::Calibrations | Action::Calibrate(_) | Action::CloseWizard => {
                 self.may_calibrate(action)
@@ -85,7 +85,7 @@ impl ConsoleApp {
             Action::LeavePast => Reach::Can.only_if(self.past.is_some()),
             Action::Play | Action::Step(_) => {
                 let opening = self.past.as_ref().is_some_and(|past| past.live.is_none());
-                Reach::unless(opening.then_some(text::past::OPENING)).only_if(self.past.is_some())
+                Reach::unless(opening.then_some(text::past::OPENING.get())).only_if(self.past.is_some())
             }
             _ => Reach::Can,
         }
@@ -95,14 +95,14 @@ impl ConsoleApp {
         let state = self.live.state();
         let latched = state.is_latched();
         let why = match (action, state) {
-            (Action::Release, _) if !latched => Some(text::commands::NOT_STOPPED),
-            (Action::Engage, _) if latched => Some(text::commands::RELEASE_FIRST),
+            (Action::Release, _) if !latched => Some(text::commands::NOT_STOPPED.get()),
+            (Action::Engage, _) if latched => Some(text::commands::RELEASE_FIRST.get()),
             (Action::Engage, LoopState::Disconnected) => text::calibrations::closed(state),
             (Action::Engage, LoopState::Engaged | LoopState::Ready | LoopState::Clutched) => {
-                Some(text::commands::IS_ENGAGED)
+                Some(text::commands::IS_ENGAGED.get())
             }
-            _ if self.past.is_some() => Some(text::past::BLOCKED),
-            (Action::Engage, _) if self.is_calibrating() => Some(text::start::OPEN_DISABLED_HOVER),
+            _ if self.past.is_some() => Some(text::past::BLOCKED.get()),
+            (Action::Engage, _) if self.is_calibrating() => Some(text::start::OPEN_DISABLED_HOVER.get()),
             _ => None,
         };
         Reach::unless(why)
@@ -110,15 +110,15 @@ impl ConsoleApp {
 
     fn may_turn_to(&self, action: Action) -> Reach {
         let why = if self.past.is_some() {
-            Some(text::past::BLOCKED)
+            Some(text::past::BLOCKED.get())
         } else if self.has_study() && action == Action::Studies {
-            Some(text::commands::STUDY_IS_OPEN)
+            Some(text::commands::STUDY_IS_OPEN.get())
         } else if self.is_calibrating() {
-            Some(text::start::OPEN_DISABLED_HOVER)
+            Some(text::start::OPEN_DISABLED_HOVER.get())
         } else {
             // The page itself tells how far it has come.
             let may_look = action == Action::Rig && !self.start.is_open;
-            (self.starting.is_some() && !may_look).then_some(text::commands::IS_STARTING)
+            (self.starting.is_some() && !may_look).then_some(text::commands::IS_STARTING.get())
         };
         Reach::unless(why)
     }
@@ -145,8 +145,8 @@ impl ConsoleApp {
             _ => (false, false),
         };
         let closed = text::calibrations::closed(self.live.state()).filter(|_| action != Action::Calibrations);
-        let why = is_open.then_some(text::calibrations::IS_OPEN).or(closed);
-        let why = self.past.is_some().then_some(text::past::BLOCKED).or(why);
+        let why = is_open.then_some(text::calibrations::IS_OPEN.get()).or(closed);
+        let why = self.past.is_some().then_some(text::past::BLOCKED.get()).or(why);
         let of_technician = self.role() == Role::Technician && matches!(page, Page::Monitor | Page::Past);
         Reach::unless(why).only_if(is_offered && (is_beside || of_technician))
     }
@@ -158,10 +158,10 @@ impl ConsoleApp {
         let why = match action {
             Action::Draws(_) => {
                 let seen = self.panels_in_view().is_some_and(|panels| panels.scene.is_seen);
-                (!seen).then_some(text::commands::FIELD_IS_HIDDEN)
+                (!seen).then_some(text::commands::FIELD_IS_HIDDEN.get())
             }
             _ if of_technician && !self.settings.now.layout.is_open(Panel::Traces) => {
-                Some(text::commands::PANEL_IS_CLOSED)
+                Some(text::commands::PANEL_IS_CLOSED.get())
             }
             _ => None,
         };
@@ -187,11 +187,11 @@ impl ConsoleApp {
         };
         let runs = matches!(self.live.state(), LoopState::Idle | LoopState::Engaged);
         let why = if !view.is_seen {
-            Some(text::commands::FIELD_IS_HIDDEN)
+            Some(text::commands::FIELD_IS_HIDDEN.get())
         } else if !runs {
-            Some(text::commands::NOT_NOW)
+            Some(text::commands::NOT_NOW.get())
         } else {
-            (action != Action::Drive && !view.is_led()).then_some(text::commands::DRIVE_FIRST)
+            (action != Action::Drive && !view.is_led()).then_some(text::commands::DRIVE_FIRST.get())
         };
         let is_here = match self.page() {
             Page::Trial => true,

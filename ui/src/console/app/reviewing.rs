@@ -107,7 +107,7 @@ impl ConsoleApp {
                 return both_ui(ui, past, smooth);
             }
             let Some(live) = &mut past.live else {
-                let words = past.refused().unwrap_or(text::past::OPENING);
+                let words = past.refused().unwrap_or(text::past::OPENING.get());
                 ui.centered_and_justified(|ui| ui.label(weak(words)));
                 return;
             };

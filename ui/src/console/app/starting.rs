@@ -135,7 +135,7 @@ impl ConsoleApp {
     pub(super) fn begin_changed(&mut self, choice: Choice, undo: Undo) {
         if self.reopen.is_some() {
             undo.take_back();
-            return self.panels.devices.tell(text::devices::not_changed(text::link::ONE_RIG));
+            return self.panels.devices.tell(text::devices::not_changed(text::link::ONE_RIG.get()));
         }
         let before = self.running.clone();
         self.begin(choice, Some(before), None);
@@ -148,7 +148,7 @@ impl ConsoleApp {
     /// Ends the loop and begins to start this choice. What cannot be loaded ends nothing.
     pub(super) fn begin(&mut self, choice: Choice, before: Option<Choice>, because: Option<String>) {
         if self.reopen.is_some() {
-            return self.start.tell(Some(text::link::ONE_RIG.to_owned()));
+            return self.start.tell(Some(text::link::ONE_RIG.get().to_owned()));
         }
         let loaded = RigConfig::load(&choice.rig).and_then(|rig| {
             let scene = Scene::load(&choice.scene)?.mounted_at(&rig)?;
@@ -185,7 +185,7 @@ impl ConsoleApp {
         let Some(starting) = &self.starting else { return };
         let emulators = match starting.emulators.try_recv() {
             Err(TryRecvError::Empty) => return,
-            Err(TryRecvError::Disconnected) => Err(text::start::NO_THREAD.to_owned()),
+            Err(TryRecvError::Disconnected) => Err(text::start::NO_THREAD.get().to_owned()),
             Ok(emulators) => emulators,
         };
         let Some(Starting { choice, rig, scene, before, because, undo, .. }) = self.starting.take() else { return };

@@ -40,8 +40,8 @@ impl ConsoleApp {
     pub(super) fn studies_layout(&mut self, ui: &mut Ui) {
         let held = self.live.state() == LoopState::Engaged && is_real(&self.live.rig);
         let closed = match text::calibrations::closed(self.live.state()) {
-            _ if self.reopen.is_some() => Some(text::studies::NOT_OVER_A_LINE),
-            None if held => Some(text::start::ENGAGED),
+            _ if self.reopen.is_some() => Some(text::studies::NOT_OVER_A_LINE.get()),
+            None if held => Some(text::start::ENGAGED.get()),
             closed => closed,
         };
         let folder = self.settings.folder().map(std::path::Path::to_path_buf);
@@ -99,7 +99,7 @@ impl ConsoleApp {
             }
         } else if wanted.is_starting {
             self.studies.wanted = None;
-            desk.told = Some(text::studies::NOT_STARTED.to_owned());
+            desk.told = Some(text::studies::NOT_STARTED.get().to_owned());
         } else {
             self.studies.wanted = Some(Wanted { is_starting: true, ..wanted });
             self.studies.before.get_or_insert_with(|| self.running.clone());

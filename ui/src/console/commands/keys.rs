@@ -66,9 +66,9 @@ impl Stroke {
         };
         let held = match self.with {
             With::Nothing => "",
-            With::Shift => text::commands::SHIFT,
-            With::Ctrl | With::CtrlAndSign => text::commands::CTRL,
-            With::CtrlShift => text::commands::CTRL_SHIFT,
+            With::Shift => text::commands::SHIFT.get(),
+            With::Ctrl | With::CtrlAndSign => text::commands::CTRL.get(),
+            With::CtrlShift => text::commands::CTRL_SHIFT.get(),
         };
         format!("{held}{key}")
     }

@@ -7,6 +7,7 @@ mod keys;
 mod table;
 
 use super::{desk::Panel, roles::Role, scene3d::extras::Switch, text, wizards::Which};
+use crate::language::Language;
 
 pub(in crate::console) use self::keys::{SIZE, UNDO};
 pub use self::{
@@ -54,6 +55,8 @@ pub enum Action {
     Redo,
     /// Chooses the light or the dark palette.
     Light(bool),
+    /// Chooses the language of the window.
+    Speak(Language),
     /// One step larger.
     Larger,
     /// One step smaller.
@@ -182,17 +185,17 @@ pub enum Place {
 
 impl Place {
     /// Its name.
-    pub const fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
-            Self::Bar => text::commands::AT_BAR,
-            Self::ViewMenu => text::commands::AT_VIEW_MENU,
-            Self::Alarms => text::commands::AT_ALARMS,
-            Self::Calibration => text::commands::AT_CALIBRATION,
-            Self::Traces => text::commands::AT_TRACES,
-            Self::Field => text::commands::AT_FIELD,
-            Self::Picture => text::commands::AT_PICTURE,
-            Self::Past => text::commands::AT_PAST,
-            Self::Keys => text::commands::AT_KEYS,
+            Self::Bar => text::commands::AT_BAR.get(),
+            Self::ViewMenu => text::commands::AT_VIEW_MENU.get(),
+            Self::Alarms => text::commands::AT_ALARMS.get(),
+            Self::Calibration => text::commands::AT_CALIBRATION.get(),
+            Self::Traces => text::commands::AT_TRACES.get(),
+            Self::Field => text::commands::AT_FIELD.get(),
+            Self::Picture => text::commands::AT_PICTURE.get(),
+            Self::Past => text::commands::AT_PAST.get(),
+            Self::Keys => text::commands::AT_KEYS.get(),
         }
     }
 }

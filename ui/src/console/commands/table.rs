@@ -8,6 +8,7 @@ use super::{Action, Entry, Place, SIZE, SIZES_PERCENT, Stroke, UNDO, With};
 use crate::console::{
     desk::Panel, roles::Role, scene3d::extras::Switch, text, text::commands as names, wizards::Which,
 };
+use crate::language::{self, Language};
 
 type Keys = &'static [Stroke];
 
@@ -20,9 +21,20 @@ macro_rules! key {
 
 /// Every command, in the order of the palette.
 pub fn table() -> &'static [Entry] {
-    static TABLE: LazyLock<Vec<Entry>> =
-        LazyLock::new(|| [views(), pages(), screen(), calibration(), traces_and_field(), past(), machine()].concat());
-    &TABLE
+    static ENGLISH: LazyLock<Vec<Entry>> = LazyLock::new(|| made(Language::English));
+    static GERMAN: LazyLock<Vec<Entry>> = LazyLock::new(|| made(Language::German));
+    static PSEUDO: LazyLock<Vec<Entry>> = LazyLock::new(|| made(Language::Pseudo));
+    match language::current() {
+        Language::English => &ENGLISH,
+        Language::German => &GERMAN,
+        Language::Pseudo => &PSEUDO,
+    }
+}
+
+fn made(language: Language) -> Vec<Entry> {
+    language::with(language, || {
+        [views(), pages(), screen(), calibration(), traces_and_field(), past(), machine()].concat()
+    })
 }
 
 fn entry(action: Action, title: impl Into<String>, does: &'static str, keys: Keys, place: Place) -> Entry {
@@ -44,13 +56,13 @@ fn views() -> Vec<Entry> {
 fn pages() -> Vec<Entry> {
     const PALETTE: Keys = &[Stroke { key: Key::P, with: With::Ctrl }];
     vec![
-        entry(Action::Glossary, names::GLOSSARY, names::GLOSSARY_DOES, key!(F4), Place::ViewMenu),
-        entry(Action::Alarms, names::ALARMS, names::ALARMS_DOES, key!(F5), Place::ViewMenu),
-        entry(Action::Rig, names::RIG, names::RIG_DOES, key!(F6), Place::Bar),
-        entry(Action::Sessions, names::SESSIONS, names::SESSIONS_DOES, key!(F7), Place::Bar),
-        entry(Action::Studies, names::STUDIES, names::STUDIES_DOES, key!(F8), Place::Keys),
-        entry(Action::Tour, names::TOUR, names::TOUR_DOES, &[], Place::ViewMenu),
-        entry(Action::Palette, names::PALETTE, names::PALETTE_DOES, PALETTE, Place::ViewMenu),
+        entry(Action::Glossary, names::GLOSSARY.get(), names::GLOSSARY_DOES.get(), key!(F4), Place::ViewMenu),
+        entry(Action::Alarms, names::ALARMS.get(), names::ALARMS_DOES.get(), key!(F5), Place::ViewMenu),
+        entry(Action::Rig, names::RIG.get(), names::RIG_DOES.get(), key!(F6), Place::Bar),
+        entry(Action::Sessions, names::SESSIONS.get(), names::SESSIONS_DOES.get(), key!(F7), Place::Bar),
+        entry(Action::Studies, names::STUDIES.get(), names::STUDIES_DOES.get(), key!(F8), Place::Keys),
+        entry(Action::Tour, names::TOUR.get(), names::TOUR_DOES.get(), &[], Place::ViewMenu),
+        entry(Action::Palette, names::PALETTE.get(), names::PALETTE_DOES.get(), PALETTE, Place::ViewMenu),
     ]
 }
 
@@ -58,27 +70,32 @@ fn screen() -> Vec<Entry> {
     let menu = Place::ViewMenu;
     let [larger, smaller] = SIZE;
     let [undo, redo] = UNDO;
+    // Each in itself: who does not read the present language finds the own one.
+    let languages = Language::CHOICES
+        .map(|one| entry(Action::Speak(one), names::language(one.name()), names::LANGUAGE_DOES.get(), &[], menu));
     let mut entries = vec![
-        entry(Action::Undo, names::UNDO, names::UNDO_DOES, undo, menu),
-        entry(Action::Redo, names::REDO, names::REDO_DOES, redo, menu),
-        entry(Action::Light(false), names::DARK, names::DARK_DOES, &[], menu),
-        entry(Action::Light(true), names::LIGHT, names::LIGHT_DOES, &[], menu),
-        entry(Action::Larger, names::LARGER, names::LARGER_DOES, larger, Place::Keys),
-        entry(Action::Smaller, names::SMALLER, names::SMALLER_DOES, smaller, Place::Keys),
+        entry(Action::Undo, names::UNDO.get(), names::UNDO_DOES.get(), undo, menu),
+        entry(Action::Redo, names::REDO.get(), names::REDO_DOES.get(), redo, menu),
+        entry(Action::Light(false), names::DARK.get(), names::DARK_DOES.get(), &[], menu),
+        entry(Action::Light(true), names::LIGHT.get(), names::LIGHT_DOES.get(), &[], menu),
+        entry(Action::Larger, names::LARGER.get(), names::LARGER_DOES.get(), larger, Place::Keys),
+        entry(Action::Smaller, names::SMALLER.get(), names::SMALLER_DOES.get(), smaller, Place::Keys),
     ];
     entries.extend(
-        SIZES_PERCENT.map(|percent| entry(Action::Size(percent), names::size(percent), names::SIZE_DOES, &[], menu)),
+        SIZES_PERCENT
+            .map(|percent| entry(Action::Size(percent), names::size(percent), names::SIZE_DOES.get(), &[], menu)),
     );
+    entries.extend(languages);
     entries.extend(
         Panel::ALL.map(|panel| entry(Action::Panel(panel), names::panel(panel.title()), panel.meaning(), &[], menu)),
     );
-    let reset = (names::RESET_LAYOUT, text::menu::RESET_LAYOUT_HOVER);
-    let (plain, plain_does) = (text::menu::PICTURE_PLAIN, text::menu::PICTURE_PLAIN_HOVER);
-    let (now, now_does) = (text::menu::FORCES_OF_NOW, text::menu::FORCES_OF_NOW_HOVER);
-    let (records, records_does) = (text::menu::RECORDS_PICTURE, text::menu::RECORDS_PICTURE_HOVER);
+    let reset = (names::RESET_LAYOUT.get(), text::menu::RESET_LAYOUT_HOVER.get());
+    let (plain, plain_does) = (text::menu::PICTURE_PLAIN.get(), text::menu::PICTURE_PLAIN_HOVER.get());
+    let (now, now_does) = (text::menu::FORCES_OF_NOW.get(), text::menu::FORCES_OF_NOW_HOVER.get());
+    let (records, records_does) = (text::menu::RECORDS_PICTURE.get(), text::menu::RECORDS_PICTURE_HOVER.get());
     entries.extend([
         entry(Action::ResetLayout, reset.0, reset.1, &[], menu),
-        entry(Action::Sound, text::menu::SOUND, text::menu::SOUND_HOVER, &[], menu),
+        entry(Action::Sound, text::menu::SOUND.get(), text::menu::SOUND_HOVER.get(), &[], menu),
         entry(Action::ForcesOfNow, now, now_does, &[], menu),
         entry(Action::PlainPicture, plain, plain_does, &[], menu),
         entry(Action::RecordsPicture, records, records_does, &[], menu),
@@ -88,10 +105,10 @@ fn screen() -> Vec<Entry> {
 
 fn calibration() -> Vec<Entry> {
     let at = Place::Calibration;
-    let (back, back_does) = (text::calibrations::CLOSE_WIZARD, text::calibrations::CLOSE_WIZARD_HOVER);
+    let (back, back_does) = (text::calibrations::CLOSE_WIZARD.get(), text::calibrations::CLOSE_WIZARD_HOVER.get());
     let mut entries = vec![
-        entry(Action::Check, text::ready::OPEN, text::ready::MEANING, &[], at),
-        entry(Action::Calibrations, text::overview::OPEN, text::overview::MEANING, &[], at),
+        entry(Action::Check, text::ready::OPEN.get(), text::ready::MEANING.get(), &[], at),
+        entry(Action::Calibrations, text::overview::OPEN.get(), text::overview::MEANING.get(), &[], at),
     ];
     entries.extend(Which::ALL.map(|which| {
         let title = text::calibrations::calibrate(&which.name().to_lowercase());
@@ -102,25 +119,25 @@ fn calibration() -> Vec<Entry> {
 }
 
 fn traces_and_field() -> Vec<Entry> {
-    let (last, last_does) = (text::forces::LAST_TEN_SECONDS, text::forces::LAST_TEN_SECONDS_HOVER);
+    let (last, last_does) = (text::forces::LAST_TEN_SECONDS.get(), text::forces::LAST_TEN_SECONDS_HOVER.get());
     let mut entries = vec![
-        entry(Action::Mark, names::MARK, names::MARK_DOES, key!(E), Place::ViewMenu),
-        entry(Action::Keep, names::KEEP, names::KEEP_DOES, key!(K), Place::Bar),
-        entry(Action::Pause, names::PAUSE, text::forces::PAUSE_HOVER, &[], Place::Traces),
+        entry(Action::Mark, names::MARK.get(), names::MARK_DOES.get(), key!(E), Place::ViewMenu),
+        entry(Action::Keep, names::KEEP.get(), names::KEEP_DOES.get(), key!(K), Place::Bar),
+        entry(Action::Pause, names::PAUSE.get(), text::forces::PAUSE_HOVER.get(), &[], Place::Traces),
         entry(Action::LastTenSeconds, last, last_does, &[], Place::Traces),
     ];
     entries.extend(
         Switch::ALL.map(|switch| entry(Action::Draws(switch), switch.name(), switch.meaning(), &[], Place::Field)),
     );
     entries.extend([
-        entry(Action::Drive, names::DRIVE, names::DRIVE_DOES, key!(M), Place::Field),
-        entry(Action::OtherHand, names::OTHER_HAND, names::OTHER_HAND_DOES, key!(H), Place::Field),
-        entry(Action::Jaws, names::JAWS, names::JAWS_DOES, key!(G), Place::Field),
-        entry(Action::MarkPlace, names::MARK_PLACE, names::MARK_PLACE_DOES, key!(X), Place::Field),
-        entry(Action::EndTrial, names::END_TRIAL, names::END_TRIAL_DOES, key!(D), Place::Field),
-        entry(Action::BeginTrial, names::BEGIN_TRIAL, names::BEGIN_TRIAL_DOES, key!(N), Place::Field),
-        entry(Action::HideForces, names::HIDE_FORCES, names::HIDE_FORCES_DOES, key!(O), Place::Picture),
-        entry(Action::Lens, names::LENS, names::LENS_DOES, key!(V), Place::Picture),
+        entry(Action::Drive, names::DRIVE.get(), names::DRIVE_DOES.get(), key!(M), Place::Field),
+        entry(Action::OtherHand, names::OTHER_HAND.get(), names::OTHER_HAND_DOES.get(), key!(H), Place::Field),
+        entry(Action::Jaws, names::JAWS.get(), names::JAWS_DOES.get(), key!(G), Place::Field),
+        entry(Action::MarkPlace, names::MARK_PLACE.get(), names::MARK_PLACE_DOES.get(), key!(X), Place::Field),
+        entry(Action::EndTrial, names::END_TRIAL.get(), names::END_TRIAL_DOES.get(), key!(D), Place::Field),
+        entry(Action::BeginTrial, names::BEGIN_TRIAL.get(), names::BEGIN_TRIAL_DOES.get(), key!(N), Place::Field),
+        entry(Action::HideForces, names::HIDE_FORCES.get(), names::HIDE_FORCES_DOES.get(), key!(O), Place::Picture),
+        entry(Action::Lens, names::LENS.get(), names::LENS_DOES.get(), key!(V), Place::Picture),
     ]);
     entries
 }
@@ -130,12 +147,12 @@ fn past() -> Vec<Entry> {
         [&[Stroke { key: Key::ArrowLeft, with: With::Shift }], &[Stroke { key: Key::ArrowRight, with: With::Shift }]];
     let at = Place::Past;
     vec![
-        entry(Action::LeavePast, names::LEAVE_PAST, names::LEAVE_PAST_DOES, key!(L), at),
-        entry(Action::Play, names::PLAY, names::PLAY_DOES, key!(P), at),
-        entry(Action::Step(-1000), names::BACK, names::PLAY_DOES, key!(ArrowLeft), at),
-        entry(Action::Step(1000), names::ON, names::PLAY_DOES, key!(ArrowRight), at),
-        entry(Action::Step(-10), names::BACK_FINE, names::PLAY_DOES, FINE[0], at),
-        entry(Action::Step(10), names::ON_FINE, names::PLAY_DOES, FINE[1], at),
+        entry(Action::LeavePast, names::LEAVE_PAST.get(), names::LEAVE_PAST_DOES.get(), key!(L), at),
+        entry(Action::Play, names::PLAY.get(), names::PLAY_DOES.get(), key!(P), at),
+        entry(Action::Step(-1000), names::BACK.get(), names::PLAY_DOES.get(), key!(ArrowLeft), at),
+        entry(Action::Step(1000), names::ON.get(), names::PLAY_DOES.get(), key!(ArrowRight), at),
+        entry(Action::Step(-10), names::BACK_FINE.get(), names::PLAY_DOES.get(), FINE[0], at),
+        entry(Action::Step(10), names::ON_FINE.get(), names::PLAY_DOES.get(), FINE[1], at),
     ]
 }
 
@@ -143,10 +160,10 @@ fn past() -> Vec<Entry> {
 fn machine() -> Vec<Entry> {
     const STOP: Keys = &[Stroke::plain(Key::Space), Stroke::plain(Key::Escape)];
     vec![
-        entry(Action::Acknowledge, names::ACKNOWLEDGE, names::ACKNOWLEDGE_DOES, key!(A), Place::Alarms),
-        entry(Action::Stop, names::STOP, names::STOP_DOES, STOP, Place::Bar),
-        entry(Action::Release, names::RELEASE, names::RELEASE_DOES, &[], Place::Bar),
-        entry(Action::Engage, names::ENGAGE, names::ENGAGE_DOES, &[], Place::Bar),
+        entry(Action::Acknowledge, names::ACKNOWLEDGE.get(), names::ACKNOWLEDGE_DOES.get(), key!(A), Place::Alarms),
+        entry(Action::Stop, names::STOP.get(), names::STOP_DOES.get(), STOP, Place::Bar),
+        entry(Action::Release, names::RELEASE.get(), names::RELEASE_DOES.get(), &[], Place::Bar),
+        entry(Action::Engage, names::ENGAGE.get(), names::ENGAGE_DOES.get(), &[], Place::Bar),
     ]
 }
 

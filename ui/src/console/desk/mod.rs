@@ -52,7 +52,7 @@ impl Desk {
         }
         let Some((tree, shown, at)) = &mut self.shown else { return };
         if tree.active_tiles().is_empty() {
-            ui.centered_and_justified(|ui| ui.label(weak(text::desk::ALL_CLOSED)));
+            ui.centered_and_justified(|ui| ui.label(weak(text::desk::ALL_CLOSED.get())));
             return;
         }
         let mut tiles =
@@ -123,7 +123,7 @@ impl Behavior<Panel> for Contents<'_> {
             focus_ring(&tab.ctx, &tab);
         }
         let Some(panel) = tiles.get_pane(&tile) else { return tab };
-        tab.on_hover_text(format!("{}\n{}", panel.meaning(), text::desk::DRAG_HOVER))
+        tab.on_hover_text(format!("{}\n{}", panel.meaning(), text::desk::DRAG_HOVER.get()))
     }
 
     fn top_bar_right_ui(&mut self, tiles: &Tiles<Panel>, ui: &mut Ui, _tile: TileId, tabs: &Tabs, _scroll: &mut f32) {

@@ -55,40 +55,40 @@ impl Panel {
     ];
 
     /// Title on its tab and in the menu.
-    pub const fn title(self) -> &'static str {
+    pub fn title(self) -> &'static str {
         match self {
-            Self::Field => text::desk::FIELD,
-            Self::Traces => text::desk::TRACES,
-            Self::ForceSpace => text::desk::FORCE_SPACE,
-            Self::Feedback => text::desk::FEEDBACK,
-            Self::Devices => text::desk::DEVICES,
-            Self::Calibrations => text::desk::CALIBRATION,
-            Self::Gates => text::desk::WHY_NO_FORCE,
-            Self::Safety => text::desk::SAFETY,
-            Self::Horizon => text::desk::ERROR_AT_THE_HORIZON,
-            Self::Degrees => text::desk::DEGREES,
-            Self::Timing => text::desk::TIMING,
-            Self::Link => text::desk::LINK,
-            Self::Tradeoff => text::desk::TRADE_OFF,
+            Self::Field => text::desk::FIELD.get(),
+            Self::Traces => text::desk::TRACES.get(),
+            Self::ForceSpace => text::desk::FORCE_SPACE.get(),
+            Self::Feedback => text::desk::FEEDBACK.get(),
+            Self::Devices => text::desk::DEVICES.get(),
+            Self::Calibrations => text::desk::CALIBRATION.get(),
+            Self::Gates => text::desk::WHY_NO_FORCE.get(),
+            Self::Safety => text::desk::SAFETY.get(),
+            Self::Horizon => text::desk::ERROR_AT_THE_HORIZON.get(),
+            Self::Degrees => text::desk::DEGREES.get(),
+            Self::Timing => text::desk::TIMING.get(),
+            Self::Link => text::desk::LINK.get(),
+            Self::Tradeoff => text::desk::TRADE_OFF.get(),
         }
     }
 
     /// Its purpose, in a sentence or two.
-    pub const fn meaning(self) -> &'static str {
+    pub fn meaning(self) -> &'static str {
         match self {
-            Self::Field => text::desk::FIELD_HOVER,
-            Self::Traces => text::desk::TRACES_HOVER,
-            Self::ForceSpace => text::desk::FORCE_SPACE_HOVER,
-            Self::Feedback => text::desk::FEEDBACK_HOVER,
-            Self::Devices => text::desk::DEVICES_HOVER,
-            Self::Calibrations => text::desk::CALIBRATION_HOVER,
-            Self::Gates => text::desk::WHY_NO_FORCE_HOVER,
-            Self::Safety => text::desk::SAFETY_HOVER,
-            Self::Horizon => text::desk::ERROR_AT_THE_HORIZON_HOVER,
-            Self::Degrees => text::desk::DEGREES_HOVER,
-            Self::Timing => text::desk::TIMING_HOVER,
-            Self::Link => text::desk::LINK_HOVER,
-            Self::Tradeoff => text::desk::TRADE_OFF_HOVER,
+            Self::Field => text::desk::FIELD_HOVER.get(),
+            Self::Traces => text::desk::TRACES_HOVER.get(),
+            Self::ForceSpace => text::desk::FORCE_SPACE_HOVER.get(),
+            Self::Feedback => text::desk::FEEDBACK_HOVER.get(),
+            Self::Devices => text::desk::DEVICES_HOVER.get(),
+            Self::Calibrations => text::desk::CALIBRATION_HOVER.get(),
+            Self::Gates => text::desk::WHY_NO_FORCE_HOVER.get(),
+            Self::Safety => text::desk::SAFETY_HOVER.get(),
+            Self::Horizon => text::desk::ERROR_AT_THE_HORIZON_HOVER.get(),
+            Self::Degrees => text::desk::DEGREES_HOVER.get(),
+            Self::Timing => text::desk::TIMING_HOVER.get(),
+            Self::Link => text::desk::LINK_HOVER.get(),
+            Self::Tradeoff => text::desk::TRADE_OFF_HOVER.get(),
         }
     }
 

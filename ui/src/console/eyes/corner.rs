@@ -38,7 +38,7 @@ impl Eyes {
         if self.shown.as_ref().is_none_or(|(at, _)| now.duration_since(*at) >= FIGURES_EVERY) {
             let age = look.age.unwrap_or_default();
             let figures = if look.standing == Standing::Still {
-                text::eyes::STILL.to_owned()
+                text::eyes::STILL.get().to_owned()
             } else if self.projector.is_some() {
                 text::eyes::recorded(age)
             } else {
@@ -48,17 +48,17 @@ impl Eyes {
         }
         let has_lens = self.wanted.as_ref().is_some_and(|wanted| wanted.camera.is_some());
         let forces = match (camera, self.hides_forces, self.off_px()) {
-            (None, ..) if self.mount.is_some() => text::eyes::NO_MARKER.to_owned(),
-            (None, ..) if has_lens => text::eyes::NO_PLACE.to_owned(),
-            (None, ..) => text::eyes::NO_CAMERA.to_owned(),
+            (None, ..) if self.mount.is_some() => text::eyes::NO_MARKER.get().to_owned(),
+            (None, ..) if has_lens => text::eyes::NO_PLACE.get().to_owned(),
+            (None, ..) => text::eyes::NO_CAMERA.get().to_owned(),
             // Where the picture is not of now, they would be at a wrong place.
             _ if !fits => String::new(),
-            (_, true, _) => text::eyes::FORCES_HIDDEN.to_owned(),
+            (_, true, _) => text::eyes::FORCES_HIDDEN.get().to_owned(),
             (_, false, Some(off_px)) => text::eyes::forces_off(off_px),
             (_, false, None) if self.settings.forces_of_now && self.projector.is_none() => {
-                text::eyes::FORCES_AHEAD.to_owned()
+                text::eyes::FORCES_AHEAD.get().to_owned()
             }
-            (_, false, None) => text::eyes::FORCES_DRAWN.to_owned(),
+            (_, false, None) => text::eyes::FORCES_DRAWN.get().to_owned(),
         };
         let zoom = if self.aim.is_zoomed() { text::eyes::zoomed(self.aim.zoom) } else { String::new() };
         let figures = self.shown.as_ref().map(|(_, figures)| figures.as_str()).unwrap_or_default();
@@ -66,7 +66,7 @@ impl Eyes {
         let weak = theme::DARK.text_weak;
         let is_wanted = self.wanted.as_ref().is_some_and(|wanted| wanted.record);
         let is_missing = is_wanted && self.feed.as_ref().is_some_and(|feed| !feed.is_recordable());
-        let unrecorded = if is_missing { text::eyes::NOT_RECORDED } else { "" };
+        let unrecorded = if is_missing { text::eyes::NOT_RECORDED.get() } else { "" };
         let lines = [
             (figures, 15.0, theme::DARK.text),
             (forces.as_str(), 13.0, weak),

@@ -80,11 +80,11 @@ pub(super) fn told(view: Option<StereoView>, endoscope: &Endoscope) -> &'static 
     match view {
         None => "",
         Some(StereoView::Right) if endoscope.camera.is_some() && endoscope.baseline_m.is_none() => {
-            text::eyes::RIGHT_WITHOUT_FORCES
+            text::eyes::RIGHT_WITHOUT_FORCES.get()
         }
-        Some(StereoView::Left) => text::eyes::LEFT_HALF,
-        Some(StereoView::Right) => text::eyes::RIGHT_HALF,
-        Some(StereoView::Both) => text::eyes::BOTH_HALVES,
+        Some(StereoView::Left) => text::eyes::LEFT_HALF.get(),
+        Some(StereoView::Right) => text::eyes::RIGHT_HALF.get(),
+        Some(StereoView::Both) => text::eyes::BOTH_HALVES.get(),
     }
 }
 
@@ -126,7 +126,7 @@ mod tests {
         endoscope.baseline_m = None;
         let alone = halves(area, [2560, 720], &endoscope, of(Some(StereoView::Right)), Some(&camera));
         assert!(alone.len() == 1 && alone[0].camera.is_none());
-        assert_eq!(told(Some(StereoView::Right), &endoscope), text::eyes::RIGHT_WITHOUT_FORCES);
+        assert_eq!(told(Some(StereoView::Right), &endoscope), text::eyes::RIGHT_WITHOUT_FORCES.get());
         let mono = halves(area, [1280, 720], &endoscope, of(None), Some(&camera));
         assert!(mono.len() == 1 && mono[0].camera == Some(camera));
     }

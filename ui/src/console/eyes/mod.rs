@@ -191,12 +191,12 @@ impl Eyes {
     /// What is wrong, and what to do; how it stands and nothing, if all is well.
     fn standing_told(&self, standing: &Standing) -> [String; 2] {
         if let Some(refused) = &self.refused {
-            return [refused.clone(), text::eyes::REFUSED_CURE.to_owned()];
+            return [refused.clone(), text::eyes::REFUSED_CURE.get().to_owned()];
         }
         match standing {
-            Standing::Opening => [text::eyes::WAITING.to_owned(), String::new()],
-            Standing::Live => [text::eyes::LIVE.to_owned(), String::new()],
-            Standing::Still => [text::eyes::STILL.to_owned(), String::new()],
+            Standing::Opening => [text::eyes::WAITING.get().to_owned(), String::new()],
+            Standing::Live => [text::eyes::LIVE.get().to_owned(), String::new()],
+            Standing::Still => [text::eyes::STILL.get().to_owned(), String::new()],
             Standing::Wrong(wrong) => wrong_told(wrong),
             Standing::Lost(trouble) => [text::eyes::lost(&trouble.to_string()), trouble.cure().to_owned()],
         }
@@ -286,7 +286,7 @@ impl Eyes {
         projector.show(tone, live.ticks.iter().flatten().map(|tick| tick.t_s).fold(0.0, f64::max));
         let nothing =
             |words: String| Seen { look: None, nothing: Some([words, String::new()]), poses: None, world_from_n: None };
-        let Some(found) = projector.found() else { return nothing(text::eyes::SEARCHING.to_owned()) };
+        let Some(found) = projector.found() else { return nothing(text::eyes::SEARCHING.get().to_owned()) };
         match found.look() {
             Ok(look) => {
                 let (poses, world_from_n) = (Some(found.poses), found.world_from_n);
@@ -341,11 +341,11 @@ fn trocar(live: &Live, side: Side) -> Option<Vector3<f64>> {
 
 pub(in crate::console) fn wrong_told(wrong: &Wrong) -> [String; 2] {
     let (words, cure) = match wrong {
-        Wrong::Frozen(stood) => (text::eyes::frozen(*stood), text::eyes::FROZEN_CURE),
-        Wrong::Black => (text::eyes::BLACK.to_owned(), text::eyes::BLACK_CURE),
-        Wrong::Late(late) => (text::eyes::late(*late), text::eyes::LATE_CURE),
-        Wrong::Damaged(damage) => (text::eyes::damaged(&damage.to_string()), text::eyes::DAMAGED_CURE),
-        Wrong::Size(has, wanted) => (text::eyes::size(*has, *wanted), text::eyes::SIZE_CURE),
+        Wrong::Frozen(stood) => (text::eyes::frozen(*stood), text::eyes::FROZEN_CURE.get()),
+        Wrong::Black => (text::eyes::BLACK.get().to_owned(), text::eyes::BLACK_CURE.get()),
+        Wrong::Late(late) => (text::eyes::late(*late), text::eyes::LATE_CURE.get()),
+        Wrong::Damaged(damage) => (text::eyes::damaged(&damage.to_string()), text::eyes::DAMAGED_CURE.get()),
+        Wrong::Size(has, wanted) => (text::eyes::size(*has, *wanted), text::eyes::SIZE_CURE.get()),
     };
     [words, cure.to_owned()]
 }

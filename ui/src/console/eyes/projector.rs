@@ -23,6 +23,7 @@ use super::{
     poses::Pose,
 };
 use crate::console::{chain, text};
+use crate::language;
 
 /// The tip of a picture is that of the last tick before it, within this time, ns.
 const TICK_NS: u64 = 20_000_000;
@@ -83,7 +84,7 @@ impl Projector {
             }
         };
         // If no thread can be created, there is no picture.
-        Builder::new().name("projector".to_owned()).spawn(work).ok();
+        Builder::new().name("projector".to_owned()).spawn(language::carried(work)).ok();
         Self { wishes, asked: (Tone::default(), f64::NAN), found }
     }
 
@@ -151,7 +152,7 @@ impl Stream {
         let damaged = |reason: String| Damage::Undecodable { reason };
         let units = pictures.leading_to(time_ns, self.stands_ns, h264::is_key);
         let units = units.map_err(|error| damaged(chain(&error)))?;
-        let mut shown = Err(damaged(text::eyes::BASE_MISSING.to_owned()));
+        let mut shown = Err(damaged(text::eyes::BASE_MISSING.get().to_owned()));
         self.stands_ns = None;
         for (left, unit) in (0..units.len()).rev().zip(&units) {
             match self.decoder.take(&unit.data, h264::is_key(&unit.data), left == 0) {

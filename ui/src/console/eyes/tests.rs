@@ -92,7 +92,7 @@ fn plates(tips: &[Pos2]) -> Vec<Rect> {
     theme::apply(&ctx);
     let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
         let painter = ui.ctx().layer_painter(egui::LayerId::background()).with_clip_rect(view);
-        let cure = text::eyes::FROZEN_CURE;
+        let cure = text::eyes::FROZEN_CURE.get();
         wrong_ui(&painter, view, tips, [&text::eyes::frozen(Duration::from_secs(2)), cure], Color32::RED);
     });
     output.textures_delta.clear();

@@ -73,9 +73,10 @@ impl OfSide {
         let (Some(store), Bound::To(wrist)) = (store, &this.bound) else { return this };
         let WristId { serial_number, tool } = wrist;
         let (now, bad) = (SystemTime::now(), &mut this.unusable);
-        this.tip_force = usable(text::calibrations::TIP_FORCE, kept_model(store, serial_number, tool, now), bad);
-        this.correspondence = usable(text::calibrations::CORRESPONDENCE, store.load(serial_number, tool, now), bad);
-        this.gravity = usable(text::calibrations::GRAVITY, store.load(serial_number, tool, now), bad);
+        this.tip_force = usable(text::calibrations::TIP_FORCE.get(), kept_model(store, serial_number, tool, now), bad);
+        this.correspondence =
+            usable(text::calibrations::CORRESPONDENCE.get(), store.load(serial_number, tool, now), bad);
+        this.gravity = usable(text::calibrations::GRAVITY.get(), store.load(serial_number, tool, now), bad);
         this.drift = this.gravity.as_ref().map(|Loaded { record, .. }| {
             (DriftCheck::new(record.model, record.drift_limit_n(), StillSettings::default()), String::new())
         });
@@ -125,10 +126,10 @@ impl OfSide {
                     .map_or_else(String::new, |check| text::overview::newton(check.mae_n.iter().sum::<f64>() / 3.0)),
             }
         });
-        let of_correspondence = correspondence.as_ref().map(|_| text::overview::FOR_TRAINING_ONLY.to_owned());
+        let of_correspondence = correspondence.as_ref().map(|_| text::overview::FOR_TRAINING_ONLY.get().to_owned());
         let of_tip_force = tip_force.as_ref().map(|_| match self.in_use.shares() {
             Some(shares) => text::overview::in_use(shares.outside, shares.without),
-            None => text::overview::NOT_USED.to_owned(),
+            None => text::overview::NOT_USED.get().to_owned(),
         });
         [
             (Which::Gravity, gravity, bias),
@@ -160,9 +161,9 @@ impl OfSide {
     pub(super) fn lacks(&self) -> Vec<&'static str> {
         let correspondence = self.correspondence.is_some() || self.tip_force.is_some();
         let needed = [
-            (text::calibrations::GRAVITY, self.gravity.is_some()),
-            (text::calibrations::CORRESPONDENCE, correspondence),
-            (text::calibrations::TIP_FORCE, self.tip_force.is_some()),
+            (text::calibrations::GRAVITY.get(), self.gravity.is_some()),
+            (text::calibrations::CORRESPONDENCE.get(), correspondence),
+            (text::calibrations::TIP_FORCE.get(), self.tip_force.is_some()),
         ];
         needed.into_iter().filter(|(_, there)| !there).map(|(name, _)| name).collect()
     }
@@ -214,7 +215,7 @@ impl OfSide {
         let tip_force = model.map(|model| TipForce::new(model, fallback)).transpose();
         Calibrations {
             gravity: self.gravity.as_ref().map(|loaded| loaded.record.model),
-            tip_force: usable(text::calibrations::TIP_FORCE, tip_force, &mut self.unusable),
+            tip_force: usable(text::calibrations::TIP_FORCE.get(), tip_force, &mut self.unusable),
             gravity_check: self.gravity.as_ref().map(|loaded| GravityCheck::of(&loaded.record)),
         }
     }
@@ -230,7 +231,7 @@ impl OfSide {
                 path
             }
             Saving::Frame(_) | Saving::Camera(_) | Saving::Undo(_) => {
-                return Err(text::calibrations::NOT_OF_A_SENSOR.to_owned());
+                return Err(text::calibrations::NOT_OF_A_SENSOR.get().to_owned());
             }
         };
         self.unusable.clear();
@@ -242,18 +243,20 @@ impl OfSide {
         let of_side = |words: String| side.map_or_else(|| words.clone(), |side| format!("{side}: {words}"));
         let wrist = match &self.bound {
             Bound::Nothing => return Vec::new(),
-            Bound::Waiting => return vec![of_side(text::calibrations::SENSOR_NOT_CONNECTED.to_owned())],
+            Bound::Waiting => return vec![of_side(text::calibrations::SENSOR_NOT_CONNECTED.get().to_owned())],
             Bound::Nameless(why) => return vec![of_side((*why).to_owned())],
             Bound::To(wrist) => wrist,
         };
         let gravity =
-            self.gravity.as_ref().map_or_else(|| text::calibrations::GRAVITY_NONE.to_owned(), line_of_gravity);
+            self.gravity.as_ref().map_or_else(|| text::calibrations::GRAVITY_NONE.get().to_owned(), line_of_gravity);
         let correspondence = self
             .correspondence
             .as_ref()
-            .map_or_else(|| text::calibrations::CORRESPONDENCE_NONE.to_owned(), line_of_correspondence);
-        let tip_force =
-            self.tip_force.as_ref().map_or_else(|| text::calibrations::TIP_FORCE_NONE.to_owned(), line_of_tip_force);
+            .map_or_else(|| text::calibrations::CORRESPONDENCE_NONE.get().to_owned(), line_of_correspondence);
+        let tip_force = self
+            .tip_force
+            .as_ref()
+            .map_or_else(|| text::calibrations::TIP_FORCE_NONE.get().to_owned(), line_of_tip_force);
         let bound_to = text::calibrations::bound_to(&wrist.serial_number, &wrist.tool);
         let mut lines = vec![of_side(bound_to), gravity];
         lines.extend(self.drift.as_ref().map(line_of_drift));
@@ -310,7 +313,7 @@ fn line_of_correspondence(loaded: &Loaded<CorrespondenceRecord>) -> String {
 
 fn line_of_tip_force(loaded: &Loaded<Model>) -> String {
     let origin = &loaded.record.origin;
-    let Some(check) = &origin.check else { return text::calibrations::TIP_FORCE_UNCHECKED.to_owned() };
+    let Some(check) = &origin.check else { return text::calibrations::TIP_FORCE_UNCHECKED.get().to_owned() };
     let error_n = check.mae_n.iter().sum::<f64>() / 3.0;
     let remarks = remarks(loaded.age, check.judgement.override_by.as_deref());
     text::calibrations::tip_force(day_of(&origin.date), origin.rows, error_n, &remarks)
@@ -329,7 +332,7 @@ fn remarks(age: Age, override_by: Option<&str>) -> String {
     let age = match age {
         Age::Fresh => String::new(),
         Age::Old { days } => text::calibrations::days_old(days),
-        Age::Future => text::calibrations::REMARK_FUTURE_DATE.to_owned(),
+        Age::Future => text::calibrations::REMARK_FUTURE_DATE.get().to_owned(),
     };
     let overridden = override_by.map_or_else(String::new, text::calibrations::not_proven);
     age + &overridden

@@ -123,9 +123,9 @@ impl From<FrameKept> for Kept {
 
 /// Whether the rig file still has what the calibration wrote into it.
 fn in_file(kept: &FrameKept, file: Option<&RigFile>) -> String {
-    let Some(file) = file.filter(|_| !kept.rig.is_empty()) else { return text::overview::NOT_WATCHED.to_owned() };
+    let Some(file) = file.filter(|_| !kept.rig.is_empty()) else { return text::overview::NOT_WATCHED.get().to_owned() };
     let same = kept.rig.iter().all(|change| file.value(&change.key) == change.after);
-    if same { text::overview::IN_FILE } else { text::overview::OTHER_IN_FILE }.to_owned()
+    if same { text::overview::IN_FILE.get() } else { text::overview::OTHER_IN_FILE.get() }.to_owned()
 }
 
 /// What the last ready check has found of this, if it was made after the calibration of this date.
@@ -150,7 +150,7 @@ fn day(date: &str) -> &str {
 /// When it was made and how old it is.
 fn made_words(kept: &Kept) -> String {
     let age = match kept.age {
-        Age::Future => text::overview::FUTURE.to_owned(),
+        Age::Future => text::overview::FUTURE.get().to_owned(),
         Age::Fresh | Age::Old { .. } => {
             days_since(&kept.date, SystemTime::now()).map_or_else(String::new, text::overview::days)
         }
@@ -160,7 +160,7 @@ fn made_words(kept: &Kept) -> String {
 
 /// Its verdict and its error, or who has overridden the verdict.
 fn verdict_words(kept: &Kept) -> String {
-    let Some(judgement) = &kept.judgement else { return text::overview::UNCHECKED.to_owned() };
+    let Some(judgement) = &kept.judgement else { return text::overview::UNCHECKED.get().to_owned() };
     let words = text::overview::verdict(judgement.verdict.words(), &kept.error);
     judgement.override_by.as_ref().map_or_else(|| words.clone(), |name| text::overview::overridden(&words, name))
 }

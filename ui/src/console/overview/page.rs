@@ -15,17 +15,17 @@ const WIDTHS: [f32; 3] = [150.0, 260.0, 260.0];
 
 /// Draws the page; returns the calibration that is to be made. With a reason in `closed` none can be.
 pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], closed: Option<&str>) -> Option<Wanted> {
-    ui.label(RichText::new(text::overview::TITLE).font(theme::strong(22.0)));
-    ui.label(small(text::overview::MEANING));
+    ui.label(RichText::new(text::overview::TITLE.get()).font(theme::strong(22.0)));
+    ui.label(small(text::overview::MEANING.get()));
     ui.add_space(theme::GAP);
     if arms.is_empty() {
-        ui.label(text::calibrations::NOT_NEEDED);
+        ui.label(text::calibrations::NOT_NEEDED.get());
     }
     let mut wish = following_ui(ui, arms, closed);
     for arm in arms {
         let name = side_name(arm.side);
         let head = arm.wrist.as_ref().map_or_else(
-            || text::overview::of_unknown(name, text::calibrations::SENSOR_NOT_CONNECTED),
+            || text::overview::of_unknown(name, text::calibrations::SENSOR_NOT_CONNECTED.get()),
             |wrist| text::overview::of_arm(name, &wrist.serial_number, &wrist.tool),
         );
         ui.label(RichText::new(head).font(theme::strong(15.0)));
@@ -34,8 +34,12 @@ pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], closed: Option<&str>) -> 
         }
         Grid::new(("overview", name)).num_columns(6).spacing(vec2(14.0, 6.0)).show(ui, |ui| {
             ui.label("");
-            let [calibration, made, verdict, since] =
-                [text::overview::CALIBRATION, text::overview::MADE, text::overview::VERDICT, text::overview::SINCE];
+            let [calibration, made, verdict, since] = [
+                text::overview::CALIBRATION.get(),
+                text::overview::MADE.get(),
+                text::overview::VERDICT.get(),
+                text::overview::SINCE.get(),
+            ];
             for words in [calibration, made, verdict, since] {
                 ui.label(small(words));
             }
@@ -58,7 +62,7 @@ fn following_ui(ui: &mut Ui, arms: &[OfArm], closed: Option<&str>) -> Option<Wan
     let name = RichText::new(GoOn::Calibrate(wanted).words()).font(theme::strong(15.0));
     let free = closed.is_none();
     let button = ui.add_enabled(free, next_button(name, free).min_size(vec2(300.0, 34.0)));
-    ui.label(small(closed.unwrap_or(text::calibrations::SETS_IDLE)));
+    ui.label(small(closed.unwrap_or(text::calibrations::SETS_IDLE.get())));
     ui.add_space(theme::GAP);
     button.on_disabled_hover_text(closed.unwrap_or_default()).clicked().then_some(wanted)
 }
@@ -74,7 +78,7 @@ fn line_ui(ui: &mut Ui, line: &Line, arm: &str, closed: Option<&str>) -> bool {
     ui.label(line.wanted.name());
     let words = match &line.kept {
         Ok(Some(kept)) => [made_words(kept), verdict_words(kept), line.since.clone()],
-        Ok(None) => [text::overview::NEVER.to_owned(), String::new(), String::new()],
+        Ok(None) => [text::overview::NEVER.get().to_owned(), String::new(), String::new()],
         Err(why) => [String::new(), why.clone(), String::new()],
     };
     for (words, width) in words.into_iter().zip(WIDTHS) {
@@ -83,7 +87,7 @@ fn line_ui(ui: &mut Ui, line: &Line, arm: &str, closed: Option<&str>) -> bool {
             ui.add(Label::new(words).wrap());
         });
     }
-    let verb = if line.kept == Ok(None) { text::overview::MAKE } else { text::overview::REDO };
+    let verb = if line.kept == Ok(None) { text::overview::MAKE.get() } else { text::overview::REDO.get() };
     let free = closed.is_none();
     let button = ui.add_enabled(free, Button::new(verb).min_size(vec2(84.0, 24.0)));
     let name = text::overview::button(verb, arm, &line.wanted.name().to_lowercase());

@@ -72,13 +72,13 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
             Button::selectable(is_open, text).frame_when_inactive(true).min_size(vec2(ui.available_width(), 28.0));
         let response = ui.add_enabled(closed.is_none() && !is_open, button);
         let response = response.on_hover_text(text::calibrations::opens(which.meaning()));
-        if response.on_disabled_hover_text(closed.unwrap_or(text::calibrations::IS_OPEN)).clicked() {
+        if response.on_disabled_hover_text(closed.unwrap_or(text::calibrations::IS_OPEN.get())).clicked() {
             wish = Some(CalibrationWish::Open(which));
         }
     }
     if open.is_some() {
-        let back = Button::new(text::calibrations::CLOSE_WIZARD).min_size(vec2(ui.available_width(), 32.0));
-        if ui.add(back).on_hover_text(text::calibrations::CLOSE_WIZARD_HOVER).clicked() {
+        let back = Button::new(text::calibrations::CLOSE_WIZARD.get()).min_size(vec2(ui.available_width(), 32.0));
+        if ui.add(back).on_hover_text(text::calibrations::CLOSE_WIZARD_HOVER.get()).clicked() {
             wish = Some(CalibrationWish::Close);
         }
     }
@@ -102,21 +102,26 @@ fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWis
     let width = (ui.available_width() - ui.spacing().item_spacing.x) / 2.0;
     ui.horizontal(|ui| {
         for (page, name, meaning, opens) in [
-            (Page::Check, text::ready::OPEN, text::calibrations::opens(text::ready::MEANING), CalibrationWish::Check),
-            (Page::All, text::overview::OPEN, text::overview::MEANING.to_owned(), CalibrationWish::List),
+            (
+                Page::Check,
+                text::ready::OPEN.get(),
+                text::calibrations::opens(text::ready::MEANING.get()),
+                CalibrationWish::Check,
+            ),
+            (Page::All, text::overview::OPEN.get(), text::overview::MEANING.get().to_owned(), CalibrationWish::List),
         ] {
             let (is_open, next) = (open == Some(page), next == Some(page));
             let button =
                 next_button(name, next).selected(is_open).frame_when_inactive(true).min_size(vec2(width, 28.0));
             let can_open = closed.is_none() || page == Page::All;
             let button = ui.add_enabled(can_open && !is_open, button).on_hover_text(meaning);
-            if button.on_disabled_hover_text(closed.unwrap_or(text::calibrations::IS_OPEN)).clicked() {
+            if button.on_disabled_hover_text(closed.unwrap_or(text::calibrations::IS_OPEN.get())).clicked() {
                 wish = Some(opens);
             }
         }
     });
     // One line in every state, so that the buttons below do not move under a hand.
-    ui.add(Label::new(small(closed.unwrap_or(text::calibrations::SETS_IDLE))).truncate());
+    ui.add(Label::new(small(closed.unwrap_or(text::calibrations::SETS_IDLE.get()))).truncate());
     wish
 }
 
@@ -127,7 +132,7 @@ fn side_ui(ui: &mut Ui, now: Side) -> Option<CalibrationWish> {
         for side in [Side::Left, Side::Right] {
             let name = text::calibrations::arm(side_name(side));
             let button = Button::selectable(now == side, name).frame_when_inactive(true).min_size(vec2(104.0, 26.0));
-            let chosen = ui.add(button).on_hover_text(text::calibrations::ARM_TO_CALIBRATE).clicked();
+            let chosen = ui.add(button).on_hover_text(text::calibrations::ARM_TO_CALIBRATE.get()).clicked();
             if chosen && now != side {
                 wish = Some(CalibrationWish::Choose(side));
             }

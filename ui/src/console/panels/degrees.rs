@@ -18,17 +18,23 @@ const CHART_HEIGHT: f32 = 92.0;
 pub fn degrees_ui(ui: &mut Ui, live: &Live) {
     let compares = live.first_tick().is_some_and(|tick| tick.identification.modes.contains(Mode::Literal));
     ui.horizontal(|ui| {
-        key_ui(ui, theme::now().rendered, text::degrees::KEY_OURS, text::degrees::KEY_OURS_HOVER);
+        key_ui(ui, theme::now().rendered, text::degrees::KEY_OURS.get(), text::degrees::KEY_OURS_HOVER.get());
         if compares {
-            key_ui(ui, theme::now().reference, text::degrees::KEY_PAPER, text::degrees::KEY_PAPER_HOVER);
+            key_ui(ui, theme::now().reference, text::degrees::KEY_PAPER.get(), text::degrees::KEY_PAPER_HOVER.get());
         }
         ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0)));
     });
     chart_ui(ui, live, compares);
     let share = |share: f64| format!("{:.0} %", 100.0 * share);
-    figure(ui, text::degrees::NONLINEAR_OURS, share(live.degrees.nonlinear()), text::degrees::NONLINEAR_OURS_HOVER);
-    let papers = if compares { share(live.paper_degrees.nonlinear()) } else { text::degrees::NOT_COMPUTED.to_owned() };
-    figure(ui, text::degrees::NONLINEAR_PAPER, papers, text::degrees::NONLINEAR_PAPER_HOVER);
+    figure(
+        ui,
+        text::degrees::NONLINEAR_OURS.get(),
+        share(live.degrees.nonlinear()),
+        text::degrees::NONLINEAR_OURS_HOVER.get(),
+    );
+    let papers =
+        if compares { share(live.paper_degrees.nonlinear()) } else { text::degrees::NOT_COMPUTED.get().to_owned() };
+    figure(ui, text::degrees::NONLINEAR_PAPER.get(), papers, text::degrees::NONLINEAR_PAPER_HOVER.get());
     quality_ui(ui, live, compares);
 }
 
@@ -37,27 +43,27 @@ fn quality_ui(ui: &mut Ui, live: &Live, compares: bool) {
     let report = &tick.identification;
     if !compares {
         for (name, meaning) in [
-            (text::degrees::CONDITION, text::degrees::CONDITION_HOVER),
-            (text::degrees::RANK, text::degrees::RANK_HOVER),
-            (text::degrees::EXCITATION, text::degrees::EXCITATION_HOVER),
+            (text::degrees::CONDITION.get(), text::degrees::CONDITION_HOVER.get()),
+            (text::degrees::RANK.get(), text::degrees::RANK_HOVER.get()),
+            (text::degrees::EXCITATION.get(), text::degrees::EXCITATION_HOVER.get()),
         ] {
-            figure(ui, name, text::degrees::NOT_COMPUTED.to_owned(), meaning);
+            figure(ui, name, text::degrees::NOT_COMPUTED.get().to_owned(), meaning);
         }
         return;
     }
-    figure(ui, text::degrees::CONDITION, three_digits(report.condition), text::degrees::CONDITION_HOVER);
+    figure(ui, text::degrees::CONDITION.get(), three_digits(report.condition), text::degrees::CONDITION_HOVER.get());
     figure(
         ui,
-        text::degrees::RANK,
+        text::degrees::RANK.get(),
         text::degrees::columns(report.rank, 3 * live.rig.identification.max_degree, report.columns),
-        text::degrees::RANK_HOVER,
+        text::degrees::RANK_HOVER.get(),
     );
     let excitation = &report.excitation;
     figure(
         ui,
-        text::degrees::EXCITATION,
+        text::degrees::EXCITATION.get(),
         format!("{:.1} mm   {:.0} mm/s", excitation.position_m.norm() * 1e3, excitation.velocity_m_s.norm() * 1e3),
-        text::degrees::EXCITATION_HOVER,
+        text::degrees::EXCITATION_HOVER.get(),
     );
 }
 
@@ -114,7 +120,7 @@ fn chart_ui(ui: &mut Ui, live: &Live, compares: bool) {
                 );
             }
         }
-        let name = if degree == 0 { text::degrees::NONE.to_owned() } else { degree.to_string() };
+        let name = if degree == 0 { text::degrees::NONE.get().to_owned() } else { degree.to_string() };
         painter.text(
             egui::pos2(middle, ground.bottom() + 10.0),
             Align2::CENTER_CENTER,

@@ -141,8 +141,8 @@ fn setting_ui(
 
 fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let setting = Setting {
-        name: text::feedback::GAIN,
-        meaning: text::feedback::GAIN_HOVER,
+        name: text::feedback::GAIN.get(),
+        meaning: text::feedback::GAIN_HOVER.get(),
         suffix: "",
         decimals: 2,
         at_once: true,
@@ -154,14 +154,16 @@ fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Out
         outbox.push(if gain > 1.0 { Command::SetGainAboveOne(gain) } else { Command::SetGain(gain) });
     }
     ui.horizontal(|ui| {
-        let meaning = text::feedback::ALLOW_ABOVE_1_HOVER;
-        let unlock = ui.checkbox(&mut state.allow_above_one, text::feedback::ALLOW_ABOVE_1).on_hover_text(meaning);
+        let meaning = text::feedback::ALLOW_ABOVE_1_HOVER.get();
+        let unlock =
+            ui.checkbox(&mut state.allow_above_one, text::feedback::ALLOW_ABOVE_1.get()).on_hover_text(meaning);
         if unlock.changed() && !state.allow_above_one && live.gain() > 1.0 {
             outbox.push(Command::SetGain(1.0));
             state.gain = Asked::default();
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(small(text::feedback::gain_in_use(live.gain()))).on_hover_text(text::feedback::GAIN_IN_USE_HOVER);
+            ui.label(small(text::feedback::gain_in_use(live.gain())))
+                .on_hover_text(text::feedback::GAIN_IN_USE_HOVER.get());
         });
     });
 }
@@ -172,11 +174,11 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
     let shown = state.gain.shown(live.gain(), time_s);
     let mut wanted = None;
     ui.horizontal(|ui| {
-        ui.label(RichText::new(text::feedback::GAIN).font(theme::strong(17.0)))
-            .on_hover_text(text::feedback::GAIN_HOVER);
+        ui.label(RichText::new(text::feedback::GAIN.get()).font(theme::strong(17.0)))
+            .on_hover_text(text::feedback::GAIN_HOVER.get());
         at_the_right(ui, |ui| {
             ui.label(RichText::new(format!("{shown:.2}")).font(theme::strong(38.0)))
-                .on_hover_text(text::feedback::GAIN_HOVER);
+                .on_hover_text(text::feedback::GAIN_HOVER.get());
             ui.add_space(8.0);
             let mut step = |ui: &mut Ui, text: &str, name: &str, by: f64| {
                 let button =
@@ -186,15 +188,15 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
                     wanted = Some(((shown + by) * 10.0).round() / 10.0);
                 }
             };
-            step(ui, "-", text::feedback::LOWER_GAIN, -0.1);
-            step(ui, "+", text::feedback::RAISE_GAIN, 0.1);
+            step(ui, "-", text::feedback::LOWER_GAIN.get(), -0.1);
+            step(ui, "+", text::feedback::RAISE_GAIN.get(), 0.1);
         });
     });
     let mut value = shown.min(1.0);
     ui.spacing_mut().slider_width = ui.available_width();
     let slider = ui.add(Slider::new(&mut value, 0.0..=1.0).show_value(false).clamping(SliderClamping::Edits));
-    slider.widget_info(|| egui::WidgetInfo::slider(true, value, text::feedback::GAIN));
-    if slider.on_hover_text(text::feedback::GAIN_HOVER).changed() {
+    slider.widget_info(|| egui::WidgetInfo::slider(true, value, text::feedback::GAIN.get()));
+    if slider.on_hover_text(text::feedback::GAIN_HOVER.get()).changed() {
         wanted = Some(value);
     }
     if let Some(gain) = wanted.map(|gain| gain.clamp(0.0, 1.0)) {
@@ -205,8 +207,8 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
 
 fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let setting = Setting {
-        name: text::feedback::LINK_DELAY,
-        meaning: text::feedback::DELAY_HOVER,
+        name: text::feedback::LINK_DELAY.get(),
+        meaning: text::feedback::DELAY_HOVER.get(),
         suffix: " ms",
         decimals: 0,
         at_once: false,
@@ -219,13 +221,13 @@ fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Ou
         }
     })
     .response
-    .on_disabled_hover_text(text::link::DELAY_IS_MEASURED);
+    .on_disabled_hover_text(text::link::DELAY_IS_MEASURED.get());
 }
 
 fn standstill_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let setting = Setting {
-        name: text::feedback::DEAD_BAND,
-        meaning: text::feedback::DEAD_BAND_HOVER,
+        name: text::feedback::DEAD_BAND.get(),
+        meaning: text::feedback::DEAD_BAND_HOVER.get(),
         suffix: " mm/s",
         decimals: 1,
         at_once: true,
@@ -235,7 +237,11 @@ fn standstill_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &m
         outbox.push(Command::SetDeadBand(mm_s * 1e-3));
     }
     let mut hold = live.gate_settings().static_hold;
-    if ui.checkbox(&mut hold, RichText::new(text::feedback::HOLD)).on_hover_text(text::feedback::HOLD_HOVER).changed() {
+    if ui
+        .checkbox(&mut hold, RichText::new(text::feedback::HOLD.get()))
+        .on_hover_text(text::feedback::HOLD_HOVER.get())
+        .changed()
+    {
         outbox.push(Command::SetStaticHold(hold));
     }
 }

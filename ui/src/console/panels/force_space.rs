@@ -77,7 +77,7 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
     if response.double_clicked() {
         *state = ForceSpaceState::default();
     }
-    response.on_hover_text(text::force_space::HOVER);
+    response.on_hover_text(text::force_space::HOVER.get());
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
     let most_n = pairs().map(|pair| pair.measured_n.amax().max(pair.rendered_n.amax())).fold(0.0, f64::max);

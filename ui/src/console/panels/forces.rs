@@ -215,21 +215,21 @@ fn twist_ui(ui: &mut Ui, live: &Live, side: Side) {
     let Twist { jaws_nm, wrist_nm } = live.figures.twist[side.index()];
     if jaws_nm.is_some() || wrist_nm.is_some() {
         let words = text::forces::twist([jaws_nm, wrist_nm].map(|nm| nm.map(|nm| 1e3 * nm)));
-        ui.label(small(&words)).on_hover_text(text::forces::TWIST_HOVER);
+        ui.label(small(&words)).on_hover_text(text::forces::TWIST_HOVER.get());
     }
 }
 
 fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
     ui.horizontal(|ui| {
         if ui.available_width() > HEADING_FROM {
-            ui.label(RichText::new(text::forces::HEADING).text_style(egui::TextStyle::Heading))
-                .on_hover_text(text::forces::HOVER);
+            ui.label(RichText::new(text::forces::HEADING.get()).text_style(egui::TextStyle::Heading))
+                .on_hover_text(text::forces::HOVER.get());
             ui.add_space(12.0);
         }
-        for (name, rendered) in [(text::forces::MEASURED, false), (text::forces::RENDERED, true)] {
+        for (name, rendered) in [(text::forces::MEASURED.get(), false), (text::forces::RENDERED.get(), true)] {
             let (rect, _) = ui.allocate_exact_size(vec2(30.0, 14.0), Sense::hover());
             force_sign(ui.painter(), theme::now(), rect, rendered);
-            ui.label(small(name)).on_hover_text(text::forces::HOVER);
+            ui.label(small(name)).on_hover_text(text::forces::HOVER.get());
             ui.add_space(6.0);
         }
         at_the_right(ui, |ui| switches_ui(ui, live, state));
@@ -239,8 +239,8 @@ fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
 /// What is shown of the traces.
 fn switches_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
     let size = vec2(76.0, 26.0);
-    let reset = ui.add(Button::new(text::forces::LAST_TEN_SECONDS).min_size(size));
-    if reset.on_hover_text(text::forces::LAST_TEN_SECONDS_HOVER).clicked() {
+    let reset = ui.add(Button::new(text::forces::LAST_TEN_SECONDS.get()).min_size(size));
+    if reset.on_hover_text(text::forces::LAST_TEN_SECONDS_HOVER.get()).clicked() {
         state.show_last_ten();
     }
     if live.is_bimanual() {
@@ -253,15 +253,15 @@ fn switches_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
             }
         }
     }
-    let mark = ui.add_enabled(!live.is_shown_only(), Button::new(text::forces::MARK).min_size(size));
-    if mark.on_hover_text(text::forces::MARK_HOVER).clicked() {
+    let mark = ui.add_enabled(!live.is_shown_only(), Button::new(text::forces::MARK.get()).min_size(size));
+    if mark.on_hover_text(text::forces::MARK_HOVER.get()).clicked() {
         live.mark();
     }
     let paused = state.is_paused();
     let (name, meaning) = if paused {
-        (text::forces::GO_ON, text::forces::GO_ON_HOVER)
+        (text::forces::GO_ON.get(), text::forces::GO_ON_HOVER.get())
     } else {
-        (text::forces::PAUSE, text::forces::PAUSE_HOVER)
+        (text::forces::PAUSE.get(), text::forces::PAUSE_HOVER.get())
     };
     if ui.add(Button::new(name).selected(paused).min_size(size)).on_hover_text(meaning).clicked() {
         state.toggle_pause(live);
@@ -279,7 +279,7 @@ fn plot_ui(
     let now_s = state.now_s(state.history(live));
     let history = state.history(live);
     let seconds = AxisHints::new_x()
-        .label(if last { text::forces::TIME_AXIS } else { "" })
+        .label(if last { text::forces::TIME_AXIS.get() } else { "" })
         .formatter(|mark, _| plain(mark.value));
     let newtons = AxisHints::new_y()
         .label(format!("{} (N)", AXES[axis]))

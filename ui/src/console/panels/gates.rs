@@ -61,7 +61,7 @@ pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
 /// The summary: the first closed gate, or that nothing is wrong.
 fn answer(live: &Live, side: Side) -> String {
     why_no_force(live, side).unwrap_or_else(|| match live.figures {
-        figures if figures.measured_n[side.index()] < CONTACT_N => text::gates::FREE_MOTION.to_owned(),
+        figures if figures.measured_n[side.index()] < CONTACT_N => text::gates::FREE_MOTION.get().to_owned(),
         figures => text::gates::rendered(figures.rendered_n[side.index()]),
     })
 }
@@ -72,22 +72,22 @@ pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
     let (measured_n, rendered_n) = (live.figures.measured_n[hand], live.figures.rendered_n[hand]);
     let withheld_n = gates.withheld_n.get();
     let words = match live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state) {
-        LoopState::Disconnected => text::gates::NONE_DEVICE_MISSING,
-        LoopState::Idle => text::gates::NONE_IDLE,
-        LoopState::Ready => text::gates::NONE_GETTING_READY,
-        LoopState::Clutched => text::gates::NONE_CLUTCH,
-        LoopState::Stopped => text::gates::NONE_STOPPED,
-        LoopState::Faulted(Fault::OtherArm) => text::gates::NONE_OTHER_ARM,
-        LoopState::Faulted(_) => text::gates::NONE_FAULT,
-        LoopState::Engaged if gates.closed(Which::Validity) => text::gates::NONE_INVALID,
-        LoopState::Engaged if gates.closed(Which::Age) => text::gates::NONE_STALE,
+        LoopState::Disconnected => text::gates::NONE_DEVICE_MISSING.get(),
+        LoopState::Idle => text::gates::NONE_IDLE.get(),
+        LoopState::Ready => text::gates::NONE_GETTING_READY.get(),
+        LoopState::Clutched => text::gates::NONE_CLUTCH.get(),
+        LoopState::Stopped => text::gates::NONE_STOPPED.get(),
+        LoopState::Faulted(Fault::OtherArm) => text::gates::NONE_OTHER_ARM.get(),
+        LoopState::Faulted(_) => text::gates::NONE_FAULT.get(),
+        LoopState::Engaged if gates.closed(Which::Validity) => text::gates::NONE_INVALID.get(),
+        LoopState::Engaged if gates.closed(Which::Age) => text::gates::NONE_STALE.get(),
         LoopState::Engaged if measured_n < CONTACT_N => return None,
         LoopState::Engaged if gates.closed(Which::DeadBand) && withheld_n > 0.05 => {
             return Some(text::gates::withheld_by_dead_band(withheld_n));
         }
-        LoopState::Engaged if live.gain() < 0.01 => text::gates::NONE_GAIN,
-        LoopState::Engaged if gates.closed(Which::Governor) => text::gates::LESS_GOVERNED,
-        LoopState::Engaged if gates.closed(Which::Energy) => text::gates::LESS_ENERGY,
+        LoopState::Engaged if live.gain() < 0.01 => text::gates::NONE_GAIN.get(),
+        LoopState::Engaged if gates.closed(Which::Governor) => text::gates::LESS_GOVERNED.get(),
+        LoopState::Engaged if gates.closed(Which::Energy) => text::gates::LESS_ENERGY.get(),
         LoopState::Engaged if rendered_n < 0.05 => {
             return Some(text::gates::on_its_way(live.delay_s() * 1e3));
         }
@@ -111,9 +111,9 @@ impl Gate {
     pub(super) fn standing(&self) -> (Sign, &'static str) {
         let acting = self.share > if self.limits { 0.05 } else { 0.5 };
         match (acting, self.limits) {
-            (false, _) => (Sign::Disc, text::gates::OPEN),
-            (true, false) => (Sign::Square, text::gates::CLOSED),
-            (true, true) => (Sign::Ring, text::gates::LIMITING),
+            (false, _) => (Sign::Disc, text::gates::OPEN.get()),
+            (true, false) => (Sign::Square, text::gates::CLOSED.get()),
+            (true, true) => (Sign::Ring, text::gates::LIMITING.get()),
         }
     }
 }
@@ -140,7 +140,7 @@ fn note(live: &Live, side: Side, which: Which) -> String {
         Which::Permission => live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state).word().to_lowercase(),
         Which::Validity => String::new(),
         Which::Age => text::gates::zero_after(chain.zero_after_s * 1e3),
-        Which::DeadBand if live.gate_settings().static_hold => text::gates::DEAD_BAND_OFF.to_owned(),
+        Which::DeadBand if live.gate_settings().static_hold => text::gates::DEAD_BAND_OFF.get().to_owned(),
         Which::DeadBand if gates.closed(Which::DeadBand) && gates.withheld_n.get() > 0.05 => {
             text::gates::withheld(gates.withheld_n.get())
         }
@@ -149,7 +149,7 @@ fn note(live: &Live, side: Side, which: Which) -> String {
         Which::Slew => format!("{:.0} N/s", chain.slew_n_per_s),
         Which::Energy => stored(live, side),
         Which::Ceiling => format!("{:.1} N", chain.ceiling_n.min(chain.device_limit_n)),
-        Which::Governor if chain.handle_kg <= 0.0 => text::gates::GOVERNOR_OFF.to_owned(),
+        Which::Governor if chain.handle_kg <= 0.0 => text::gates::GOVERNOR_OFF.get().to_owned(),
         Which::Governor => text::gates::governed(100.0 * gates.governed.get()),
     }
 }
@@ -157,7 +157,7 @@ fn note(live: &Live, side: Side, which: Which) -> String {
 /// Energy that the hand may still get back.
 fn stored(live: &Live, side: Side) -> String {
     if live.gate_settings().energy == EnergyMode::Off {
-        return text::gates::ENERGY_OFF.to_owned();
+        return text::gates::ENERGY_OFF.get().to_owned();
     }
     live.tick_of(side).map_or_else(String::new, |tick| text::gates::energy_left(tick.gates.stored_j * 1e3))
 }
@@ -167,7 +167,7 @@ pub(super) fn history(live: &Live, side: Side, gate: Which) -> String {
     let Some(counts) = live.tick_of(side).map(|tick| tick.gates.counts) else { return String::new() };
     let (acted, share, last) = (counts.acted[gate.index()], counts.share(gate), counts.last[gate.index()]);
     match last {
-        Reason::Open => text::gates::NEVER_ACTED.to_owned(),
+        Reason::Open => text::gates::NEVER_ACTED.get().to_owned(),
         last => text::gates::acted(acted, 100.0 * share, last.words()),
     }
 }

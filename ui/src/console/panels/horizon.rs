@@ -25,8 +25,8 @@ pub fn horizon_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
     let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
     ui.label(small(text::horizon::ahead(live.delay_s() * 1e3)));
     let mut compares = live.compares();
-    let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE);
-    let compare = ui.add_enabled(!live.is_shown_only(), compare).on_hover_text(text::horizon::COMPARE_HOVER);
+    let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE.get());
+    let compare = ui.add_enabled(!live.is_shown_only(), compare).on_hover_text(text::horizon::COMPARE_HOVER.get());
     if compare.on_disabled_hover_text(live.of.blocked()).changed() {
         outbox.push(Command::Compare(compares));
     }
@@ -69,7 +69,7 @@ fn trend_ui(ui: &mut Ui, live: &Live) {
         theme::regular(11.0),
         theme::now().text_weak,
     );
-    let note = text::horizon::LAST_3_MIN;
+    let note = text::horizon::LAST_3_MIN.get();
     painter.text(
         rect.left_bottom() + vec2(4.0, -3.0),
         Align2::LEFT_BOTTOM,
@@ -83,7 +83,7 @@ fn mode_ui(ui: &mut Ui, mode: Mode, error_n: f64, dfr_n: f64, active: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 38.0), Sense::hover());
     let ratio = if dfr_n > LEAST_N { error_n / dfr_n } else { f64::NAN };
     let ratio_text = if mode == Mode::Dfr {
-        text::horizon::REFERENCE.to_owned()
+        text::horizon::REFERENCE.get().to_owned()
     } else if ratio.is_finite() {
         format!("{} x DFR", three_digits(ratio))
     } else {
@@ -93,7 +93,7 @@ fn mode_ui(ui: &mut Ui, mode: Mode, error_n: f64, dfr_n: f64, active: bool) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::horizon::error(&words)));
     response.on_hover_text(format!(
         "{words}{}\n{}",
-        if active { text::horizon::IN_USE } else { "" },
+        if active { text::horizon::IN_USE.get() } else { "" },
         mode_meaning(mode)
     ));
     let painter = ui.painter();

@@ -17,13 +17,13 @@ use crate::{
 /// The panel. It sends wishes to the line; who holds a follower is not the loop's matter.
 pub fn link_ui(ui: &mut Ui, live: &Live) {
     let Some(door) = &live.line_door else {
-        ui.label(text::link::ONE_MACHINE);
+        ui.label(text::link::ONE_MACHINE.get());
         ui.add_space(4.0);
-        ui.label(weak(text::link::HOW_TWO));
+        ui.label(weak(text::link::HOW_TWO.get()));
         return;
     };
     let Some(report) = &live.line else {
-        ui.label(text::link::NOTHING_YET);
+        ui.label(text::link::NOTHING_YET.get());
         return;
     };
     if let Some([cause, cure]) = link_trouble(report.state) {
@@ -42,40 +42,40 @@ pub fn link_ui(ui: &mut Ui, live: &Live) {
 fn control_ui(ui: &mut Ui, report: &LineReport, drives: bool, door: &LineDoor) {
     let words = match report.control {
         Control::None => return,
-        Control::Holds => text::link::HOLDS,
-        Control::HoldsAsked => text::link::ASKED,
-        Control::Waits => text::link::WAITS,
-        Control::Asks => text::link::ASKS,
-        Control::Denied => text::link::DENIED,
+        Control::Holds => text::link::HOLDS.get(),
+        Control::HoldsAsked => text::link::ASKED.get(),
+        Control::Waits => text::link::WAITS.get(),
+        Control::Asks => text::link::ASKS.get(),
+        Control::Denied => text::link::DENIED.get(),
     };
-    ui.label(words).on_hover_text(text::link::CONTROL_HOVER);
+    ui.label(words).on_hover_text(text::link::CONTROL_HOVER.get());
     let size = vec2(ui.available_width(), 28.0);
     let button = |ui: &mut Ui, enabled: bool, words: &str, meaning: &str| {
         ui.add_enabled(enabled, Button::new(words).min_size(size))
             .on_hover_text(meaning)
-            .on_disabled_hover_text(text::link::GIVE_AT_REST)
+            .on_disabled_hover_text(text::link::GIVE_AT_REST.get())
             .clicked()
     };
     match report.control {
         Control::HoldsAsked => {
             // The arm must not change hands while it is driven: it would stop in a fault.
-            if button(ui, !drives, text::link::GIVE, text::link::GIVE_HOVER) {
+            if button(ui, !drives, text::link::GIVE.get(), text::link::GIVE_HOVER.get()) {
                 door.wish(LineWish::Answer { consents: true });
             }
             if drives {
-                ui.label(small(text::link::GIVE_AT_REST));
+                ui.label(small(text::link::GIVE_AT_REST.get()));
             }
-            if button(ui, true, text::link::KEEP, text::link::KEEP_HOVER) {
+            if button(ui, true, text::link::KEEP.get(), text::link::KEEP_HOVER.get()) {
                 door.wish(LineWish::Answer { consents: false });
             }
         }
         Control::Waits | Control::Denied => {
-            if button(ui, true, text::link::ASK, text::link::ASK_HOVER) {
+            if button(ui, true, text::link::ASK.get(), text::link::ASK_HOVER.get()) {
                 door.wish(LineWish::Control);
             }
         }
         Control::Asks => {
-            if button(ui, true, text::link::WITHDRAW, text::link::WITHDRAW_HOVER) {
+            if button(ui, true, text::link::WITHDRAW.get(), text::link::WITHDRAW_HOVER.get()) {
                 door.wish(LineWish::Nothing);
             }
         }
@@ -172,18 +172,18 @@ mod tests {
         three.until(1, &mut first, Control::Holds);
         three.running = 3;
         three.until(2, &mut second, Control::Waits);
-        second.get_by_label(text::link::ASK).click();
+        second.get_by_label(text::link::ASK.get()).click();
         second.run_steps(2);
         three.until(2, &mut second, Control::Asks);
         three.until(1, &mut first, Control::HoldsAsked);
-        first.get_by_label(text::link::KEEP).click();
+        first.get_by_label(text::link::KEEP.get()).click();
         first.run_steps(2);
         three.until(2, &mut second, Control::Denied);
         three.until(1, &mut first, Control::Holds);
-        second.get_by_label(text::link::ASK).click();
+        second.get_by_label(text::link::ASK.get()).click();
         second.run_steps(2);
         three.until(1, &mut first, Control::HoldsAsked);
-        first.get_by_label(text::link::GIVE).click();
+        first.get_by_label(text::link::GIVE.get()).click();
         first.run_steps(2);
         three.until(2, &mut second, Control::Holds);
         three.until(1, &mut first, Control::Waits);
@@ -194,6 +194,6 @@ mod tests {
     fn without_another_machine_the_panel_says_how_there_can_be_one() {
         let live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
         let window = shown(live);
-        window.get_by_label(text::link::ONE_MACHINE);
+        window.get_by_label(text::link::ONE_MACHINE.get());
     }
 }

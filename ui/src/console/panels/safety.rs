@@ -13,6 +13,7 @@ use crate::console::{
     text, theme,
     widgets::{Sign, sign},
 };
+use crate::language::Text;
 
 const NODE: egui::Vec2 = vec2(82.0, 28.0);
 const DIAGRAM_HEIGHT: f32 = 118.0;
@@ -48,7 +49,7 @@ fn of_side(live: &Live, side: Side) -> String {
 }
 
 /// States and their positions, relative to the diagram's size.
-const PLACES: [(&str, f32, f32); 7] = [
+const PLACES: [(Text, f32, f32); 7] = [
     (text::safety::NO_DEVICE, 0.10, 0.26),
     (text::safety::IDLE, 0.32, 0.26),
     (text::safety::READY, 0.52, 0.26),
@@ -72,16 +73,16 @@ const fn place_of(state: LoopState) -> usize {
     }
 }
 
-const fn why_words(why: Why) -> &'static str {
+fn why_words(why: Why) -> &'static str {
     match why {
-        Why::Asked => text::safety::WHY_ASKED,
-        Why::Connected => text::safety::WHY_CONNECTED,
-        Why::Disconnected => text::safety::WHY_DISCONNECTED,
-        Why::Agreed => text::safety::WHY_AGREED,
-        Why::Clutch => text::safety::WHY_CLUTCH,
-        Why::Late => text::safety::WHY_LATE,
-        Why::Absent => text::safety::WHY_ABSENT,
-        Why::Fault => text::safety::WHY_FAULT,
+        Why::Asked => text::safety::WHY_ASKED.get(),
+        Why::Connected => text::safety::WHY_CONNECTED.get(),
+        Why::Disconnected => text::safety::WHY_DISCONNECTED.get(),
+        Why::Agreed => text::safety::WHY_AGREED.get(),
+        Why::Clutch => text::safety::WHY_CLUTCH.get(),
+        Why::Late => text::safety::WHY_LATE.get(),
+        Why::Absent => text::safety::WHY_ABSENT.get(),
+        Why::Fault => text::safety::WHY_FAULT.get(),
     }
 }
 
@@ -90,12 +91,12 @@ fn interlock_ui(ui: &mut Ui, live: &Live, side: Side) {
     let state = live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state);
     let change = live.changes[side.index()];
     let since = change.map_or_else(
-        || text::safety::SINCE_START.to_owned(),
+        || text::safety::SINCE_START.get().to_owned(),
         |Change { t_s, why, .. }| text::safety::since(t_s, why_words(why)),
     );
     let title = text::safety::interlock(&of_side(live, side), &state.word().to_lowercase());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{title}, {since}")));
-    response.on_hover_text(text::safety::INTERLOCK_HOVER);
+    response.on_hover_text(text::safety::INTERLOCK_HOVER.get());
     let painter = ui.painter_at(rect);
     painter.text(rect.left_top() + vec2(4.0, 2.0), Align2::LEFT_TOP, title, theme::strong(15.0), theme::now().text);
     painter.text(
@@ -124,7 +125,7 @@ fn interlock_ui(ui: &mut Ui, live: &Live, side: Side) {
     painter.text(
         right,
         Align2::RIGHT_BOTTOM,
-        text::safety::FROM_ANY_STATE,
+        text::safety::FROM_ANY_STATE.get(),
         theme::regular(11.0),
         theme::now().text_weak,
     );
@@ -133,7 +134,7 @@ fn interlock_ui(ui: &mut Ui, live: &Live, side: Side) {
         arrow(&painter, pos2(x, rail), pos2(x, at(i).top()), stroke);
     }
     for (i, (name, ..)) in PLACES.iter().enumerate() {
-        node_ui(&painter, at(i), name, i == place_of(state), state);
+        node_ui(&painter, at(i), name.get(), i == place_of(state), state);
     }
 }
 
@@ -190,11 +191,11 @@ fn gates_row_ui(ui: &mut Ui, live: &Live, side: Side) {
         let ends = 66.0;
         let gates = gates(live, side);
         let width = ((ui.available_width() - 2.0 * ends) / gates.len() as f32 - 5.6).max(72.0);
-        end_ui(ui, ends, if live.is_bimanual() { side_name(side) } else { text::safety::ASKED }, asked_n);
+        end_ui(ui, ends, if live.is_bimanual() { side_name(side) } else { text::safety::ASKED.get() }, asked_n);
         for gate in &gates {
             gate_ui(ui, live, side, gate, width);
         }
-        end_ui(ui, ends, text::safety::HAND, live.figures.rendered_n[side.index()]);
+        end_ui(ui, ends, text::safety::HAND.get(), live.figures.rendered_n[side.index()]);
     });
 }
 
@@ -203,7 +204,7 @@ fn end_ui(ui: &mut Ui, width: f32, name: &str, force_n: f64) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, GATE_HEIGHT), Sense::hover());
     let number = if force_n < 1e3 { format!("{force_n:.1} N") } else { "> 1 kN".to_owned() };
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{name}: {number}")));
-    response.on_hover_text(text::safety::FORCE_HOVER);
+    response.on_hover_text(text::safety::FORCE_HOVER.get());
     let painter = ui.painter_at(rect);
     painter.text(
         rect.center() - vec2(0.0, 10.0),
@@ -247,7 +248,7 @@ fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate, width: f32) {
 /// A count in a short form that fits below a gate.
 fn compact(count: u64) -> String {
     match count {
-        0 => text::safety::NEVER.to_owned(),
+        0 => text::safety::NEVER.get().to_owned(),
         1..=9999 => format!("{count} x"),
         10_000..=9_999_999 => format!("{} k x", count / 1000),
         _ => format!("{} M x", count / 1_000_000),

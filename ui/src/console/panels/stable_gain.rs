@@ -21,11 +21,13 @@ pub(super) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
 fn strip_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     let Some(map) = StabilityMap::committed() else { return };
     if !StabilityMap::has(live.mode()) {
-        ui.label(small(text::feedback::STABLE_GAIN_UNMEASURED)).on_hover_text(text::feedback::STABLE_GAIN_HOVER);
+        ui.label(small(text::feedback::STABLE_GAIN_UNMEASURED.get()))
+            .on_hover_text(text::feedback::STABLE_GAIN_HOVER.get());
         return;
     }
     let Some(n_m) = live.stiffness_n_m() else {
-        ui.label(small(text::feedback::STABLE_GAIN_UNKNOWN)).on_hover_text(text::feedback::STABLE_GAIN_HOVER);
+        ui.label(small(text::feedback::STABLE_GAIN_UNKNOWN.get()))
+            .on_hover_text(text::feedback::STABLE_GAIN_HOVER.get());
         return;
     };
     let (mode, delay_s) = (live.mode(), live.delay_s());
@@ -54,6 +56,6 @@ fn strip_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     let greatest = map.greatest_stable_gain(mode, delay_s, n_m);
     let now = map.at(mode, live.gain(), delay_s, n_m);
     let words = text::feedback::stable_up_to(now.words(), greatest, n_m);
-    response.on_hover_text(text::feedback::STABLE_GAIN_HOVER);
-    ui.label(small(words)).on_hover_text(text::feedback::STABLE_GAIN_HOVER);
+    response.on_hover_text(text::feedback::STABLE_GAIN_HOVER.get());
+    ui.label(small(words)).on_hover_text(text::feedback::STABLE_GAIN_HOVER.get());
 }

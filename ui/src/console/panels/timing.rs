@@ -26,22 +26,22 @@ fn timings(live: &Live) -> Vec<Timing<'_>> {
     let deadline_us = 1e6 / live.rig.rate_hz;
     vec![
         Timing {
-            name: text::timing::WAKE_UP,
-            meaning: text::timing::WAKE_UP_HOVER,
+            name: text::timing::WAKE_UP.get(),
+            meaning: text::timing::WAKE_UP_HOVER.get(),
             quantiles: live.figures.wake_us,
             durations: live.wake(),
             deadline_us,
         },
         Timing {
-            name: text::timing::WORK,
-            meaning: text::timing::WORK_HOVER,
+            name: text::timing::WORK.get(),
+            meaning: text::timing::WORK_HOVER.get(),
             quantiles: live.figures.work_us,
             durations: live.work(),
             deadline_us,
         },
         Timing {
-            name: text::timing::SAMPLE_TO_FORCE,
-            meaning: text::timing::SAMPLE_TO_FORCE_HOVER,
+            name: text::timing::SAMPLE_TO_FORCE.get(),
+            meaning: text::timing::SAMPLE_TO_FORCE_HOVER.get(),
             quantiles: live.figures.sample_to_force_us,
             durations: live.sample_to_force(),
             deadline_us,
@@ -66,19 +66,19 @@ pub fn timing_ui(ui: &mut Ui, live: &Live, state: &mut TimingState) {
     ui.add_space(4.0);
     let tick = live.first_tick();
     let rate = text::timing::ticks_at(&grouped(tick.map_or(0, |tick| tick.index + 1)), live.figures.rate_hz);
-    figure(ui, text::timing::TICKS, rate, text::timing::TICKS_HOVER);
+    figure(ui, text::timing::TICKS.get(), rate, text::timing::TICKS_HOVER.get());
     let missed = grouped(tick.map_or(0, |tick| tick.missed));
-    figure(ui, text::timing::MISSED, missed, text::timing::MISSED_HOVER);
+    figure(ui, text::timing::MISSED.get(), missed, text::timing::MISSED_HOVER.get());
     let dropped = grouped(tick.map_or(0, |tick| tick.dropped));
-    figure(ui, text::timing::DROPPED, dropped, text::timing::DROPPED_HOVER);
+    figure(ui, text::timing::DROPPED.get(), dropped, text::timing::DROPPED_HOVER.get());
     scheduling_ui(ui, live);
     let [p50, p99] = live.figures.frame_ms;
     let frame = text::timing::frame([p50, p99], live.figures.frame_work_ms);
     figure(
         ui,
-        text::timing::CONSOLE_FRAME,
+        text::timing::CONSOLE_FRAME.get(),
         frame,
-        if live.rough_edges { text::timing::FRAME_HOVER_ROUGH } else { text::timing::FRAME_HOVER },
+        if live.rough_edges { text::timing::FRAME_HOVER_ROUGH.get() } else { text::timing::FRAME_HOVER.get() },
     );
 }
 
@@ -106,10 +106,10 @@ fn right(ui: &mut Ui, text: RichText) {
 
 fn scheduling_ui(ui: &mut Ui, live: &Live) {
     let Some(scheduling) = live.scheduling else { return };
-    let yes_no = |granted| if granted { text::timing::GRANTED } else { text::timing::REFUSED };
-    let meaning = text::timing::SCHEDULING_HOVER;
-    figure(ui, text::timing::REAL_TIME_PRIORITY, yes_no(scheduling.fifo), meaning);
-    figure(ui, text::timing::LOCKED_MEMORY, yes_no(scheduling.memory_locked), meaning);
+    let yes_no = |granted| if granted { text::timing::GRANTED.get() } else { text::timing::REFUSED.get() };
+    let meaning = text::timing::SCHEDULING_HOVER.get();
+    figure(ui, text::timing::REAL_TIME_PRIORITY.get(), yes_no(scheduling.fifo), meaning);
+    figure(ui, text::timing::LOCKED_MEMORY.get(), yes_no(scheduling.memory_locked), meaning);
     if let Some(advice) = scheduling.advice() {
         ui.label(small(sentence(advice)));
     }

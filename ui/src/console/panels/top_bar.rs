@@ -102,8 +102,8 @@ fn identity_ui(ui: &mut Ui, live: &Live, settings: &mut Settings, state: &mut To
         ui.add_space(8.0);
         ui.spacing_mut().item_spacing.y = 4.0;
         ui.horizontal(|ui| {
-            ui.label(RichText::new(text::top_bar::NIMA_CONSOLE).font(theme::strong(19.0)));
-            ui.label(small(text::top_bar::RESEARCH_ONLY));
+            ui.label(RichText::new(text::top_bar::NIMA_CONSOLE.get()).font(theme::strong(19.0)));
+            ui.label(small(text::top_bar::RESEARCH_ONLY.get()));
         });
         if let Some(participant) = &state.participant {
             ui.label(RichText::new(participant).font(theme::strong(17.0)));
@@ -111,14 +111,14 @@ fn identity_ui(ui: &mut Ui, live: &Live, settings: &mut Settings, state: &mut To
         }
         ui.horizontal(|ui| {
             switch_ui(ui, &Role::ALL, &mut settings.role, !calibrating);
-            let start = Button::new(text::start::OPEN).min_size(vec2(44.0, 30.0));
-            let why = if state.past { text::past::BLOCKED } else { text::start::OPEN_DISABLED_HOVER };
+            let start = Button::new(text::start::OPEN.get()).min_size(vec2(44.0, 30.0));
+            let why = if state.past { text::past::BLOCKED.get() } else { text::start::OPEN_DISABLED_HOVER.get() };
             let free = !calibrating && !state.past;
-            let start = ui.add_enabled(free, start).on_hover_text(text::start::OPEN_HOVER);
+            let start = ui.add_enabled(free, start).on_hover_text(text::start::OPEN_HOVER.get());
             let wants_start = start.on_disabled_hover_text(why).clicked();
             let of_menu = menu_ui(ui, settings, &mut state.alarms, state.can_undo);
-            let sessions = Button::new(text::past::SESSIONS).min_size(vec2(72.0, 30.0));
-            let sessions = ui.add_enabled(free, sessions).on_hover_text(text::past::SESSIONS_HOVER);
+            let sessions = Button::new(text::past::SESSIONS.get()).min_size(vec2(72.0, 30.0));
+            let sessions = ui.add_enabled(free, sessions).on_hover_text(text::past::SESSIONS_HOVER.get());
             let wants_sessions = sessions.on_disabled_hover_text(why).clicked();
             let keeps = recorded_ui(ui, state);
             state.wanted = of_menu
@@ -141,7 +141,7 @@ fn recorded_ui(ui: &mut Ui, state: &TopBarState) -> bool {
     let button = Button::selectable(shown.kept, words).frame_when_inactive(true);
     // Wide enough for hours, so that what stands beside it never moves.
     let response = ui.add(button.min_size(vec2(104.0, 30.0)));
-    let name = if shown.kept { text::sessions::NAME_KEPT } else { text::sessions::NAME_KEEP };
+    let name = if shown.kept { text::sessions::NAME_KEPT.get() } else { text::sessions::NAME_KEEP.get() };
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, shown.kept, name));
     response.on_hover_text(text::sessions::hover(shown)).clicked()
 }
@@ -150,13 +150,13 @@ fn recorded_ui(ui: &mut Ui, state: &TopBarState) -> bool {
 /// arm must not hide that the other hand feels a force.
 pub(in crate::console) fn state_ui(ui: &mut Ui, live: &Live, state: LoopState) {
     let (what, colour, meaning) = match state {
-        LoopState::Disconnected => (Sign::Ring, theme::now().text_weak, text::top_bar::DISCONNECTED_MEANING),
-        LoopState::Ready => (Sign::Ring, theme::now().engaged, text::top_bar::READY_MEANING),
-        LoopState::Clutched => (Sign::Ring, theme::now().engaged, text::top_bar::CLUTCHED_MEANING),
-        LoopState::Idle => (Sign::Ring, theme::now().at_rest, text::top_bar::IDLE_MEANING),
-        LoopState::Engaged => (Sign::Disc, theme::now().engaged, text::top_bar::ENGAGED_MEANING),
-        LoopState::Stopped => (Sign::Square, theme::now().stop, text::top_bar::STOPPED_MEANING),
-        LoopState::Faulted(_) => (Sign::Triangle, theme::now().alarm_high, text::top_bar::FAULT_MEANING),
+        LoopState::Disconnected => (Sign::Ring, theme::now().text_weak, text::top_bar::DISCONNECTED_MEANING.get()),
+        LoopState::Ready => (Sign::Ring, theme::now().engaged, text::top_bar::READY_MEANING.get()),
+        LoopState::Clutched => (Sign::Ring, theme::now().engaged, text::top_bar::CLUTCHED_MEANING.get()),
+        LoopState::Idle => (Sign::Ring, theme::now().at_rest, text::top_bar::IDLE_MEANING.get()),
+        LoopState::Engaged => (Sign::Disc, theme::now().engaged, text::top_bar::ENGAGED_MEANING.get()),
+        LoopState::Stopped => (Sign::Square, theme::now().stop, text::top_bar::STOPPED_MEANING.get()),
+        LoopState::Faulted(_) => (Sign::Triangle, theme::now().alarm_high, text::top_bar::FAULT_MEANING.get()),
     };
     let lines = state_lines(live, state);
     // Two lines, each with the name of its arm, are longer than one.
@@ -205,11 +205,17 @@ fn stop_ui(ui: &Ui, place: Rect, state: LoopState, next: bool, outbox: &mut Outb
 
 fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Response {
     let response = ui.add(button);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, text::top_bar::STOP));
-    let response = response.on_hover_text(text::top_bar::STOP_HOVER);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, text::top_bar::STOP.get()));
+    let response = response.on_hover_text(text::top_bar::STOP_HOVER.get());
     let middle = response.rect.center();
     sign(ui.painter(), Sign::Octagon, middle - vec2(34.0, 0.0), 11.0, ink);
-    ui.painter().text(middle - vec2(12.0, 0.0), Align2::LEFT_CENTER, text::top_bar::STOP, theme::strong(21.0), ink);
+    ui.painter().text(
+        middle - vec2(12.0, 0.0),
+        Align2::LEFT_CENTER,
+        text::top_bar::STOP.get(),
+        theme::strong(21.0),
+        ink,
+    );
     response
 }
 
@@ -229,9 +235,9 @@ struct Step {
 /// The button for the next step, beside the stop button and never below it.
 fn step_ui(ui: &mut Ui, state: LoopState, Step { ready, next, wanted, past }: Step, outbox: &mut Outbox) {
     let (action, command, meaning) = match state {
-        LoopState::Idle => (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER),
-        LoopState::Stopped => (Action::Release, Command::ReleaseStop, text::top_bar::RELEASE_STOP_HOVER),
-        LoopState::Faulted(_) => (Action::Release, Command::ReleaseStop, text::top_bar::RELEASE_FAULT_HOVER),
+        LoopState::Idle => (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER.get()),
+        LoopState::Stopped => (Action::Release, Command::ReleaseStop, text::top_bar::RELEASE_STOP_HOVER.get()),
+        LoopState::Faulted(_) => (Action::Release, Command::ReleaseStop, text::top_bar::RELEASE_FAULT_HOVER.get()),
         LoopState::Engaged | LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => {
             ui.add_space(theme::STOP_SIZE.x + 8.0);
             return;
@@ -241,7 +247,7 @@ fn step_ui(ui: &mut Ui, state: LoopState, Step { ready, next, wanted, past }: St
     let text = RichText::new(name).font(theme::strong(17.0));
     let button = next_button(text, next).min_size(theme::STOP_SIZE).corner_radius(theme::CORNER);
     let response = ui.add_enabled(ready, button).on_hover_text(meaning);
-    let response = if past { response.on_disabled_hover_text(text::past::BLOCKED) } else { response };
+    let response = if past { response.on_disabled_hover_text(text::past::BLOCKED.get()) } else { response };
     if response.clicked() || ready && wanted == Some(action) {
         outbox.push(command);
     }
@@ -251,9 +257,9 @@ fn step_ui(ui: &mut Ui, state: LoopState, Step { ready, next, wanted, past }: St
 fn refusal_ui(ui: &mut Ui, live: &Live) {
     let Some(Refused { side, command, why }) = live.refusal() else { return };
     let what = match command {
-        Command::Engage | Command::EngageOne(_) => text::top_bar::NOT_ENGAGED,
-        Command::ReleaseStop => text::top_bar::NOT_RELEASED,
-        _ => text::top_bar::NOT_SET,
+        Command::Engage | Command::EngageOne(_) => text::top_bar::NOT_ENGAGED.get(),
+        Command::ReleaseStop => text::top_bar::NOT_RELEASED.get(),
+        _ => text::top_bar::NOT_SET.get(),
     };
     let arm = if live.is_bimanual() { side.word() } else { "" };
     // Why an arm has no device is known from the list of devices.

@@ -101,9 +101,9 @@ impl TradeoffState {
                 self.measured = Some(figures);
                 self.message.clear();
             }
-            Some(Err(SweepError::Cancelled)) => self.tell(text::tradeoff::CANCELLED),
+            Some(Err(SweepError::Cancelled)) => self.tell(text::tradeoff::CANCELLED.get()),
             Some(Err(error)) => self.tell(error.to_string()),
-            Some(Ok(_)) | None => self.tell(text::tradeoff::FAILED),
+            Some(Ok(_)) | None => self.tell(text::tradeoff::FAILED.get()),
         }
     }
 }
@@ -123,7 +123,7 @@ pub fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState, outbox: 
         ui.label(small(state.message.clone()));
     }
     let Some(figures) = &state.measured else {
-        ui.label(small(text::tradeoff::NOT_MEASURED));
+        ui.label(small(text::tradeoff::NOT_MEASURED.get()));
         return None;
     };
     if let Some(clicked) = plot_ui(ui, figures, state.selected) {
@@ -136,8 +136,8 @@ pub fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState, outbox: 
 
 fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
     let Some(job) = &state.job else {
-        let meaning = text::tradeoff::MEASURE_HOVER;
-        let button = Button::new(text::tradeoff::MEASURE).min_size(vec2(ui.available_width(), 30.0));
+        let meaning = text::tradeoff::MEASURE_HOVER.get();
+        let button = Button::new(text::tradeoff::MEASURE.get()).min_size(vec2(ui.available_width(), 30.0));
         if ui.add(button).on_hover_text(meaning).clicked() {
             match Job::start(live) {
                 Ok(job) => state.job = Some(job),
@@ -154,8 +154,8 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
             let words = text::tradeoff::measured(100.0 * share);
             egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, words)
         });
-        let cancel = ui.add(Button::new(text::tradeoff::CANCEL).min_size(BUTTON));
-        if cancel.on_hover_text(text::tradeoff::CANCEL_HOVER).clicked() {
+        let cancel = ui.add(Button::new(text::tradeoff::CANCEL.get()).min_size(BUTTON));
+        if cancel.on_hover_text(text::tradeoff::CANCEL_HOVER.get()).clicked() {
             job.cancel.store(true, Ordering::Relaxed);
         }
     });
@@ -163,7 +163,7 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
 
 /// The points of the Pareto front, cheapest first, each a button.
 fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) {
-    ui.label(small(text::tradeoff::FRONT)).on_hover_text(text::tradeoff::FRONT_HOVER);
+    ui.label(small(text::tradeoff::FRONT.get())).on_hover_text(text::tradeoff::FRONT_HOVER.get());
     for index in front(figures) {
         let point = &figures.points[index];
         let row = Button::selectable(*selected == Some(index), format!("{}: {}", name(point), figures_of(point)));
@@ -186,8 +186,8 @@ fn apply_ui(
     // After a restart the loop is idle, so it must not be a way out of a stop or a fault.
     let closed = text::calibrations::closed(live.state()).filter(|_| restart);
     let size = vec2(ui.available_width(), 30.0);
-    let button = ui.add_enabled(closed.is_none(), Button::new(text::tradeoff::APPLY).min_size(size));
-    let note = if restart { text::tradeoff::APPLY_BY_RESTART } else { text::tradeoff::APPLY_AT_ONCE };
+    let button = ui.add_enabled(closed.is_none(), Button::new(text::tradeoff::APPLY.get()).min_size(size));
+    let note = if restart { text::tradeoff::APPLY_BY_RESTART.get() } else { text::tradeoff::APPLY_AT_ONCE.get() };
     ui.label(small(format!("{}. {note}", name(point))));
     let clicked = button
         .on_hover_text(format!("{}\n{}\n{note}", words(point), mode_meaning(mode)))
@@ -234,7 +234,7 @@ fn figures_of(point: &Point) -> String {
 
 /// Hover text of a point.
 pub(super) fn words(point: &Point) -> String {
-    let front = if point.pareto { text::tradeoff::ON_FRONT } else { "" };
+    let front = if point.pareto { text::tradeoff::ON_FRONT.get() } else { "" };
     let [median_us, p99_us, error_n, ratio] =
         [point.cost_us.p50, point.cost_us.p99, point.error, point.ratio].map(three_digits);
     let figures = text::tradeoff::point(&name(point), [&median_us, &p99_us], point.choice.delay_ms, [&error_n, &ratio]);

@@ -38,13 +38,13 @@ pub(crate) fn head_ui(ui: &mut Ui, past: &Past) -> bool {
     Panel::top("past").exact_size(HEAD).resizable(false).frame(frame).show(ui, |ui| {
         let ink = colours.background;
         ui.horizontal_centered(|ui| {
-            let word = RichText::new(text::past::PAST).font(theme::strong(30.0)).color(ink);
-            ui.label(word).on_hover_text(text::past::PAST_HOVER);
+            let word = RichText::new(text::past::PAST.get()).font(theme::strong(30.0)).color(ink);
+            ui.label(word).on_hover_text(text::past::PAST_HOVER.get());
             ui.add_space(8.0);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let words = RichText::new(text::past::LIVE_AGAIN).font(theme::strong(16.0));
+                let words = RichText::new(text::past::LIVE_AGAIN.get()).font(theme::strong(16.0));
                 let button = Button::new(words).min_size(vec2(150.0, 40.0)).corner_radius(theme::CORNER);
-                live_again = ui.add(button).on_hover_text(text::past::LIVE_AGAIN_HOVER).clicked();
+                live_again = ui.add(button).on_hover_text(text::past::LIVE_AGAIN_HOVER.get()).clicked();
                 ui.add_space(12.0);
                 machine_ui(ui, ink);
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| words_ui(ui, past, ink));
@@ -56,8 +56,8 @@ pub(crate) fn head_ui(ui: &mut Ui, past: &Past) -> bool {
 
 /// What of the screen is not recorded.
 fn machine_ui(ui: &mut Ui, ink: Color32) {
-    let words = RichText::new(text::past::MACHINE).font(theme::strong(13.0)).color(ink);
-    ui.label(words).on_hover_text(text::past::PAST_HOVER);
+    let words = RichText::new(text::past::MACHINE.get()).font(theme::strong(13.0)).color(ink);
+    ui.label(words).on_hover_text(text::past::PAST_HOVER.get());
     let (rect, _) = ui.allocate_exact_size(vec2(14.0, 14.0), Sense::hover());
     let points = [vec2(0.0, -6.0), vec2(6.0, 4.0), vec2(-6.0, 4.0)].map(|point| rect.center() + point);
     ui.painter().add(egui::Shape::convex_polygon(points.to_vec(), ink, Stroke::NONE));
@@ -73,7 +73,7 @@ fn words_ui(ui: &mut Ui, past: &Past, ink: Color32) {
         };
         let name = past.path.file_name().unwrap_or_default().to_string_lossy();
         let when = past.about.map(|about| text::past::when(about.begin_ns + (past.shown_s() * 1e9) as u64));
-        let when = when.unwrap_or_else(|| text::past::OPENING.to_owned());
+        let when = when.unwrap_or_else(|| text::past::OPENING.get().to_owned());
         line(ui, text::past::of_session(&when, &name), theme::strong(16.0));
         let alarm = past.live.as_ref().and_then(|live| judge(&live.signs(false, None)).into_iter().next());
         let words = match (&past.told.refused, alarm) {
@@ -88,11 +88,11 @@ fn words_ui(ui: &mut Ui, past: &Past, ink: Color32) {
 /// How much of the moment is shown.
 fn extent(past: &Past) -> &'static str {
     if past.is_whole() {
-        text::past::WHOLE
+        text::past::WHOLE.get()
     } else if past.told.limited.is_some() {
-        text::past::PLOTTED_ONLY
+        text::past::PLOTTED_ONLY.get()
     } else {
-        text::past::PLOTTED
+        text::past::PLOTTED.get()
     }
 }
 
@@ -108,9 +108,9 @@ pub(crate) fn bar_ui(ui: &mut Ui, past: &mut Past) {
 
 fn buttons_ui(ui: &mut Ui, past: &mut Past) {
     let ctx = ui.ctx().clone();
-    let name = if past.play.runs { text::past::PAUSE } else { text::past::PLAY };
+    let name = if past.play.runs { text::past::PAUSE.get() } else { text::past::PLAY.get() };
     let play = Button::new(RichText::new(name).font(theme::strong(14.0))).min_size(vec2(70.0, BUTTON));
-    if ui.add_enabled(past.live.is_some(), play).on_hover_text(text::past::PLAY_HOVER).clicked() {
+    if ui.add_enabled(past.live.is_some(), play).on_hover_text(text::past::PLAY_HOVER.get()).clicked() {
         past.toggle();
     }
     ui.scope(|ui| {
@@ -118,7 +118,7 @@ fn buttons_ui(ui: &mut Ui, past: &mut Past) {
         for speed in SPEEDS {
             let chosen = (past.play.speed - speed).abs() < 1e-9;
             let button = Button::selectable(chosen, text::past::speed(speed)).frame_when_inactive(true);
-            if ui.add(button.min_size(vec2(40.0, BUTTON))).on_hover_text(text::past::SPEED_HOVER).clicked() {
+            if ui.add(button.min_size(vec2(40.0, BUTTON))).on_hover_text(text::past::SPEED_HOVER.get()).clicked() {
                 past.play.speed = speed;
             }
         }
@@ -127,9 +127,10 @@ fn buttons_ui(ui: &mut Ui, past: &mut Past) {
     ui.add_space(6.0);
     let place = RichText::new(text::past::position(past.shown_s(), end_s)).font(theme::strong(15.0));
     ui.add_sized(vec2(176.0, BUTTON), Label::new(place));
-    for (at, name, meaning) in
-        [(0, text::past::FROM, text::past::FROM_HOVER), (1, text::past::TO, text::past::TO_HOVER)]
-    {
+    for (at, name, meaning) in [
+        (0, text::past::FROM.get(), text::past::FROM_HOVER.get()),
+        (1, text::past::TO.get(), text::past::TO_HOVER.get()),
+    ] {
         let set = past.stretch_s[at].is_some();
         let button = Button::selectable(set, name).frame_when_inactive(true).min_size(vec2(50.0, BUTTON));
         if ui.add_enabled(past.live.is_some(), button).on_hover_text(meaning).clicked() {
@@ -137,18 +138,18 @@ fn buttons_ui(ui: &mut Ui, past: &mut Past) {
         }
     }
     let free = past.job.is_none();
-    let save = Button::new(text::past::SAVE).min_size(vec2(112.0, BUTTON));
-    let save = ui.add_enabled(free && past.stretch_s().is_some(), save).on_hover_text(text::past::SAVE_HOVER);
-    if save.on_disabled_hover_text(text::past::SAVE_DISABLED_HOVER).clicked() {
+    let save = Button::new(text::past::SAVE.get()).min_size(vec2(112.0, BUTTON));
+    let save = ui.add_enabled(free && past.stretch_s().is_some(), save).on_hover_text(text::past::SAVE_HOVER.get());
+    if save.on_disabled_hover_text(text::past::SAVE_DISABLED_HOVER.get()).clicked() {
         past.save(&ctx);
     }
-    let report = Button::new(text::past::REPORT).min_size(vec2(64.0, BUTTON));
-    if ui.add_enabled(free, report).on_hover_text(text::past::REPORT_HOVER).clicked() {
+    let report = Button::new(text::past::REPORT.get()).min_size(vec2(64.0, BUTTON));
+    if ui.add_enabled(free, report).on_hover_text(text::past::REPORT_HOVER.get()).clicked() {
         past.report(&ctx);
     }
     let other = past.beside.is_some();
-    let compare = Button::selectable(other, text::past::COMPARE).frame_when_inactive(true);
-    let compare = ui.add(compare.min_size(vec2(80.0, BUTTON))).on_hover_text(text::past::COMPARE_HOVER);
+    let compare = Button::selectable(other, text::past::COMPARE.get()).frame_when_inactive(true);
+    let compare = ui.add(compare.min_size(vec2(80.0, BUTTON))).on_hover_text(text::past::COMPARE_HOVER.get());
     if compare.clicked() {
         past.wants_beside = !other;
         past.beside = None;
@@ -166,7 +167,7 @@ fn strip_ui(ui: &mut Ui, past: &mut Past) {
     let strip = Rect::from_min_size(rect.min, vec2(rect.width(), STRIP));
     let Some(end_s) = past.about.map(|about| about.end_s).filter(|end_s| *end_s > 0.0) else { return };
     let shown_s = past.shown_s();
-    response.widget_info(|| WidgetInfo::slider(true, shown_s, text::past::TIMELINE));
+    response.widget_info(|| WidgetInfo::slider(true, shown_s, text::past::TIMELINE.get()));
     let painter = ui.painter_at(rect.expand(2.0));
     painter.rect_filled(strip, 3.0, theme::now().groove);
     let x_of = |t_s: f64| strip.left() + (t_s / end_s).clamp(0.0, 1.0) as f32 * strip.width();

@@ -36,7 +36,7 @@ fn half_ui(ui: &mut Ui, past: &mut Past, smooth: bool) {
         ui.add(Label::new(RichText::new(&words).font(theme::strong(14.0))).truncate()).on_hover_text(words);
     });
     let Some(live) = &mut past.live else {
-        let words = past.told.refused.as_deref().unwrap_or(text::past::OPENING);
+        let words = past.told.refused.as_deref().unwrap_or(text::past::OPENING.get());
         ui.centered_and_justified(|ui| ui.label(weak(words)));
         return;
     };

@@ -16,6 +16,7 @@ use nima_recording::session::Reader;
 use nima_session::{cut, plotted, shelf::keep};
 
 use crate::console::{chain, opener, text};
+use crate::language::{self, Language};
 
 /// Folder of the reports, beside the sessions.
 const REPORTS: &str = "reports";
@@ -46,7 +47,7 @@ impl Job {
         match self.told.try_recv() {
             Ok(words) => (words, true),
             Err(TryRecvError::Empty) => (self.doing.to_owned(), false),
-            Err(TryRecvError::Disconnected) => (text::past::NO_THREAD.to_owned(), true),
+            Err(TryRecvError::Disconnected) => (text::past::NO_THREAD.get().to_owned(), true),
         }
     }
 
@@ -60,16 +61,17 @@ impl Job {
             ctx.request_repaint();
         };
         // If no thread can be created, `tell` is dropped, and that is told.
-        let tidies = thread::Builder::new().name("session".to_owned()).spawn(work).ok();
+        let tidies = thread::Builder::new().name("session".to_owned()).spawn(language::carried(work)).ok();
         Self { doing, told, left, tidies }
     }
 
     /// Writes the page of a session and opens it, if this computer has a program for it.
     pub(super) fn report(ctx: &Context, session: &Path) -> Self {
         let session = session.to_path_buf();
-        let mut job = Self::start(ctx, text::past::REPORTING, move |_| {
+        let mut job = Self::start(ctx, text::past::REPORTING.get(), move |_| {
             let folder = beside(&session).join(REPORTS).join(session.file_stem().unwrap_or_default());
-            match crate::report::write(&[session], &folder) {
+            // What is written is English.
+            match language::with(Language::English, || crate::report::write(&[session], &folder)) {
                 Ok(page) => {
                     // Where there is none, the words on the screen say where the file is.
                     opener::open(&page);
@@ -86,7 +88,7 @@ impl Job {
     /// Saves the stretch between these times (s) beside the session, and keeps it.
     pub(super) fn cut(ctx: &Context, session: &Path, times_s: Range<f64>) -> Self {
         let session = session.to_path_buf();
-        Self::start(ctx, text::past::CUTTING, move |left| match save(&session, &times_s, left) {
+        Self::start(ctx, text::past::CUTTING.get(), move |left| match save(&session, &times_s, left) {
             Ok(path) => text::past::saved(&path),
             Err(why) => text::past::not_saved(&why),
         })

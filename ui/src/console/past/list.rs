@@ -17,6 +17,7 @@ use crate::console::{
     chain, text, theme,
     widgets::{small, weak},
 };
+use crate::language;
 
 const BUTTON: egui::Vec2 = vec2(74.0, 28.0);
 
@@ -70,7 +71,7 @@ impl List {
             ctx.request_repaint();
         };
         // If no thread can be created, nothing comes, and the list stays as it was.
-        thread::Builder::new().name("sessions".to_owned()).spawn(work).ok();
+        thread::Builder::new().name("sessions".to_owned()).spawn(language::carried(work)).ok();
         self.reading = Some(rows);
     }
 
@@ -97,21 +98,21 @@ impl List {
         let frame = Frame::new().inner_margin(Margin::symmetric(18, 14));
         CentralPanel::default().frame(frame).show(ui, |ui| {
             ui.horizontal(|ui| {
-                let back = Button::new(text::past::BACK).min_size(vec2(150.0, 36.0));
+                let back = Button::new(text::past::BACK.get()).min_size(vec2(150.0, 36.0));
                 if ui.add(back).clicked() {
                     self.is_open = false;
                 }
                 ui.add_space(8.0);
-                let heading = if self.for_beside { text::past::BESIDE } else { text::past::LIST };
+                let heading = if self.for_beside { text::past::BESIDE.get() } else { text::past::LIST.get() };
                 ui.label(RichText::new(heading).font(theme::strong(19.0)));
                 let folder = self.folder.as_ref().map(|folder| folder.display().to_string());
-                ui.add(Label::new(small(folder.unwrap_or_else(|| text::past::NO_SHELF.to_owned()))).truncate());
+                ui.add(Label::new(small(folder.unwrap_or_else(|| text::past::NO_SHELF.get().to_owned()))).truncate());
             });
             // A line of its own, so that what is below never moves.
             ui.label(weak(self.told.clone().unwrap_or_default()));
             ui.add_space(4.0);
             if self.rows.is_empty() && self.folder.is_some() {
-                let words = if self.reading.is_some() { text::past::LOOKING } else { text::past::EMPTY };
+                let words = if self.reading.is_some() { text::past::LOOKING.get() } else { text::past::EMPTY.get() };
                 ui.label(weak(words));
             }
             ScrollArea::both().auto_shrink(false).show(ui, |ui| {
@@ -173,16 +174,16 @@ fn row_ui(ui: &mut Ui, row: &Row, is_asked: bool, free: bool) -> Option<Wish> {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let usable = about.is_ok();
-        button(ui, text::past::OPEN, usable, false, [text::past::OPEN_HOVER; 2], Wish::Open(path.clone()));
-        let keep = if *kept { text::past::KEPT } else { text::past::KEEP };
-        button(ui, keep, true, *kept, [text::past::KEEP_HOVER; 2], Wish::Keep(path.clone(), !kept));
+        button(ui, text::past::OPEN.get(), usable, false, [text::past::OPEN_HOVER.get(); 2], Wish::Open(path.clone()));
+        let keep = if *kept { text::past::KEPT.get() } else { text::past::KEEP.get() };
+        button(ui, keep, true, *kept, [text::past::KEEP_HOVER.get(); 2], Wish::Keep(path.clone(), !kept));
         let report = Wish::Report(path.clone());
-        button(ui, text::past::REPORT, usable && free, false, [text::past::REPORT_HOVER; 2], report);
-        let why = if *writing { text::past::DELETE_RUNNING_HOVER } else { text::past::DELETE_KEPT_HOVER };
+        button(ui, text::past::REPORT.get(), usable && free, false, [text::past::REPORT_HOVER.get(); 2], report);
+        let why = if *writing { text::past::DELETE_RUNNING_HOVER.get() } else { text::past::DELETE_KEPT_HOVER.get() };
         let (words, hover, then) = if is_asked {
-            (text::past::DELETE_NOW, text::past::DELETE_NOW_HOVER, Wish::Delete(path.clone()))
+            (text::past::DELETE_NOW.get(), text::past::DELETE_NOW_HOVER.get(), Wish::Delete(path.clone()))
         } else {
-            (text::past::DELETE, text::past::DELETE_HOVER, Wish::Ask(path.clone()))
+            (text::past::DELETE.get(), text::past::DELETE_HOVER.get(), Wish::Ask(path.clone()))
         };
         button(ui, words, !kept && !writing, is_asked, [hover, why], then);
     });
@@ -208,7 +209,7 @@ fn about_ui(ui: &mut Ui, Row { shelved, about }: &Row) {
     ui.label(weak(text::past::megabytes(*bytes)));
     let stretch_from_s = about.as_ref().ok().and_then(|about| about.stretch_from_s);
     ui.label(weak(match stretch_from_s {
-        _ if *writing => text::past::RECORDING.to_owned(),
+        _ if *writing => text::past::RECORDING.get().to_owned(),
         Some(from_s) => text::past::stretch(from_s),
         None => String::new(),
     }));

@@ -19,6 +19,7 @@ use super::{
     overview::{Overview, Tables},
 };
 use crate::console::live::Live;
+use crate::language;
 
 /// What was read is told this often.
 const TELL_EVERY: Duration = Duration::from_millis(60);
@@ -92,7 +93,7 @@ impl Worker {
             }
         };
         // If no thread can be created, the answers end at once.
-        thread::Builder::new().name("past".to_owned()).spawn(work).ok();
+        thread::Builder::new().name("past".to_owned()).spawn(language::carried(work)).ok();
         Self { gently, wishes, answers }
     }
 

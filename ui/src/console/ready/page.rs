@@ -34,26 +34,26 @@ pub(crate) fn ready_ui(
     saved: Option<&str>,
     roster: &Roster,
 ) -> Option<Wish> {
-    ui.label(RichText::new(text::ready::TITLE).font(theme::strong(22.0)));
-    ui.label(small(text::ready::MEANING));
+    ui.label(RichText::new(text::ready::TITLE.get()).font(theme::strong(22.0)));
+    ui.label(small(text::ready::MEANING.get()));
     ui.add_space(theme::GAP);
     ui.horizontal(|ui| {
-        let label = ui.label(text::ready::BY).on_hover_text(text::ready::BY_HOVER);
+        let label = ui.label(text::ready::BY.get()).on_hover_text(text::ready::BY_HOVER.get());
         ui.add(TextEdit::singleline(by).desired_width(280.0).char_limit(120)).labelled_by(label.id);
     });
     ui.add_space(theme::GAP);
     let Some(run) = run else {
-        ui.label(text::ready::WAITS);
+        ui.label(text::ready::WAITS.get());
         return None;
     };
     let session = &run.session;
     let mut wish = None;
-    card(ui, text::ready::NOW, text::ready::MEANING, |ui| {
+    card(ui, text::ready::NOW.get(), text::ready::MEANING.get(), |ui| {
         if session.is_finished() {
             wish = end_ui(ui, run, saved);
         } else {
             let words = ask_words(&session.ask());
-            let words = if session.ask() == Ask::Nothing { text::ready::BY_ITSELF.to_owned() } else { words };
+            let words = if session.ask() == Ask::Nothing { text::ready::BY_ITSELF.get().to_owned() } else { words };
             ui.add(Label::new(RichText::new(words).font(theme::strong(18.0))).wrap());
             ui.label(small(text::ready::took(session.took_s())));
         }
@@ -67,7 +67,7 @@ pub(crate) fn ready_ui(
 
 fn end_ui(ui: &mut Ui, run: &Run, saved: Option<&str>) -> Option<Wish> {
     let passed = run.session.has_passed();
-    let words = if passed { text::ready::PASSED } else { text::ready::FAILED };
+    let words = if passed { text::ready::PASSED.get() } else { text::ready::FAILED.get() };
     ui.horizontal(|ui| {
         let (what, colour) =
             if passed { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().alarm_medium) };
@@ -87,11 +87,11 @@ fn end_ui(ui: &mut Ui, run: &Run, saved: Option<&str>) -> Option<Wish> {
             }
         };
         if passed {
-            offer(text::ready::CLOSE, text::ready::CLOSE_HOVER, Wish::Close);
+            offer(text::ready::CLOSE.get(), text::ready::CLOSE_HOVER.get(), Wish::Close);
         } else {
-            offer(text::ready::AGAIN, text::ready::AGAIN_HOVER, Wish::Again);
+            offer(text::ready::AGAIN.get(), text::ready::AGAIN_HOVER.get(), Wish::Again);
         }
-        offer(text::ready::WHOLE, text::ready::WHOLE_HOVER, Wish::Whole);
+        offer(text::ready::WHOLE.get(), text::ready::WHOLE_HOVER.get(), Wish::Whole);
     });
     wish
 }

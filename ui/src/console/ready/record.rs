@@ -1,11 +1,12 @@
 //! The record of a ready check.
 
 use nima_machine::{
-    ready::{Session, State},
+    ready::{Entry, Session, State},
     rig::Roster,
 };
 use nima_recording::store::{CheckedDevice, CheckedItem, Outcome, READY_CHECK, ReadyRecord, utc_now};
 
+use crate::language::{self, Language};
 use crate::words::{cause_words, check_name, lacks_words, unit};
 
 /// The devices of a rig with the serial numbers that they told.
@@ -20,6 +21,9 @@ pub(crate) fn devices_of(roster: &Roster) -> Vec<CheckedDevice> {
 
 /// The record of this check on the rig of this file, made by this person.
 pub(crate) fn record(session: &Session, rig_file: &str, by: &str, roster: &Roster) -> ReadyRecord {
+    // A file is English, whatever the window shows.
+    let item =
+        |entry: &Entry| language::with(Language::English, || item(&check_name(entry.check), &entry.state, roster));
     ReadyRecord {
         kind: READY_CHECK.to_owned(),
         date: utc_now(),
@@ -30,7 +34,7 @@ pub(crate) fn record(session: &Session, rig_file: &str, by: &str, roster: &Roste
         passed: session.has_passed(),
         took_s: (session.took_s() * 10.0).round() / 10.0,
         devices: devices_of(roster),
-        items: session.list().iter().map(|entry| item(&check_name(entry.check), &entry.state, roster)).collect(),
+        items: session.list().iter().map(item).collect(),
     }
 }
 

@@ -16,6 +16,7 @@ use crate::console::{
     text, theme,
     widgets::{bar, card, small},
 };
+use crate::language::Text;
 
 /// With less width than this the chapters need two rows.
 const ONE_ROW: f32 = 1270.0;
@@ -32,9 +33,9 @@ const CLOSED_S: f64 = 2.5;
 #[derive(Debug)]
 pub struct Step {
     /// Name on its button.
-    pub name: &'static str,
+    pub name: Text,
     /// What can be seen, and why.
-    pub words: &'static str,
+    pub words: Text,
     /// Rendering mode.
     pub mode: Mode,
     /// Delay of the link, s.
@@ -317,15 +318,15 @@ fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
         for (i, step) in SCRIPT.iter().enumerate() {
             let name = format!("{}. {}", i + 1, step.name);
             let button = Button::selectable(demo.step == i, name).frame_when_inactive(true).min_size(vec2(0.0, 30.0));
-            if ui.add_enabled(may_show(live, step), button).on_hover_text(step.words).clicked() {
+            if ui.add_enabled(may_show(live, step), button).on_hover_text(step.words.get()).clicked() {
                 demo.go_to(i);
             }
         }
         ui.add_space(10.0);
         let (name, meaning) = if demo.held {
-            (text::roles::PLAY, text::roles::PLAY_HOVER)
+            (text::roles::PLAY.get(), text::roles::PLAY_HOVER.get())
         } else {
-            (text::roles::HOLD, text::roles::HOLD_HOVER)
+            (text::roles::HOLD.get(), text::roles::HOLD_HOVER.get())
         };
         if ui.add_enabled(plays, Button::new(name).min_size(vec2(64.0, 30.0))).on_hover_text(meaning).clicked() {
             demo.held = !demo.held;
@@ -333,12 +334,12 @@ fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
     });
     ui.add_space(4.0);
     let words = match live.state() {
-        _ if !plays => text::roles::NOTE_REAL_RIG,
-        LoopState::Engaged => SCRIPT[demo.step].words,
-        LoopState::Idle if demo.letting_go.from_m.is_some() => SCRIPT[demo.step].words,
-        LoopState::Idle => text::roles::NOTE_IDLE,
-        LoopState::Stopped | LoopState::Faulted(_) => text::roles::NOTE_STOPPED,
-        LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => text::roles::NOTE_NOT_ENGAGED,
+        _ if !plays => text::roles::NOTE_REAL_RIG.get(),
+        LoopState::Engaged => SCRIPT[demo.step].words.get(),
+        LoopState::Idle if demo.letting_go.from_m.is_some() => SCRIPT[demo.step].words.get(),
+        LoopState::Idle => text::roles::NOTE_IDLE.get(),
+        LoopState::Stopped | LoopState::Faulted(_) => text::roles::NOTE_STOPPED.get(),
+        LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => text::roles::NOTE_NOT_ENGAGED.get(),
     };
     let went = demo.letting_go.travel_m.filter(|_| plays).map(|travel_m| text::roles::handle_went(1e3 * travel_m));
     let words = went.map_or_else(|| words.to_owned(), |went| format!("{words} {went}"));
@@ -348,19 +349,22 @@ fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
         bar(ui.painter(), rect, demo.shown_s / SCRIPT[demo.step].seconds, theme::now().reference);
     }
     if !plays {
-        ui.label(small(text::roles::NOTE_CHOOSE_SIMULATED));
+        ui.label(small(text::roles::NOTE_CHOOSE_SIMULATED.get()));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::language::{self, Language};
 
     #[test]
     fn every_chapter_is_long_enough_to_be_read() {
         for step in &SCRIPT {
-            let words = step.words.split_whitespace().count() as f64;
-            assert!(step.seconds >= words / 4.0, "{}: {words} words in {} s", step.name, step.seconds);
+            for language in Language::CHOICES {
+                let words = language::with(language, || step.words.get().split_whitespace().count() as f64);
+                assert!(step.seconds >= words / 4.0, "{}: {words} words in {} s", step.name, step.seconds);
+            }
         }
     }
 

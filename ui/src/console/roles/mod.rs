@@ -46,11 +46,11 @@ impl Role {
     pub const ALL: [Self; 3] = [Self::Surgeon, Self::Technician, Self::Demo];
 
     /// Name on its button.
-    pub const fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
-            Self::Surgeon => text::roles::SURGEON,
-            Self::Technician => text::roles::TECHNICIAN,
-            Self::Demo => text::roles::DEMO,
+            Self::Surgeon => text::roles::SURGEON.get(),
+            Self::Technician => text::roles::TECHNICIAN.get(),
+            Self::Demo => text::roles::DEMO.get(),
         }
     }
 
@@ -64,11 +64,11 @@ impl Role {
     }
 
     /// Explanation of the view.
-    pub const fn meaning(self) -> &'static str {
+    pub fn meaning(self) -> &'static str {
         match self {
-            Self::Surgeon => text::roles::SURGEON_HOVER,
-            Self::Technician => text::roles::TECHNICIAN_HOVER,
-            Self::Demo => text::roles::DEMO_HOVER,
+            Self::Surgeon => text::roles::SURGEON_HOVER.get(),
+            Self::Technician => text::roles::TECHNICIAN_HOVER.get(),
+            Self::Demo => text::roles::DEMO_HOVER.get(),
         }
     }
 }
@@ -151,7 +151,7 @@ pub fn switch_ui(ui: &mut Ui, roles: &[Role], now: &mut Role, allowed: bool) {
         let button = Button::selectable(*now == role, role.name()).frame_when_inactive(true).min_size(vec2(62.0, 30.0));
         let response = ui.add_enabled(allowed, button);
         let response = response.on_hover_text(text::roles::meaning_and_key(role.meaning(), role.key().name()));
-        if response.on_disabled_hover_text(text::roles::SWITCH_DISABLED_HOVER).clicked() {
+        if response.on_disabled_hover_text(text::roles::SWITCH_DISABLED_HOVER.get()).clicked() {
             *now = role;
         }
     }

@@ -71,7 +71,7 @@ fn told_ui(ui: &Ui, live: &Live, place: Rect) {
     let text = place.left_top() + vec2(16.0, 16.0);
     painter.text(text, Align2::LEFT_TOP, &live.scene.name, theme::strong(17.0), theme::now().text);
     for (i, (rendered, words)) in
-        [(false, text::roles::MEASURED), (true, text::roles::RENDERED)].into_iter().enumerate()
+        [(false, text::roles::MEASURED.get()), (true, text::roles::RENDERED.get())].into_iter().enumerate()
     {
         let y = text.y + 52.0 + 34.0 * i as f32;
         force_sign(&painter, theme::now(), Rect::from_center_size(pos2(text.x + 18.0, y), vec2(36.0, 16.0)), rendered);
@@ -87,7 +87,7 @@ fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
     let name = text::common::hand(side_name(side));
     let words = text::roles::hand(&name, measured_n, rendered_n, ceiling_n);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
-    response.on_hover_text(text::roles::BARS_HOVER);
+    response.on_hover_text(text::roles::BARS_HOVER.get());
     let painter = ui.painter_at(place);
     painter.rect_filled(place, theme::CORNER, theme::now().card);
     let inner = place.shrink2(vec2(16.0, 12.0));

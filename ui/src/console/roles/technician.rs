@@ -46,7 +46,7 @@ pub(super) fn technician_ui(
         Panel::Timing => timing_ui(ui, live, &mut panels.timing),
         Panel::Link if past => {
             let elsewhere = live.of == Of::Elsewhere;
-            ui.label(weak(if elsewhere { text::monitor::NO_LINK } else { text::link::NOT_IN_SESSIONS }));
+            ui.label(weak(if elsewhere { text::monitor::NO_LINK.get() } else { text::link::NOT_IN_SESSIONS.get() }));
         }
         Panel::Link => link_ui(ui, live),
         Panel::Tradeoff => wishes.restart = acts(ui, past, |ui| tradeoff_ui(ui, live, &mut panels.tradeoff, outbox)),
@@ -60,13 +60,13 @@ fn devices_then_ui(ui: &mut Ui, live: &Live) {
     let elsewhere = live.of == Of::Elsewhere;
     Frame::new().inner_margin(Margin::same(8)).show(ui, |ui| {
         if live.devices_then.is_empty() {
-            ui.label(if elsewhere { text::monitor::SIMULATED } else { text::past::SIMULATED });
+            ui.label(if elsewhere { text::monitor::SIMULATED.get() } else { text::past::SIMULATED.get() });
         }
         for (name, standing) in &live.devices_then {
             ui.label(text::past::device(name, *standing));
         }
         ui.add_space(6.0);
-        ui.label(weak(if elsewhere { text::monitor::NOT_OF_DEVICES } else { text::past::NOT_OF_DEVICES }));
+        ui.label(weak(if elsewhere { text::monitor::NOT_OF_DEVICES.get() } else { text::past::NOT_OF_DEVICES.get() }));
     });
 }
 

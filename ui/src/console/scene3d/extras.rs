@@ -14,29 +14,30 @@ use super::{
     stage::{self, Arm},
 };
 use crate::console::{text, theme};
+use crate::language::Text;
 
 /// Length of a frame's axes, m.
 const AXIS_M: f32 = 0.016;
 const RING: u32 = 64;
 
 /// Label of the menu of optional objects.
-pub const SHOW: &str = text::field::SHOW;
+pub const SHOW: Text = text::field::SHOW;
 /// Hover text of [`SHOW`].
-pub const SHOW_MEANING: &str = text::field::SHOW_HOVER;
+pub const SHOW_MEANING: Text = text::field::SHOW_HOVER;
 /// Label of the switch for the ceiling.
-pub const CEILING: &str = text::field::CEILING;
+pub const CEILING: Text = text::field::CEILING;
 /// Hover text of [`CEILING`].
-pub const CEILING_MEANING: &str = text::field::CEILING_HOVER;
+pub const CEILING_MEANING: Text = text::field::CEILING_HOVER;
 /// Label of the switch for the frames.
-pub const FRAMES: &str = text::field::FRAMES;
+pub const FRAMES: Text = text::field::FRAMES;
 /// Hover text of [`FRAMES`].
-pub const FRAMES_MEANING: &str = text::field::FRAMES_HOVER;
+pub const FRAMES_MEANING: Text = text::field::FRAMES_HOVER;
 /// Label of the switch for shadows.
-pub const SHADOWS: &str = text::field::SHADOWS;
+pub const SHADOWS: Text = text::field::SHADOWS;
 /// Label of the switch for the depth cue.
-pub const DEPTH: &str = text::field::DEPTH;
+pub const DEPTH: Text = text::field::DEPTH;
 /// Label of the switch for the round picture.
-pub const ROUND: &str = text::field::ROUND;
+pub const ROUND: Text = text::field::ROUND;
 
 /// Which objects are shown, and how the picture looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,24 +81,24 @@ impl Switch {
     pub const ALL: [Self; 5] = [Self::Ceiling, Self::Frames, Self::Shadows, Self::Depth, Self::Round];
 
     /// Its label.
-    pub const fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
-            Self::Ceiling => CEILING,
-            Self::Frames => FRAMES,
-            Self::Shadows => SHADOWS,
-            Self::Depth => DEPTH,
-            Self::Round => ROUND,
+            Self::Ceiling => CEILING.get(),
+            Self::Frames => FRAMES.get(),
+            Self::Shadows => SHADOWS.get(),
+            Self::Depth => DEPTH.get(),
+            Self::Round => ROUND.get(),
         }
     }
 
     /// Its hover text.
-    pub const fn meaning(self) -> &'static str {
+    pub fn meaning(self) -> &'static str {
         match self {
-            Self::Ceiling => CEILING_MEANING,
-            Self::Frames => FRAMES_MEANING,
-            Self::Shadows => text::field::SHADOWS_HOVER,
-            Self::Depth => text::field::DEPTH_HOVER,
-            Self::Round => text::field::ROUND_HOVER,
+            Self::Ceiling => CEILING_MEANING.get(),
+            Self::Frames => FRAMES_MEANING.get(),
+            Self::Shadows => text::field::SHADOWS_HOVER.get(),
+            Self::Depth => text::field::DEPTH_HOVER.get(),
+            Self::Round => text::field::ROUND_HOVER.get(),
         }
     }
 }
@@ -127,7 +128,7 @@ impl Extras {
         let place = Rect::from_min_size(rect.right_bottom() - vec2(330.0, 46.0), vec2(72.0, 34.0)).intersect(rect);
         ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
             let on = *self != Self::default();
-            let button = Button::selectable(on, SHOW).frame_when_inactive(true).min_size(place.size());
+            let button = Button::selectable(on, SHOW.get()).frame_when_inactive(true).min_size(place.size());
             // Stays open until a click elsewhere, because often both switches are wanted.
             let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
             let menu = MenuButton::from_button(button).config(config);
@@ -137,7 +138,7 @@ impl Extras {
                     ui.checkbox(self.of(switch), switch.name()).on_hover_text(switch.meaning());
                 }
             });
-            response.on_hover_text(SHOW_MEANING);
+            response.on_hover_text(SHOW_MEANING.get());
         });
     }
 
@@ -192,21 +193,21 @@ fn frames(scene: &Scene, arms: &[Arm]) -> Vec<Axes> {
     let base = [Vector3::x(), Vector3::y(), Vector3::z()];
     let endoscope = Camera::endoscope(scene);
     let mut frames = vec![
-        Axes { name: text::field::FRAME_WORLD.to_owned(), origin_m: Vector3::zeros(), ways: base },
+        Axes { name: text::field::FRAME_WORLD.get().to_owned(), origin_m: Vector3::zeros(), ways: base },
         Axes {
-            name: text::field::ENDOSCOPE.to_owned(),
+            name: text::field::ENDOSCOPE.get().to_owned(),
             origin_m: endoscope.eye_m(),
             ways: [endoscope.right(), endoscope.up(), endoscope.right().cross(&endoscope.up())],
         },
     ];
     for arm in arms {
         let side = if arms.len() > 1 { format!(" {}", side_name(arm.side).to_lowercase()) } else { String::new() };
-        frames.push(Axes { name: text::field::TROCAR.to_owned() + &side, origin_m: arm.trocar_m, ways: base });
+        frames.push(Axes { name: text::field::TROCAR.get().to_owned() + &side, origin_m: arm.trocar_m, ways: base });
         let Some(z) = (arm.trocar_m - arm.pose.tip_m).try_normalize(1e-4) else { continue };
         // The direction of x closest to the base's x.
         let x = (Vector3::x() - z * z.x).try_normalize(1e-3).unwrap_or_else(Vector3::y);
         frames.push(Axes {
-            name: text::field::TIP.to_owned() + &side,
+            name: text::field::TIP.get().to_owned() + &side,
             origin_m: arm.pose.tip_m,
             ways: [x, z.cross(&x), z],
         });

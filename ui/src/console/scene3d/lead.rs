@@ -137,7 +137,7 @@ impl Lead {
             self.forget();
         }
         let place = Rect::from_min_size(rect.right_bottom() - vec2(250.0, 46.0), vec2(150.0, 34.0));
-        let text = if self.is_on() { text::field::LEAD_END } else { text::field::LEAD };
+        let text = if self.is_on() { text::field::LEAD_END.get() } else { text::field::LEAD.get() };
         let button =
             Button::selectable(self.is_on(), RichText::new(text).font(theme::strong(14.0))).frame_when_inactive(true);
         let asked = if self.is_held {

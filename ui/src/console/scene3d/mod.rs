@@ -162,7 +162,7 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         view.starts_m = Worlds::new(&live.scene, live.rig.rate_hz).tips_m();
     }
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, text::field::OPERATING_FIELD));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, text::field::OPERATING_FIELD.get()));
     // Reserves a place below the buttons of the view, because the triangles are known only later.
     let ground = ui.painter_at(rect).add(egui::Shape::Noop);
     let camera = view.camera(&live.scene);
@@ -320,7 +320,7 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
             painter,
             place + vec2(18.0, 0.0),
             Align2::LEFT_CENTER,
-            text::field::TROCAR,
+            text::field::TROCAR.get(),
             theme::regular(13.0),
             theme::DARK.text_weak,
         );
@@ -353,10 +353,10 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
 }
 
 /// Name of a hand.
-pub const fn side_name(side: Side) -> &'static str {
+pub fn side_name(side: Side) -> &'static str {
     match side {
-        Side::Right => text::common::RIGHT,
-        Side::Left => text::common::LEFT,
+        Side::Right => text::common::RIGHT.get(),
+        Side::Left => text::common::LEFT.get(),
     }
 }
 
@@ -390,8 +390,8 @@ fn readings(painter: &Painter, rect: Rect, live: &Live) {
         Rect::from_min_max(rect.left_top() + vec2(8.0, 8.0), pos2(column(sides.len() - 1) + 12.0, corner.y + 72.0));
     painter.rect_filled(plate, theme::CORNER, theme::VEIL);
     let rows = [
-        (text::common::MEASURED, figures.measured_n, theme::DARK.measured),
-        (text::common::RENDERED, figures.rendered_n, theme::DARK.rendered),
+        (text::common::MEASURED.get(), figures.measured_n, theme::DARK.measured),
+        (text::common::RENDERED.get(), figures.rendered_n, theme::DARK.rendered),
     ];
     for (i, (name, forces_n, colour)) in rows.into_iter().enumerate() {
         let y = corner.y + 14.0 + 34.0 * i as f32;
@@ -446,10 +446,10 @@ fn hint(painter: &Painter, rect: Rect, live: &Live, view: &SceneView) {
         }
         // Not in a trial of a study: it would tell the mode.
         None if view.arrows && training::needs_another_mode(live) => {
-            (format!("{}\n{}", text::training::CHOOSE_MATCHED, text::field::VIEW_HOVER), theme::DARK.text)
+            (format!("{}\n{}", text::training::CHOOSE_MATCHED.get(), text::field::VIEW_HOVER.get()), theme::DARK.text)
         }
-        None if view.look == Look::Endoscope => (text::field::RESET_VIEW.to_owned(), theme::DARK.text_weak),
-        None => (text::field::VIEW_HOVER.to_owned(), theme::DARK.text_weak),
+        None if view.look == Look::Endoscope => (text::field::RESET_VIEW.get().to_owned(), theme::DARK.text_weak),
+        None => (text::field::VIEW_HOVER.get().to_owned(), theme::DARK.text_weak),
     };
     label(painter, rect.left_bottom() + vec2(16.0, -12.0), Align2::LEFT_BOTTOM, &words, theme::regular(12.5), colour);
 }

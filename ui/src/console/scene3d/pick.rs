@@ -28,8 +28,8 @@ fn of_arm(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arm: &Arm, 
     let whose = if both { text::field::of_hand(&side_name(*side).to_lowercase()) } else { String::new() };
     let [measured, rendered] = stage::arrow_bases_m(pose, trocar_m, &camera.right());
     for (name, base_m, force_n) in [
-        (text::field::ARROW_MEASURED, measured, pose.measured_n),
-        (text::field::ARROW_RENDERED, rendered, pose.rendered_n),
+        (text::field::ARROW_MEASURED.get(), measured, pose.measured_n),
+        (text::field::ARROW_RENDERED.get(), rendered, pose.rendered_n),
     ] {
         let ends = [at(&base_m), at(&(base_m + force_n * stage::ARROW_M_PER_N))];
         if let ([Some(from), Some(to)], true) = (ends, stage::has_arrow(&force_n))

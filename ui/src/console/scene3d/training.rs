@@ -143,11 +143,11 @@ pub(super) fn needs_another_mode(live: &Live) -> bool {
     shares_rings && carries_force && live.delay_s() > LONG_S && !live.is_shown_only()
 }
 
-const fn name_of(reach: Reach) -> &'static str {
+fn name_of(reach: Reach) -> &'static str {
     match reach {
-        Reach::Above(_) => text::training::JAWS_ABOVE,
-        Reach::Between(_) => text::training::JAWS_AROUND,
-        Reach::Held(_) => text::training::JAWS_HOLD,
+        Reach::Above(_) => text::training::JAWS_ABOVE.get(),
+        Reach::Between(_) => text::training::JAWS_AROUND.get(),
+        Reach::Held(_) => text::training::JAWS_HOLD.get(),
     }
 }
 

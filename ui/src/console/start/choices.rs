@@ -114,7 +114,7 @@ fn rig((key, own): (String, bool)) -> Entry {
     match RigConfig::load(&key) {
         Ok(rig) => {
             let about = rig.devices.as_ref().map_or_else(
-                || if rig.has_real_hand() { text::start::LED } else { text::start::SIMULATED }.to_owned(),
+                || if rig.has_real_hand() { text::start::LED.get() } else { text::start::SIMULATED.get() }.to_owned(),
                 |devices| text::start::of_devices(rig.probes().len(), devices.emulated),
             );
             Entry { key, name: rig.name, about, usable: true, own }

@@ -68,9 +68,11 @@ impl EndoscopeCard {
     /// Returns true when the address is to be written.
     pub(super) fn ui(&mut self, ui: &mut Ui, running: Option<(&str, &[String; 2])>) -> bool {
         let width = ui.available_width();
-        let field = TextEdit::singleline(&mut self.typed).hint_text(text::start::ENDOSCOPE_HINT);
+        let field = TextEdit::singleline(&mut self.typed).hint_text(text::start::ENDOSCOPE_HINT.get());
         let field = ui.add_sized(vec2(width, 28.0), field);
-        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, text::start::ENDOSCOPE_ADDRESS));
+        field.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::TextInput, true, text::start::ENDOSCOPE_ADDRESS.get())
+        });
         if field.changed() {
             self.typed_at = Some(Instant::now());
             (self.tried, self.preview) = (None, DoubleBuffer::default());
@@ -83,7 +85,7 @@ impl EndoscopeCard {
             }
             None if address.is_empty() => {
                 self.close();
-                ui.add(Label::new(small(text::start::NO_ENDOSCOPE)).wrap());
+                ui.add(Label::new(small(text::start::NO_ENDOSCOPE.get())).wrap());
             }
             None => {
                 self.try_it(ui.ctx(), &address);
@@ -91,9 +93,10 @@ impl EndoscopeCard {
             }
         }
         let before = self.of_rig.as_ref().map_or("", |endoscope| endoscope.url.as_str());
-        let words = if address.is_empty() { text::start::ENDOSCOPE_REMOVE } else { text::start::ENDOSCOPE_USE };
+        let words =
+            if address.is_empty() { text::start::ENDOSCOPE_REMOVE.get() } else { text::start::ENDOSCOPE_USE.get() };
         let button = ui.add_enabled(address != before, Button::new(words).min_size(vec2(width, 32.0)));
-        button.on_hover_text(text::start::ENDOSCOPE_USE_HOVER).clicked()
+        button.on_hover_text(text::start::ENDOSCOPE_USE_HOVER.get()).clicked()
     }
 
     /// Tries what was typed, once nobody types.
@@ -120,14 +123,14 @@ impl EndoscopeCard {
 
     fn tried_ui(&mut self, ui: &mut Ui, width: f32) {
         let look = match &self.tried {
-            None => return drop(ui.label(small(text::start::ENDOSCOPE_TYPING))),
+            None => return drop(ui.label(small(text::start::ENDOSCOPE_TYPING.get()))),
             Some(Tried::Refused(why)) => {
-                return outcome_ui(ui, &text::eyes::refused(why), text::start::ENDOSCOPE_FORMS);
+                return outcome_ui(ui, &text::eyes::refused(why), text::start::ENDOSCOPE_FORMS.get());
             }
             Some(Tried::Feed(feed)) => feed.look(Instant::now()),
         };
         match &look.standing {
-            Standing::Opening => drop(ui.label(small(text::start::ENDOSCOPE_OPENING))),
+            Standing::Opening => drop(ui.label(small(text::start::ENDOSCOPE_OPENING.get()))),
             Standing::Live | Standing::Still => {
                 let size_px = look.picture.as_ref().map_or([0; 2], |(_, picture)| picture.size_px);
                 let rate_hz = (look.standing == Standing::Live).then_some(look.rate_hz);
@@ -157,7 +160,7 @@ impl EndoscopeCard {
     /// Writes the address into the file of this rig, or of a copy if it is built in; without one, takes the endoscope out of it. Returns the
     /// path of the file.
     pub(super) fn write(&self, rig: &str, folder: Option<&Path>) -> Result<String, String> {
-        let folder = folder.ok_or(text::start::NO_FOLDER)?;
+        let folder = folder.ok_or(text::start::NO_FOLDER.get())?;
         let address = self.typed.trim();
         let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
         let before = self.of_rig.as_ref().map(|endoscope| quoted(&endoscope.url));
@@ -175,7 +178,7 @@ fn outcome_ui(ui: &mut Ui, told: &str, cure: &str) {
     if cure.is_empty() {
         answer_ui(ui, true, told);
     } else {
-        trouble_ui(ui, text::start::ENDOSCOPE, told, cure);
+        trouble_ui(ui, text::start::ENDOSCOPE.get(), told, cure);
     }
 }
 
@@ -206,6 +209,6 @@ mod tests {
         assert!(endoscope.mirror && endoscope.url == "film.mjpeg");
         card(&path, "  ").write(&path, Some(folder.path())).unwrap();
         assert_eq!(RigConfig::load(&path).unwrap().endoscope, None);
-        assert_eq!(card(&path, "x").write(&path, None), Err(text::start::NO_FOLDER.to_owned()));
+        assert_eq!(card(&path, "x").write(&path, None), Err(text::start::NO_FOLDER.get().to_owned()));
     }
 }

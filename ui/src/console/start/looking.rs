@@ -6,6 +6,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use crate::language;
 use egui::Context;
 use nima_devices::discovery::{Diagnosis, Plugged, TIMEOUT, diagnose};
 use nima_machine::config::RigConfig;
@@ -38,7 +39,8 @@ impl<T: Send + 'static> Looked<T> {
             give.send(work()).ok();
             ctx.request_repaint();
         };
-        self.running = thread::Builder::new().name("devices".to_owned()).spawn(looks).ok().map(|_| take);
+        self.running =
+            thread::Builder::new().name("devices".to_owned()).spawn(language::carried(looks)).ok().map(|_| take);
     }
 
     /// The last result.

@@ -8,11 +8,11 @@ use crate::console::{chain, text};
 
 /// Writes a copy of the rig `from` under a new name; returns its path.
 pub(super) fn make(folder: Option<&Path>, from: &str, name: &str) -> Result<PathBuf, String> {
-    let folder = folder.ok_or(text::start::NO_FOLDER)?;
+    let folder = folder.ok_or(text::start::NO_FOLDER.get())?;
     let name = name.trim();
     let allowed = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
     if name.is_empty() || name.len() > 60 || !name.chars().all(allowed) {
-        return Err(text::start::NAME_FIRST.to_owned());
+        return Err(text::start::NAME_FIRST.get().to_owned());
     }
     let file = name.to_lowercase().replace(' ', "-");
     let path = folder.join("rigs").join(file).with_extension("toml");
@@ -45,9 +45,13 @@ mod tests {
     fn a_name_that_is_none_and_a_place_that_is_none_are_told() {
         let folder = tempfile::tempdir().unwrap();
         for name in ["", "  ", "../x", "a/b", "a\nb"] {
-            assert_eq!(make(Some(folder.path()), "paper", name), Err(text::start::NAME_FIRST.to_owned()), "{name:?}");
+            assert_eq!(
+                make(Some(folder.path()), "paper", name),
+                Err(text::start::NAME_FIRST.get().to_owned()),
+                "{name:?}"
+            );
         }
-        assert_eq!(make(None, "paper", "A"), Err(text::start::NO_FOLDER.to_owned()));
+        assert_eq!(make(None, "paper", "A"), Err(text::start::NO_FOLDER.get().to_owned()));
         assert!(make(Some(folder.path()), "no such rig", "A").unwrap_err().contains("no such rig"));
         assert!(!folder.path().join("rigs").exists());
     }

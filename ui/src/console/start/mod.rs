@@ -146,10 +146,10 @@ impl StartPage {
 
     fn rigs_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
         let mut chosen = None;
-        card(ui, text::start::RIGS, text::start::RIGS_HOVER, |ui| {
+        card(ui, text::start::RIGS.get(), text::start::RIGS_HOVER.get(), |ui| {
             let others: Vec<_> = now.recent.iter().filter(|choice| *choice != now.running).collect();
             if !others.is_empty() {
-                ui.label(small(text::start::RECENT));
+                ui.label(small(text::start::RECENT.get()));
             }
             for choice in others {
                 let rig = name_in(&self.lists.rigs, &choice.rig);
@@ -158,7 +158,7 @@ impl StartPage {
                     chosen = Some(choice.clone());
                 }
             }
-            for (heading, own) in [(text::start::BUILT_IN, false), (text::start::YOURS, true)] {
+            for (heading, own) in [(text::start::BUILT_IN.get(), false), (text::start::YOURS.get(), true)] {
                 let rigs: Vec<_> = self.lists.rigs.iter().filter(|entry| entry.own == own).collect();
                 if !rigs.is_empty() {
                     ui.label(small(heading));
@@ -173,17 +173,17 @@ impl StartPage {
         if let Some(chosen) = chosen {
             self.choose(chosen);
         }
-        card(ui, text::start::NEW_NAME, text::start::MAKE_HOVER, |ui| {
+        card(ui, text::start::NEW_NAME.get(), text::start::MAKE_HOVER.get(), |ui| {
             let width = ui.available_width();
             let field = ui.add_sized(vec2(width, 28.0), TextEdit::singleline(&mut self.new_name));
-            field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, text::start::NEW_NAME));
-            let make = ui.add(Button::new(text::start::MAKE).min_size(vec2(width, 32.0)));
-            if make.on_hover_text(text::start::MAKE_HOVER).clicked() {
+            field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, text::start::NEW_NAME.get()));
+            let make = ui.add(Button::new(text::start::MAKE.get()).min_size(vec2(width, 32.0)));
+            if make.on_hover_text(text::start::MAKE_HOVER.get()).clicked() {
                 self.make(now);
             }
         });
-        let studies = Button::new(text::studies::OPEN).min_size(vec2(ui.available_width(), 36.0));
-        let studies = ui.add_enabled(!now.is_starting, studies).on_hover_text(text::studies::OPEN_HOVER);
+        let studies = Button::new(text::studies::OPEN.get()).min_size(vec2(ui.available_width(), 36.0));
+        let studies = ui.add_enabled(!now.is_starting, studies).on_hover_text(text::studies::OPEN_HOVER.get());
         self.wants_studies |= studies.clicked();
     }
 
@@ -200,7 +200,7 @@ impl StartPage {
     }
 
     fn scenes_ui(&mut self, ui: &mut Ui) {
-        card(ui, text::start::SCENES, text::start::SCENES_HOVER, |ui| {
+        card(ui, text::start::SCENES.get(), text::start::SCENES_HOVER.get(), |ui| {
             for entry in &self.lists.scenes {
                 if entry_ui(ui, entry, self.chosen.scene == entry.key, false) {
                     self.chosen.scene.clone_from(&entry.key);
@@ -210,9 +210,9 @@ impl StartPage {
     }
 
     fn devices_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
-        card(ui, text::start::MISSING, text::start::MISSING_HOVER, |ui| self.missing_ui(ui, now));
-        card(ui, text::start::ENDOSCOPE, text::start::ENDOSCOPE_HOVER, |ui| self.endoscope_ui(ui, now));
-        card(ui, text::start::PLUGGED, text::start::PLUGGED_HOVER, |ui| {
+        card(ui, text::start::MISSING.get(), text::start::MISSING_HOVER.get(), |ui| self.missing_ui(ui, now));
+        card(ui, text::start::ENDOSCOPE.get(), text::start::ENDOSCOPE_HOVER.get(), |ui| self.endoscope_ui(ui, now));
+        card(ui, text::start::PLUGGED.get(), text::start::PLUGGED_HOVER.get(), |ui| {
             let ctx = ui.ctx().clone();
             if let Some(plugged) = self.plugged.now(&ctx) {
                 plugged_ui(ui, plugged);
@@ -245,13 +245,13 @@ impl StartPage {
     /// Of the rig that runs its list of devices tells what is missing; the devices of another one are opened for a moment.
     fn missing_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
         let Some(rig) = self.rig.as_ref().filter(|rig| rig.devices.is_some() || rig.has_real_hand()) else {
-            ui.label(text::start::SIMULATED);
+            ui.label(text::start::SIMULATED.get());
             return;
         };
         if self.chosen.rig == now.running.rig {
             let missing: Vec<_> = now.live.missing().collect();
             if missing.is_empty() {
-                answer_ui(ui, true, text::start::ALL_THERE);
+                answer_ui(ui, true, text::start::ALL_THERE.get());
             }
             for one in missing {
                 trouble_ui(ui, &one.name, &one.cause, &one.cure);
@@ -259,13 +259,13 @@ impl StartPage {
             return;
         }
         if rig.is_harmless() {
-            ui.label(text::start::EMULATED);
+            ui.label(text::start::EMULATED.get());
             return;
         }
         let checking = self.answers.is_running();
-        let button = Button::new(if checking { text::start::CHECKING } else { text::start::CHECK });
+        let button = Button::new(if checking { text::start::CHECKING.get() } else { text::start::CHECK.get() });
         let button = ui.add_enabled(!checking, button.min_size(vec2(ui.available_width(), 32.0)));
-        if button.on_hover_text(text::start::CHECK_HOVER).clicked() {
+        if button.on_hover_text(text::start::CHECK_HOVER.get()).clicked() {
             let ctx = ui.ctx().clone();
             self.answers.check(&ctx, rig);
         }
@@ -286,15 +286,19 @@ impl StartPage {
             let same = self.chosen == *now.running;
             let usable = |list: &[Entry], key: &str| list.iter().any(|entry| entry.key == key && entry.usable);
             let ready = usable(&self.lists.rigs, &self.chosen.rig) && usable(&self.lists.scenes, &self.chosen.scene);
-            let words = if same { text::start::START_AGAIN } else { text::start::START };
+            let words = if same { text::start::START_AGAIN.get() } else { text::start::START.get() };
             let name = RichText::new(words).font(theme::strong(17.0));
             let button = next_button(name, !same).min_size(theme::STOP_SIZE);
             let button = ui.add_enabled(ready && !held && !now.is_starting, button);
-            if button.on_hover_text(text::start::START_HOVER).on_disabled_hover_text(text::start::ENGAGED).clicked() {
+            if button
+                .on_hover_text(text::start::START_HOVER.get())
+                .on_disabled_hover_text(text::start::ENGAGED.get())
+                .clicked()
+            {
                 start = Some(self.chosen.clone());
             }
-            let back = Button::new(text::start::BACK).min_size(theme::STOP_SIZE);
-            if ui.add_enabled(!now.is_starting, back).on_hover_text(text::start::BACK_HOVER).clicked() {
+            let back = Button::new(text::start::BACK.get()).min_size(theme::STOP_SIZE);
+            if ui.add_enabled(!now.is_starting, back).on_hover_text(text::start::BACK_HOVER.get()).clicked() {
                 self.is_open = false;
             }
             ui.vertical(|ui| {
@@ -302,7 +306,7 @@ impl StartPage {
                     .map(|(list, key)| name_in(list, key));
                 ui.label(RichText::new(format!("{rig}, {scene}")).font(theme::strong(15.0)));
                 if now.is_starting {
-                    ui.label(weak(text::start::STARTING));
+                    ui.label(weak(text::start::STARTING.get()));
                 }
                 if let Some(told) = &self.told {
                     ui.add(Label::new(told).wrap());
@@ -339,7 +343,7 @@ fn row_ui(ui: &mut Ui, chosen: bool, usable: bool, name: &str, about: &str) -> e
 
 fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, running: bool) -> bool {
     let clicked = row_ui(ui, chosen, entry.usable, &entry.name, &entry.key).clicked();
-    let words = if running { format!("{}. {}", text::start::RUNNING, entry.about) } else { entry.about.clone() };
+    let words = if running { format!("{}. {}", text::start::RUNNING.get(), entry.about) } else { entry.about.clone() };
     ui.add(Label::new(small(words)).wrap());
     ui.add_space(4.0);
     clicked
@@ -363,7 +367,7 @@ fn trouble_ui(ui: &mut Ui, name: &str, cause: &str, cure: &str) {
 fn plugged_ui(ui: &mut Ui, plugged: &Plugged) {
     let lines = plugged.lines();
     if lines.is_empty() {
-        ui.label(weak(text::start::NOTHING_PLUGGED));
+        ui.label(weak(text::start::NOTHING_PLUGGED.get()));
     }
     for [place, used, ids] in lines {
         ui.label(RichText::new(used).font(theme::strong(14.0)));

@@ -37,17 +37,17 @@ impl Welcome {
             return None;
         }
         let mut chosen = None;
-        let window = Window::new(words::WELCOME_WINDOW).title_bar(false).resizable(false).movable(false);
+        let window = Window::new(words::WELCOME_WINDOW.get()).title_bar(false).resizable(false).movable(false);
         let window = window.constrain_to(room).anchor(Align2::CENTER_TOP, vec2(0.0, room.top() + 12.0));
         window.fixed_size(vec2(460.0, 0.0)).show(ctx, |ui| {
-            ui.label(RichText::new(words::WELCOME).font(theme::strong(18.0)));
-            ui.add(Label::new(RichText::new(words::WELCOME_WHAT).font(theme::regular(15.0))).wrap());
-            ui.add(Label::new(RichText::new(words::WELCOME_NOT).font(theme::strong(15.0))).wrap());
+            ui.label(RichText::new(words::WELCOME.get()).font(theme::strong(18.0)));
+            ui.add(Label::new(RichText::new(words::WELCOME_WHAT.get()).font(theme::regular(15.0))).wrap());
+            ui.add(Label::new(RichText::new(words::WELCOME_NOT.get()).font(theme::strong(15.0))).wrap());
             ui.add_space(6.0);
             for (way, name, about) in [
-                (Way::Simulated, words::WELCOME_SIMULATED, words::WELCOME_SIMULATED_ABOUT),
-                (Way::Demo, words::WELCOME_DEMO, words::WELCOME_DEMO_ABOUT),
-                (Way::Own, words::WELCOME_OWN, words::WELCOME_OWN_ABOUT),
+                (Way::Simulated, words::WELCOME_SIMULATED.get(), words::WELCOME_SIMULATED_ABOUT.get()),
+                (Way::Demo, words::WELCOME_DEMO.get(), words::WELCOME_DEMO_ABOUT.get()),
+                (Way::Own, words::WELCOME_OWN.get(), words::WELCOME_OWN_ABOUT.get()),
             ] {
                 let button = if way == Way::Simulated { next_button(name, true) } else { Button::new(name) };
                 if ui.add(button.min_size(vec2(ui.available_width(), 36.0))).clicked() {

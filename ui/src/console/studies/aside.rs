@@ -44,9 +44,9 @@ impl Aside {
 
     /// The report is written from the folder by a thread of its own: the statistics take some seconds.
     fn report_ui(&mut self, ui: &mut Ui, study: &Study) {
-        card(ui, text::studies::REPORT, text::studies::REPORT_HOVER, |ui| {
+        card(ui, text::studies::REPORT.get(), text::studies::REPORT_HOVER.get(), |ui| {
             let running = self.report.is_running();
-            let words = if running { text::studies::REPORT_WRITING } else { text::studies::REPORT_WRITE };
+            let words = if running { text::studies::REPORT_WRITING.get() } else { text::studies::REPORT_WRITE.get() };
             let button = Button::new(words).min_size(vec2(ui.available_width(), 32.0));
             if ui.add_enabled(!running, button).clicked() {
                 let (folder, ctx) = (study.folder().to_owned(), ui.ctx().clone());
@@ -72,23 +72,23 @@ impl Aside {
     /// The page in the user's program for it.
     fn open_ui(&mut self, ui: &mut Ui, page: PathBuf) {
         let running = self.opened.is_running();
-        let button = Button::new(text::studies::REPORT_OPEN).min_size(vec2(ui.available_width(), 28.0));
+        let button = Button::new(text::studies::REPORT_OPEN.get()).min_size(vec2(ui.available_width(), 28.0));
         if ui.add_enabled(!running, button).on_hover_text(page.display().to_string()).clicked() {
             self.opened.forget();
             self.opened.begin(ui.ctx(), move || opener::open(&page));
         }
         if self.opened.found() == Some(&false) {
-            ui.add(Label::new(small(text::studies::REPORT_NOT_OPENED)).wrap());
+            ui.add(Label::new(small(text::studies::REPORT_NOT_OPENED.get())).wrap());
         }
     }
 
     fn unblinding_ui(&mut self, ui: &mut Ui, study: &mut Study) {
         let mut pressed = false;
-        card(ui, text::studies::UNBLINDING, text::studies::UNBLINDING_HOVER, |ui| {
+        card(ui, text::studies::UNBLINDING.get(), text::studies::UNBLINDING_HOVER.get(), |ui| {
             if let Some(opened) = study.opened() {
                 let told = study.state().unblinding.as_ref();
                 let told = told.map(|by| text::studies::unblinded(&by.who, &by.at, &by.why));
-                let told = told.unwrap_or_else(|| text::studies::NOT_BLIND.to_owned());
+                let told = told.unwrap_or_else(|| text::studies::NOT_BLIND.get().to_owned());
                 ui.add(Label::new(small(told)).wrap());
                 for (label, name) in opened.labels() {
                     ui.add(
@@ -98,13 +98,13 @@ impl Aside {
                 }
                 return;
             }
-            field_ui(ui, text::studies::UNBLIND_NAME, &mut self.name);
-            field_ui(ui, text::studies::UNBLIND_WHY, &mut self.why);
+            field_ui(ui, text::studies::UNBLIND_NAME.get(), &mut self.name);
+            field_ui(ui, text::studies::UNBLIND_WHY.get(), &mut self.why);
             if finished(study) < study.plan().participants.len() {
-                ui.add(Label::new(small(text::studies::UNBLIND_EARLY)).wrap());
+                ui.add(Label::new(small(text::studies::UNBLIND_EARLY.get())).wrap());
             }
             let complete = !self.name.trim().is_empty() && !self.why.trim().is_empty();
-            let button = Button::new(text::studies::UNBLIND).min_size(vec2(ui.available_width(), 32.0));
+            let button = Button::new(text::studies::UNBLIND.get()).min_size(vec2(ui.available_width(), 32.0));
             pressed = ui.add_enabled(complete, button).clicked();
             if let Some(told) = &self.told {
                 ui.add(Label::new(told).wrap());
@@ -124,21 +124,21 @@ fn written_before(study: &Study) -> Option<PathBuf> {
 
 fn about_ui(ui: &mut Ui, study: &Study) {
     let (plan, state) = (study.plan(), study.state());
-    card(ui, text::studies::ABOUT, text::studies::ABOUT_HOVER, |ui| {
+    card(ui, text::studies::ABOUT.get(), text::studies::ABOUT_HOVER.get(), |ui| {
         ui.add(Label::new(RichText::new(&plan.name).font(theme::strong(15.0))).wrap());
         let (count, blind) = (plan.participants.len(), blindness(study));
         let facts = text::studies::facts(&plan.rig, finished(study), count, state.results(), blind);
         ui.add(Label::new(facts).wrap());
         if state.is_simulated() {
-            ui.add(Label::new(small(text::studies::SIMULATED)).wrap());
+            ui.add(Label::new(small(text::studies::SIMULATED.get())).wrap());
         }
         ui.add(Label::new(small(study.folder().display().to_string())).wrap());
         ui.add_space(4.0);
-        ui.label(small(text::studies::COMMITMENT)).on_hover_text(text::studies::COMMITMENT_HOVER);
+        ui.label(small(text::studies::COMMITMENT.get())).on_hover_text(text::studies::COMMITMENT_HOVER.get());
         ui.add(Label::new(RichText::new(&plan.commitment).monospace().size(11.0)).wrap())
-            .on_hover_text(text::studies::COMMITMENT_HOVER);
-        let copy = Button::new(text::studies::COPY).min_size(vec2(ui.available_width(), 28.0));
-        if ui.add(copy).on_hover_text(text::studies::COMMITMENT_HOVER).clicked() {
+            .on_hover_text(text::studies::COMMITMENT_HOVER.get());
+        let copy = Button::new(text::studies::COPY.get()).min_size(vec2(ui.available_width(), 28.0));
+        if ui.add(copy).on_hover_text(text::studies::COMMITMENT_HOVER.get()).clicked() {
             ui.ctx().copy_text(plan.commitment.clone());
         }
     });

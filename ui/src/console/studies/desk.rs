@@ -112,7 +112,7 @@ impl Desk {
                     Some(rest::Done::Back) => self.page = Page::Desk,
                     Some(rest::Done::Over(seconds)) => {
                         let taken = self.study.take_break(&self.chosen, seconds, false, &utc_now());
-                        self.after(taken, text::studies::BREAK_DONE);
+                        self.after(taken, text::studies::BREAK_DONE.get());
                     }
                     None => {}
                 }
@@ -124,7 +124,7 @@ impl Desk {
                     Some(questions::Done::Submit(answers)) => {
                         let kept = self.study.answer(&self.chosen, answers, false, &utc_now());
                         self.sheet = None;
-                        self.after(kept, text::studies::SUBMITTED);
+                        self.after(kept, text::studies::SUBMITTED.get());
                         self.ask();
                     }
                     None => {}
@@ -163,8 +163,8 @@ impl Desk {
                 self.leave_out_ui(ui);
             });
             column(ui, "study", vec2(ASIDE, room.y), |ui| {
-                let close = Button::new(text::studies::CLOSE).min_size(vec2(ui.available_width(), 36.0));
-                if ui.add_enabled(!starting, close).on_hover_text(text::studies::CLOSE_HOVER).clicked() {
+                let close = Button::new(text::studies::CLOSE.get()).min_size(vec2(ui.available_width(), 36.0));
+                if ui.add_enabled(!starting, close).on_hover_text(text::studies::CLOSE_HOVER.get()).clicked() {
                     wish = Some(Wish::Closed);
                 }
                 ui.add_space(theme::GAP);
@@ -178,7 +178,7 @@ impl Desk {
     fn who_ui(&mut self, ui: &mut Ui) {
         let trials = self.study.plan().trials_of_each();
         let mut chosen = None;
-        card(ui, text::studies::WHO, text::studies::WHO_HOVER, |ui| {
+        card(ui, text::studies::WHO.get(), text::studies::WHO_HOVER.get(), |ui| {
             for one in &self.study.plan().participants {
                 let button = Button::selectable(self.chosen == one.name, &one.name).frame_when_inactive(true);
                 if ui.add(button.min_size(vec2(ui.available_width(), 26.0))).clicked() {
@@ -197,7 +197,7 @@ impl Desk {
         let participant = self.study.plan().participant(&self.chosen).ok()?.clone();
         let step = self.study.next(&self.chosen).ok()?;
         let mut begun = false;
-        card(ui, text::studies::NEXT_STEP, text::studies::NEXT_STEP_HOVER, |ui| {
+        card(ui, text::studies::NEXT_STEP.get(), text::studies::NEXT_STEP_HOVER.get(), |ui| {
             ui.horizontal(|ui| {
                 ui.label(RichText::new(&self.chosen).font(theme::strong(22.0)));
                 ui.label(small(text::studies::order(&participant.order)));
@@ -209,7 +209,7 @@ impl Desk {
             if is_trial {
                 self.hand_ui(ui);
             }
-            let why = if starting { Some(text::studies::STARTING) } else { closed.filter(|_| is_trial) };
+            let why = if starting { Some(text::studies::STARTING.get()) } else { closed.filter(|_| is_trial) };
             if let Some(words) = text::studies::begin(&step) {
                 let name = RichText::new(words).font(theme::strong(17.0));
                 let button = next_button(name, why.is_none()).min_size(vec2(260.0, 48.0));
@@ -243,12 +243,12 @@ impl Desk {
 
     fn hand_ui(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
-            ui.label(weak(text::studies::HAND));
+            ui.label(weak(text::studies::HAND.get()));
             match self.hand {
                 Hand::Mouse | Hand::Simulated => {
                     for (hand, name, hover) in [
-                        (Hand::Mouse, text::studies::BY_MOUSE, ""),
-                        (Hand::Simulated, text::studies::BY_SIMULATED, text::studies::BY_SIMULATED_HOVER),
+                        (Hand::Mouse, text::studies::BY_MOUSE.get(), ""),
+                        (Hand::Simulated, text::studies::BY_SIMULATED.get(), text::studies::BY_SIMULATED_HOVER.get()),
                     ] {
                         let button = Button::selectable(self.hand == hand, name).frame_when_inactive(true);
                         let button = ui.add(button.min_size(vec2(96.0, 28.0)));
@@ -259,10 +259,10 @@ impl Desk {
                     }
                 }
                 Hand::OfRig => {
-                    ui.label(text::studies::BY_RIG);
+                    ui.label(text::studies::BY_RIG.get());
                 }
                 Hand::Emulated => {
-                    ui.label(text::studies::BY_SIMULATED).on_hover_text(text::studies::BY_SIMULATED_HOVER);
+                    ui.label(text::studies::BY_SIMULATED.get()).on_hover_text(text::studies::BY_SIMULATED_HOVER.get());
                 }
             }
         });
@@ -271,14 +271,14 @@ impl Desk {
     fn learning_ui(&self, ui: &mut Ui) {
         let all = self.study.learning();
         let learning = all.iter().find(|learning| learning.participant == self.chosen);
-        card(ui, text::studies::LEARNING, text::studies::LEARNING_HOVER, |ui| curve_ui(ui, learning));
+        card(ui, text::studies::LEARNING.get(), text::studies::LEARNING_HOVER.get(), |ui| curve_ui(ui, learning));
     }
 
     fn note_ui(&mut self, ui: &mut Ui) {
         let mut kept = false;
-        card(ui, text::studies::NOTE, text::studies::NOTE_HOVER, |ui| {
-            field_ui(ui, text::studies::NOTE_FIELD, &mut self.note);
-            let button = Button::new(text::studies::NOTE_KEEP).min_size(vec2(140.0, 30.0));
+        card(ui, text::studies::NOTE.get(), text::studies::NOTE_HOVER.get(), |ui| {
+            field_ui(ui, text::studies::NOTE_FIELD.get(), &mut self.note);
+            let button = Button::new(text::studies::NOTE_KEEP.get()).min_size(vec2(140.0, 30.0));
             kept = ui.add_enabled(!self.note.trim().is_empty(), button).clicked();
         });
         if kept {
@@ -286,7 +286,7 @@ impl Desk {
             if noted.is_ok() {
                 self.note.clear();
             }
-            self.after(noted, text::studies::NOTE_KEPT);
+            self.after(noted, text::studies::NOTE_KEPT.get());
         }
     }
 
@@ -297,19 +297,20 @@ impl Desk {
             .progress(&self.chosen)
             .map_or_else(Vec::new, |progress| progress.trials.iter().map(|made| made.number).collect());
         let mut pressed = false;
-        card(ui, text::studies::LEAVE_OUT, text::studies::LEAVE_OUT_HOVER, |ui| {
+        card(ui, text::studies::LEAVE_OUT.get(), text::studies::LEAVE_OUT_HOVER.get(), |ui| {
             ui.horizontal_wrapped(|ui| {
                 let choices = std::iter::once(None).chain(made.into_iter().map(Some));
                 for choice in choices {
-                    let name = choice.map_or_else(|| text::studies::EVERYTHING.to_owned(), text::studies::of_trial);
+                    let name =
+                        choice.map_or_else(|| text::studies::EVERYTHING.get().to_owned(), text::studies::of_trial);
                     let button = Button::selectable(self.left_out == choice, name).frame_when_inactive(true);
                     if ui.add(button).clicked() {
                         self.left_out = choice;
                     }
                 }
             });
-            field_ui(ui, text::studies::REASON, &mut self.reason);
-            let button = Button::new(text::studies::LEAVE_OUT_NOW).min_size(vec2(140.0, 30.0));
+            field_ui(ui, text::studies::REASON.get(), &mut self.reason);
+            let button = Button::new(text::studies::LEAVE_OUT_NOW.get()).min_size(vec2(140.0, 30.0));
             pressed = ui.add_enabled(!self.reason.trim().is_empty(), button).clicked();
         });
         if pressed {

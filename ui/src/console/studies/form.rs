@@ -71,16 +71,16 @@ impl Form {
     fn foot_ui(&mut self, ui: &mut Ui, data: Option<&Path>) -> Option<Done> {
         let mut done = None;
         ui.horizontal(|ui| {
-            let name = RichText::new(text::studies::MAKE).font(theme::strong(17.0));
+            let name = RichText::new(text::studies::MAKE.get()).font(theme::strong(17.0));
             let make =
                 ui.add_enabled(data.is_some(), next_button(name, true).min_size(vec2(160.0, theme::STOP_SIZE.y)));
-            let make = make.on_hover_text(text::studies::MAKE_HOVER);
-            if make.on_disabled_hover_text(text::studies::NO_FOLDER).clicked()
+            let make = make.on_hover_text(text::studies::MAKE_HOVER.get());
+            if make.on_disabled_hover_text(text::studies::NO_FOLDER.get()).clicked()
                 && let Some(data) = data
             {
                 done = self.make(data);
             }
-            if ui.add(Button::new(text::studies::BACK).min_size(theme::STOP_SIZE)).clicked() {
+            if ui.add(Button::new(text::studies::BACK.get()).min_size(theme::STOP_SIZE)).clicked() {
                 done = Some(Done::Back);
             }
             ScrollArea::vertical().id_salt("mistakes").max_height(FOOT - 12.0).auto_shrink(false).show(ui, |ui| {
@@ -116,7 +116,7 @@ impl Form {
 }
 
 fn ready_ui(ui: &mut Ui, draft: &mut Draft) {
-    card(ui, text::studies::READY, text::studies::READY_HOVER, |ui| {
+    card(ui, text::studies::READY.get(), text::studies::READY_HOVER.get(), |ui| {
         for ready in READY {
             let [name, about] = text::studies::ready(ready);
             let button = Button::selectable(draft.ready == ready, name).frame_when_inactive(true);
@@ -131,49 +131,55 @@ fn ready_ui(ui: &mut Ui, draft: &mut Draft) {
 
 fn what_ui(ui: &mut Ui, draft: &mut Draft) {
     let file = &mut draft.file;
-    card(ui, text::studies::WHAT, text::studies::WHAT_HOVER, |ui| {
-        field_ui(ui, text::studies::NAME, &mut file.name);
-        field_ui(ui, text::studies::RIG, &mut file.rig);
+    card(ui, text::studies::WHAT.get(), text::studies::WHAT_HOVER.get(), |ui| {
+        field_ui(ui, text::studies::NAME.get(), &mut file.name);
+        field_ui(ui, text::studies::RIG.get(), &mut file.rig);
         Grid::new("figures").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
-            whole_ui(ui, text::studies::PARTICIPANTS, &mut file.participants, 0..=200);
-            whole_ui(ui, text::studies::TRIALS, &mut file.trials, 0..=100);
-            whole_ui(ui, text::studies::ATTEMPTS, &mut file.attempts, 0..=10);
+            whole_ui(ui, text::studies::PARTICIPANTS.get(), &mut file.participants, 0..=200);
+            whole_ui(ui, text::studies::TRIALS.get(), &mut file.trials, 0..=100);
+            whole_ui(ui, text::studies::ATTEMPTS.get(), &mut file.attempts, 0..=10);
         });
         let rows = order::williams(file.conditions.len()).len();
         ui.label(small(text::studies::balance(file.participants as usize, rows)));
         ui.horizontal_wrapped(|ui| {
-            ui.label(text::studies::INTERRUPTED);
+            ui.label(text::studies::INTERRUPTED.get());
             either_ui(
                 ui,
                 &mut file.interrupted,
-                [(Interrupted::Repeat, text::studies::REPEATED), (Interrupted::Resume, text::studies::SKIPPED)],
+                [
+                    (Interrupted::Repeat, text::studies::REPEATED.get()),
+                    (Interrupted::Resume, text::studies::SKIPPED.get()),
+                ],
             );
         });
-        ui.checkbox(&mut file.blind, text::studies::BLIND);
-        ui.checkbox(&mut file.record, text::studies::RECORD);
+        ui.checkbox(&mut file.blind, text::studies::BLIND.get());
+        ui.checkbox(&mut file.record, text::studies::RECORD.get());
     });
 }
 
 fn practice_ui(ui: &mut Ui, draft: &mut Draft) {
     let names: Vec<String> = draft.file.conditions.iter().map(|condition| condition.name.clone()).collect();
-    card(ui, text::studies::PRACTICE, text::studies::PRACTICE_HOVER, |ui| {
-        ui.checkbox(&mut draft.practises, text::studies::PRACTISES);
+    card(ui, text::studies::PRACTICE.get(), text::studies::PRACTICE_HOVER.get(), |ui| {
+        ui.checkbox(&mut draft.practises, text::studies::PRACTISES.get());
         let criterion = &mut draft.practice.criterion;
         ui.add_enabled_ui(draft.practises, |ui| {
             Grid::new("practice").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
-                seconds_ui(ui, text::studies::TIME, &mut criterion.time_s, 0.0..=1200.0);
-                whole_ui(ui, text::studies::DROPS, &mut criterion.drops_out_of_view, 0..=20);
-                whole_ui(ui, text::studies::IN_A_ROW, &mut criterion.consecutive, 0..=50);
-                whole_ui(ui, text::studies::MORE, &mut criterion.additional, 0..=50);
-                whole_ui(ui, text::studies::MOST, &mut criterion.max_trials, 0..=200);
-                choice_ui(ui, text::studies::UNDER, &mut draft.under, &names, text::studies::IN_TURN);
+                seconds_ui(ui, text::studies::TIME.get(), &mut criterion.time_s, 0.0..=1200.0);
+                whole_ui(ui, text::studies::DROPS.get(), &mut criterion.drops_out_of_view, 0..=20);
+                whole_ui(ui, text::studies::IN_A_ROW.get(), &mut criterion.consecutive, 0..=50);
+                whole_ui(ui, text::studies::MORE.get(), &mut criterion.additional, 0..=50);
+                whole_ui(ui, text::studies::MOST.get(), &mut criterion.max_trials, 0..=200);
+                choice_ui(ui, text::studies::UNDER.get(), &mut draft.under, &names, text::studies::IN_TURN.get());
             });
             ui.horizontal_wrapped(|ui| {
-                ui.label(text::studies::NOT_REACHED);
+                ui.label(text::studies::NOT_REACHED.get());
                 either_ui(
                     ui,
                     &mut draft.practice.not_reached,
-                    [(NotReached::GoOn, text::studies::GOES_ON), (NotReached::Exclude, text::studies::EXCLUDED)],
+                    [
+                        (NotReached::GoOn, text::studies::GOES_ON.get()),
+                        (NotReached::Exclude, text::studies::EXCLUDED.get()),
+                    ],
                 );
             });
         });
@@ -182,17 +188,22 @@ fn practice_ui(ui: &mut Ui, draft: &mut Draft) {
 
 fn conditions_ui(ui: &mut Ui, draft: &mut Draft) {
     let mut gone = None;
-    card(ui, text::studies::CONDITIONS, text::studies::CONDITIONS_HOVER, |ui| {
+    card(ui, text::studies::CONDITIONS.get(), text::studies::CONDITIONS_HOVER.get(), |ui| {
         let few = draft.file.conditions.len() <= 2;
         Grid::new("conditions-table").num_columns(5).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
-            for head in [text::studies::NAME, text::studies::FEEDBACK, text::studies::GAIN, text::studies::DELAY] {
+            for head in [
+                text::studies::NAME.get(),
+                text::studies::FEEDBACK.get(),
+                text::studies::GAIN.get(),
+                text::studies::DELAY.get(),
+            ] {
                 ui.label(small(head));
             }
             ui.end_row();
             for (condition, number) in draft.file.conditions.iter_mut().zip(1..) {
                 condition_ui(ui, condition, number);
-                let remove = ui.add_enabled(!few, Button::new(text::studies::REMOVE));
-                let name = text::studies::of_condition(text::studies::REMOVE, number);
+                let remove = ui.add_enabled(!few, Button::new(text::studies::REMOVE.get()));
+                let name = text::studies::of_condition(text::studies::REMOVE.get(), number);
                 remove.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, !few, &name));
                 if remove.clicked() {
                     gone = Some(number - 1);
@@ -202,10 +213,16 @@ fn conditions_ui(ui: &mut Ui, draft: &mut Draft) {
         });
         let names: Vec<String> = draft.file.conditions.iter().map(|condition| condition.name.clone()).collect();
         ui.horizontal(|ui| {
-            if ui.add(Button::new(text::studies::ADD).min_size(vec2(140.0, 28.0))).clicked() {
+            if ui.add(Button::new(text::studies::ADD.get()).min_size(vec2(140.0, 28.0))).clicked() {
                 draft.add();
             }
-            choice_ui(ui, text::studies::REFERENCE, &mut draft.reference, &names, text::studies::FIRST_LABEL);
+            choice_ui(
+                ui,
+                text::studies::REFERENCE.get(),
+                &mut draft.reference,
+                &names,
+                text::studies::FIRST_LABEL.get(),
+            );
         });
     });
     if let Some(gone) = gone {
@@ -216,8 +233,8 @@ fn conditions_ui(ui: &mut Ui, draft: &mut Draft) {
 fn condition_ui(ui: &mut Ui, condition: &mut Condition, number: usize) {
     let named = |what: &str| text::studies::of_condition(what, number);
     let name = ui.add_sized(vec2(150.0, 22.0), TextEdit::singleline(&mut condition.name).char_limit(60));
-    name.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, named(text::studies::NAME)));
-    let shown = condition.mode.map_or(text::studies::NO_FORCE, mode_name);
+    name.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, named(text::studies::NAME.get())));
+    let shown = condition.mode.map_or(text::studies::NO_FORCE.get(), mode_name);
     let combo = ComboBox::from_id_salt(("force", number)).width(128.0).selected_text(shown).show_ui(ui, |ui| {
         for mode in Mode::ALL {
             let chosen = condition.mode == Some(mode);
@@ -225,37 +242,37 @@ fn condition_ui(ui: &mut Ui, condition: &mut Condition, number: usize) {
                 with_mode(condition, mode);
             }
         }
-        if ui.selectable_label(condition.no_force, text::studies::NO_FORCE).clicked() {
+        if ui.selectable_label(condition.no_force, text::studies::NO_FORCE.get()).clicked() {
             without_force(condition);
         }
     });
-    let of = named(text::studies::FEEDBACK);
+    let of = named(text::studies::FEEDBACK.get());
     combo.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &of));
     if condition.no_force {
-        ui.label(weak(text::studies::NO_GAIN));
+        ui.label(weak(text::studies::NO_GAIN.get()));
     } else {
         let mut gain = condition.gain.unwrap_or(1.0);
         let drag = ui.add(DragValue::new(&mut gain).range(0.01..=1.0).speed(0.01).fixed_decimals(2));
         if drag.changed() {
             condition.gain = Some(gain);
         }
-        drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, named(text::studies::GAIN)));
+        drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, named(text::studies::GAIN.get())));
     }
     let mut delay_ms = condition.delay_ms.unwrap_or(0.0);
     let drag = ui.add(DragValue::new(&mut delay_ms).range(0.0..=2000.0).speed(1.0).suffix(" ms"));
     if drag.changed() {
         condition.delay_ms = Some(delay_ms);
     }
-    drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, named(text::studies::DELAY)));
+    drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, named(text::studies::DELAY.get())));
 }
 
 fn breaks_ui(ui: &mut Ui, draft: &mut Draft) {
-    card(ui, text::studies::BREAKS, text::studies::BREAKS_HOVER, |ui| {
-        ui.checkbox(&mut draft.rests, text::studies::RESTS);
+    card(ui, text::studies::BREAKS.get(), text::studies::BREAKS_HOVER.get(), |ui| {
+        ui.checkbox(&mut draft.rests, text::studies::RESTS.get());
         ui.add_enabled_ui(draft.rests, |ui| {
             Grid::new("breaks").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
-                whole_ui(ui, text::studies::EVERY, &mut draft.breaks.after_trials, 0..=1000);
-                seconds_ui(ui, text::studies::LEAST, &mut draft.breaks.least_s, 0.0..=7200.0);
+                whole_ui(ui, text::studies::EVERY.get(), &mut draft.breaks.after_trials, 0..=1000);
+                seconds_ui(ui, text::studies::LEAST.get(), &mut draft.breaks.least_s, 0.0..=7200.0);
             });
         });
     });
@@ -263,18 +280,18 @@ fn breaks_ui(ui: &mut Ui, draft: &mut Draft) {
 
 fn questionnaires_ui(ui: &mut Ui, draft: &mut Draft) {
     let asked = &mut draft.file.questionnaires;
-    card(ui, text::studies::QUESTIONNAIRES, text::studies::QUESTIONNAIRES_HOVER, |ui| {
+    card(ui, text::studies::QUESTIONNAIRES.get(), text::studies::QUESTIONNAIRES_HOVER.get(), |ui| {
         Grid::new("questionnaires").num_columns(3).spacing(vec2(16.0, 4.0)).show(ui, |ui| {
             ui.label("");
-            ui.label(small(text::studies::AFTER_EACH));
-            ui.label(small(text::studies::AT_END));
+            ui.label(small(text::studies::AFTER_EACH.get()));
+            ui.label(small(text::studies::AT_END.get()));
             ui.end_row();
             for which in Questionnaire::ALL {
                 let name = text::studies::questionnaire(which);
                 ui.label(name);
                 for (all, when) in [
-                    (&mut asked.after_condition, text::studies::AFTER_EACH),
-                    (&mut asked.at_end, text::studies::AT_END),
+                    (&mut asked.after_condition, text::studies::AFTER_EACH.get()),
+                    (&mut asked.at_end, text::studies::AT_END.get()),
                 ] {
                     let mut on = all.contains(&which);
                     let response = ui.checkbox(&mut on, "");

@@ -10,6 +10,7 @@ use crate::console::{
     text, theme,
     widgets::{next_button, small, weak},
 };
+use crate::language::Text;
 
 /// Width of a rating's line.
 const SLIDER: f32 = 420.0;
@@ -125,10 +126,10 @@ impl Sheet {
         ui.add_space(6.0);
         ui.horizontal(|ui| {
             let answers = self.answers();
-            let name = RichText::new(text::studies::SUBMIT).font(theme::strong(17.0));
+            let name = RichText::new(text::studies::SUBMIT.get()).font(theme::strong(17.0));
             let button = next_button(name, answers.is_ok()).min_size(theme::STOP_SIZE);
             let clicked = ui.add_enabled(answers.is_ok(), button).clicked();
-            if ui.add(Button::new(text::studies::BACK).min_size(theme::STOP_SIZE)).clicked() {
+            if ui.add(Button::new(text::studies::BACK.get()).min_size(theme::STOP_SIZE)).clicked() {
                 done = Some(Done::Back);
             }
             match answers {
@@ -143,7 +144,7 @@ impl Sheet {
     }
 
     fn ratings_ui(&mut self, ui: &mut Ui) {
-        ui.label(small(text::studies::RATE));
+        ui.label(small(text::studies::RATE.get()));
         for ((_, name, question), rating) in TLX_SCALES.iter().zip(&mut self.ratings) {
             ui.add_space(4.0);
             let label = ui.add(Label::new(RichText::new(sentence(name)).font(theme::strong(15.0))));
@@ -169,7 +170,8 @@ impl Sheet {
                 if value.is_finite() {
                     *rating = Some((STEP * (value / STEP).round()) as u8);
                 }
-                let shown = rating.map_or_else(|| text::studies::NOT_ANSWERED.to_owned(), |rating| rating.to_string());
+                let shown =
+                    rating.map_or_else(|| text::studies::NOT_ANSWERED.get().to_owned(), |rating| rating.to_string());
                 ui.label(weak(shown));
             });
         }
@@ -177,7 +179,7 @@ impl Sheet {
 
     fn pairs_ui(&mut self, ui: &mut Ui) {
         ui.add_space(10.0);
-        ui.label(RichText::new(text::studies::PAIRS).font(theme::strong(15.0)));
+        ui.label(RichText::new(text::studies::PAIRS.get()).font(theme::strong(15.0)));
         ui.columns(2, |columns| {
             for (at, ((one, other), chosen)) in PAIRS.iter().zip(&mut self.chosen).enumerate() {
                 columns[at / PAIRS.len().div_ceil(2)].horizontal(|ui| {
@@ -200,13 +202,13 @@ impl Sheet {
 
     fn sus_ui(&mut self, ui: &mut Ui) {
         for ((statement, item), number) in SUS_ITEMS.iter().zip(&mut self.items).zip(1..) {
-            numbered_ui(ui, &format!("{number}. {statement}"), item, 5, number, text::studies::AGREE);
+            numbered_ui(ui, &format!("{number}. {statement}"), item, 5, number, text::studies::AGREE.map(Text::get));
         }
     }
 
     fn text_ui(&mut self, ui: &mut Ui) {
-        let label = ui.label(RichText::new(text::studies::FREE_TEXT).font(theme::strong(15.0)));
-        ui.label(small(text::studies::FREE_TEXT_HINT));
+        let label = ui.label(RichText::new(text::studies::FREE_TEXT.get()).font(theme::strong(15.0)));
+        ui.label(small(text::studies::FREE_TEXT_HINT.get()));
         let field = TextEdit::multiline(&mut self.text).desired_rows(8).desired_width(f32::INFINITY).char_limit(4000);
         ui.add(field).labelled_by(label.id);
     }

@@ -40,23 +40,26 @@ impl Rest {
         ui.ctx().request_repaint_after(AGAIN);
         ui.add_space(0.25 * ui.available_height());
         ui.with_layout(Layout::top_down(Align::Center), |ui| {
-            ui.label(RichText::new(text::studies::BREAK).font(theme::strong(34.0)));
-            let words =
-                if left_s > 0.0 { text::studies::clock(left_s.ceil()) } else { text::studies::BREAK_OVER.to_owned() };
+            ui.label(RichText::new(text::studies::BREAK.get()).font(theme::strong(34.0)));
+            let words = if left_s > 0.0 {
+                text::studies::clock(left_s.ceil())
+            } else {
+                text::studies::BREAK_OVER.get().to_owned()
+            };
             ui.label(RichText::new(words).font(theme::strong(46.0)));
             let least = text::studies::break_least(self.least_s);
-            ui.label(weak(if left_s > 0.0 { least.as_str() } else { text::studies::BREAK_MAY_END }));
+            ui.label(weak(if left_s > 0.0 { least.as_str() } else { text::studies::BREAK_MAY_END.get() }));
             ui.add_space(24.0);
-            let end = RichText::new(text::studies::BREAK_END).font(theme::strong(17.0));
+            let end = RichText::new(text::studies::BREAK_END.get()).font(theme::strong(17.0));
             let button = next_button(end, left_s <= 0.0).min_size(vec2(220.0, 48.0));
             if ui.add_enabled(left_s <= 0.0, button).clicked() {
                 done = Some(Done::Over(seconds));
             }
             ui.add_space(8.0);
-            if ui.add(Button::new(text::studies::BACK).min_size(vec2(220.0, 36.0))).clicked() {
+            if ui.add(Button::new(text::studies::BACK.get()).min_size(vec2(220.0, 36.0))).clicked() {
                 done = Some(Done::Back);
             }
-            ui.label(small(text::studies::BREAK_BACK));
+            ui.label(small(text::studies::BREAK_BACK.get()));
         });
         done
     }

@@ -194,10 +194,10 @@ impl Trial {
             let clock = text::studies::time_of(elapsed_s, self.task.time_limit_s);
             ui.label(RichText::new(clock).font(theme::strong(22.0)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let words = if self.is_asked { text::studies::GIVE_UP_NOW } else { text::studies::GIVE_UP };
+                let words = if self.is_asked { text::studies::GIVE_UP_NOW.get() } else { text::studies::GIVE_UP.get() };
                 let button = Button::selectable(self.is_asked, words).frame_when_inactive(true);
                 let button = ui.add_enabled(self.over.is_none(), button.min_size(vec2(150.0, 36.0)));
-                if button.on_hover_text(text::studies::GIVE_UP_HOVER).clicked() {
+                if button.on_hover_text(text::studies::GIVE_UP_HOVER.get()).clicked() {
                     if self.is_asked {
                         self.break_off(user_study::GIVEN_UP);
                     }
@@ -213,13 +213,13 @@ impl Trial {
 /// What the participant does now.
 fn state_words(live: &Live) -> &'static str {
     match live.state() {
-        _ if live.first_tick().is_none() => text::studies::STATE_STARTING,
-        LoopState::Stopped | LoopState::Faulted(_) => text::studies::STATE_STOPPED,
-        LoopState::Idle => text::studies::STATE_IDLE,
-        LoopState::Ready => text::studies::STATE_HOLD,
-        LoopState::Clutched => text::top_bar::CLUTCHED_MEANING,
-        LoopState::Disconnected => text::top_bar::DISCONNECTED_MEANING,
-        LoopState::Engaged if live.scene.is_searched() => text::studies::KEYS_SEARCH,
+        _ if live.first_tick().is_none() => text::studies::STATE_STARTING.get(),
+        LoopState::Stopped | LoopState::Faulted(_) => text::studies::STATE_STOPPED.get(),
+        LoopState::Idle => text::studies::STATE_IDLE.get(),
+        LoopState::Ready => text::studies::STATE_HOLD.get(),
+        LoopState::Clutched => text::top_bar::CLUTCHED_MEANING.get(),
+        LoopState::Disconnected => text::top_bar::DISCONNECTED_MEANING.get(),
+        LoopState::Engaged if live.scene.is_searched() => text::studies::KEYS_SEARCH.get(),
         LoopState::Engaged => "",
     }
 }

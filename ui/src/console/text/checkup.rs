@@ -1,41 +1,60 @@
 //! The test of a device: figures.
 
-pub(in crate::console) const RATE: &str = "Rate";
-pub(in crate::console) const RATE_HOVER: &str = "Readings per second, and how many there should be";
-pub(in crate::console) const AGE: &str = "Age";
-pub(in crate::console) const AGE_HOVER: &str =
-    "How old the newest reading was in a tick of the loop: in half of the ticks at most, and in 99 of 100 at most";
-pub(in crate::console) const LOSSES: &str = "Lost, damaged, refused";
-pub(in crate::console) const LOSSES_HOVER: &str =
-    "Lost: missing by the device's own count. Damaged: checksum or structure. Refused: status or impossible numbers.";
-pub(in crate::console) const NOISE_HOVER: &str = "Standard deviation of each number (x, y, z or joint by joint) within tenths of a second, so that slow motion does not count";
-pub(in crate::console) const SPAN_HOVER: &str = "Lowest and highest reading of each number (x, y, z or joint by joint), and of the device's range the share from its middle that was reached, where the range is known";
-pub(in crate::console) const UP: &str = "Up";
-pub(in crate::console) const UP_HOVER: &str =
-    "Where the accelerometer sees up, in the sensor's own axes, and the size of gravity; 9.81 m/s\u{b2} at rest";
-pub(in crate::console) const NO_AGE: &str = "no reading yet";
+use crate::language::{Text, told};
+
+pub(in crate::console) const RATE: Text = Text::of("Rate", "Rate");
+pub(in crate::console) const RATE_HOVER: Text =
+    Text::of("Readings per second, and how many there should be", "Readings per second, and how many there should be");
+pub(in crate::console) const AGE: Text = Text::of("Age", "Age");
+pub(in crate::console) const AGE_HOVER: Text = Text::of(
+    "How old the newest reading was in a tick of the loop: in half of the ticks at most, and in 99 of 100 at most",
+    "How old the newest reading was in a tick of the loop: in half of the ticks at most, and in 99 of 100 at most",
+);
+pub(in crate::console) const LOSSES: Text = Text::of("Lost, damaged, refused", "Lost, damaged, refused");
+pub(in crate::console) const LOSSES_HOVER: Text = Text::of(
+    "Lost: missing by the device's own count. Damaged: checksum or structure. Refused: status or impossible numbers.",
+    "Lost: missing by the device's own count. Damaged: checksum or structure. Refused: status or impossible numbers.",
+);
+pub(in crate::console) const NOISE_HOVER: Text = Text::of(
+    "Standard deviation of each number (x, y, z or joint by joint) within tenths of a second, so that slow motion does \
+     not count",
+    "Standard deviation of each number (x, y, z or joint by joint) within tenths of a second, so that slow motion does \
+     not count",
+);
+pub(in crate::console) const SPAN_HOVER: Text = Text::of(
+    "Lowest and highest reading of each number (x, y, z or joint by joint), and of the device's range the share from \
+     its middle that was reached, where the range is known",
+    "Lowest and highest reading of each number (x, y, z or joint by joint), and of the device's range the share from \
+     its middle that was reached, where the range is known",
+);
+pub(in crate::console) const UP: Text = Text::of("Up", "Up");
+pub(in crate::console) const UP_HOVER: Text = Text::of(
+    "Where the accelerometer sees up, in the sensor's own axes, and the size of gravity; 9.81 m/s\u{b2} at rest",
+    "Where the accelerometer sees up, in the sensor's own axes, and the size of gravity; 9.81 m/s\u{b2} at rest",
+);
+pub(in crate::console) const NO_AGE: Text = Text::of("no reading yet", "no reading yet");
 
 /// Noise of some numbers of a reading.
 pub(in crate::console) fn noise_of(name: &str) -> String {
-    format!("Noise of {name}")
+    told!("Noise of {name}", "Noise of {name}")
 }
 
 /// Range of some numbers of a reading.
 pub(in crate::console) fn span_of(name: &str) -> String {
-    format!("Range of {name}")
+    told!("Range of {name}", "Range of {name}")
 }
 
 /// Rate against the nominal one.
 pub(in crate::console) fn rate(hz: f64, nominal_hz: Option<f64>) -> String {
     match nominal_hz {
-        Some(nominal_hz) => format!("{hz:.0} of {nominal_hz:.0} Hz"),
-        None => format!("{hz:.0} Hz"),
+        Some(nominal_hz) => told!("{hz:.0} of {nominal_hz:.0} Hz", "{hz:.0} of {nominal_hz:.0} Hz"),
+        None => told!("{hz:.0} Hz", "{hz:.0} Hz"),
     }
 }
 
 /// Ages, s.
 pub(in crate::console) fn age([p50_s, p99_s]: [f64; 2]) -> String {
-    format!("p50 {:.0} ms, p99 {:.0} ms", p50_s * 1e3, p99_s * 1e3)
+    told!("p50 {:.0} ms, p99 {:.0} ms", "p50 {:.0} ms, p99 {:.0} ms", p50_s * 1e3, p99_s * 1e3)
 }
 
 /// Losses.
@@ -45,10 +64,13 @@ pub(in crate::console) fn losses(lost: u64, damaged: u64, refused: u64) -> Strin
 
 /// Upwards, as an axis, and the size of gravity.
 pub(in crate::console) fn up(axis: &str, off_deg: f64, size_m_s2: f64) -> String {
-    format!("{axis}, {off_deg:.0}\u{b0} off; {size_m_s2:.2} m/s\u{b2}")
+    told!(
+        "{axis}, {off_deg:.0}\u{b0} off; {size_m_s2:.2} m/s\u{b2}",
+        "{axis}, {off_deg:.0}\u{b0} off; {size_m_s2:.2} m/s\u{b2}"
+    )
 }
 
 /// Reached share of a range.
 pub(in crate::console) fn share(percent: f64) -> String {
-    format!("{percent:.0} % of its range")
+    told!("{percent:.0} % of its range", "{percent:.0} % of its range")
 }

@@ -1,11 +1,13 @@
 //! Names that several panels use.
 
-pub(in crate::console) const RIGHT: &str = "Right";
-pub(in crate::console) const LEFT: &str = "Left";
-pub(in crate::console) const MEASURED: &str = "Measured";
-pub(in crate::console) const RENDERED: &str = "Rendered";
+use crate::language::{Text, told};
+
+pub(in crate::console) const RIGHT: Text = Text::of("Right", "Right");
+pub(in crate::console) const LEFT: Text = Text::of("Left", "Left");
+pub(in crate::console) const MEASURED: Text = Text::of("Measured", "Measured");
+pub(in crate::console) const RENDERED: Text = Text::of("Rendered", "Rendered");
 
 /// Name of a hand, as in "Right hand".
 pub(in crate::console) fn hand(side: &str) -> String {
-    format!("{side} hand")
+    told!("{side} hand", "{side} hand")
 }

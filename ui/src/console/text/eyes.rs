@@ -2,108 +2,172 @@
 
 use std::time::Duration;
 
-pub(in crate::console) const WAITING: &str = "Waiting for the endoscope's picture";
-pub(in crate::console) const ENDOSCOPE: &str = "Endoscope";
-pub(in crate::console) const STILL: &str = "One picture, which does not move";
-pub(in crate::console) const BLACK: &str = "Picture is black";
-pub(in crate::console) const BLACK_CURE: &str = "Switch the light source on, and take the cap off the lens";
-pub(in crate::console) const FROZEN_CURE: &str = "What you see is the past. Check the camera and its cable.";
-pub(in crate::console) const LATE_CURE: &str = "Move slowly. Give the camera a line of its own, or a smaller picture.";
-pub(in crate::console) const DAMAGED_CURE: &str = "The last whole picture is shown. Check the cable to the camera.";
-pub(in crate::console) const SIZE_CURE: &str =
-    "Set the camera to the size that the rig file has. Until then no forces are drawn.";
-pub(in crate::console) const FORCES_DRAWN: &str = "Forces are drawn at the tips; O hides them";
-pub(in crate::console) const FORCES_AHEAD: &str = "Forces of now, ahead of the picture; O hides them";
-pub(in crate::console) const FORCES_HIDDEN: &str = "O draws the forces at the tips";
-pub(in crate::console) const BASE_MISSING: &str = "the picture that it builds upon is not in the session";
-pub(in crate::console) const NOT_RECORDED: &str = "Not in the session: only JPEGs and H.264 are recorded";
-pub(in crate::console) const LEFT_HALF: &str = "Left half; V shows the right one";
-pub(in crate::console) const RIGHT_HALF: &str = "Right half; V shows both";
-pub(in crate::console) const RIGHT_WITHOUT_FORCES: &str =
-    "Right half without forces: the rig file has no endoscope.baseline_m; V shows both";
-pub(in crate::console) const BOTH_HALVES: &str = "Both halves; V shows the left one";
-pub(in crate::console) const NO_CAMERA: &str = "No forces are drawn: the rig file has no [endoscope.camera]";
-pub(in crate::console) const NO_MARKER: &str =
-    "No forces are drawn: the tracker does not see the endoscope's marker, or there is no hand-eye calibration";
+use crate::language::{Text, told, word};
 
-pub(in crate::console) const NO_PLACE: &str =
-    "No forces are drawn: the camera's place is not known; calibrate the camera";
+pub(in crate::console) const WAITING: Text =
+    Text::of("Waiting for the endoscope's picture", "Waiting for the endoscope's picture");
+pub(in crate::console) const ENDOSCOPE: Text = Text::of("Endoscope", "Endoscope");
+pub(in crate::console) const STILL: Text =
+    Text::of("One picture, which does not move", "One picture, which does not move");
+pub(in crate::console) const BLACK: Text = Text::of("Picture is black", "Picture is black");
+pub(in crate::console) const BLACK_CURE: Text = Text::of(
+    "Switch the light source on, and take the cap off the lens",
+    "Switch the light source on, and take the cap off the lens",
+);
+pub(in crate::console) const FROZEN_CURE: Text = Text::of(
+    "What you see is the past. Check the camera and its cable.",
+    "What you see is the past. Check the camera and its cable.",
+);
+pub(in crate::console) const LATE_CURE: Text = Text::of(
+    "Move slowly. Give the camera a line of its own, or a smaller picture.",
+    "Move slowly. Give the camera a line of its own, or a smaller picture.",
+);
+pub(in crate::console) const DAMAGED_CURE: Text = Text::of(
+    "The last whole picture is shown. Check the cable to the camera.",
+    "The last whole picture is shown. Check the cable to the camera.",
+);
+pub(in crate::console) const SIZE_CURE: Text = Text::of(
+    "Set the camera to the size that the rig file has. Until then no forces are drawn.",
+    "Set the camera to the size that the rig file has. Until then no forces are drawn.",
+);
+pub(in crate::console) const FORCES_DRAWN: Text =
+    Text::of("Forces are drawn at the tips; O hides them", "Forces are drawn at the tips; O hides them");
+pub(in crate::console) const FORCES_AHEAD: Text =
+    Text::of("Forces of now, ahead of the picture; O hides them", "Forces of now, ahead of the picture; O hides them");
+pub(in crate::console) const FORCES_HIDDEN: Text =
+    Text::of("O draws the forces at the tips", "O draws the forces at the tips");
+pub(in crate::console) const BASE_MISSING: Text = Text::of(
+    "the picture that it builds upon is not in the session",
+    "the picture that it builds upon is not in the session",
+);
+pub(in crate::console) const NOT_RECORDED: Text = Text::of(
+    "Not in the session: only JPEGs and H.264 are recorded",
+    "Not in the session: only JPEGs and H.264 are recorded",
+);
+pub(in crate::console) const LEFT_HALF: Text =
+    Text::of("Left half; V shows the right one", "Left half; V shows the right one");
+pub(in crate::console) const RIGHT_HALF: Text = Text::of("Right half; V shows both", "Right half; V shows both");
+pub(in crate::console) const RIGHT_WITHOUT_FORCES: Text = Text::of(
+    "Right half without forces: the rig file has no endoscope.baseline_m; V shows both",
+    "Right half without forces: the rig file has no endoscope.baseline_m; V shows both",
+);
+pub(in crate::console) const BOTH_HALVES: Text =
+    Text::of("Both halves; V shows the left one", "Both halves; V shows the left one");
+pub(in crate::console) const NO_CAMERA: Text = Text::of(
+    "No forces are drawn: the rig file has no [endoscope.camera]",
+    "No forces are drawn: the rig file has no [endoscope.camera]",
+);
+
+pub(in crate::console) const NO_MARKER: Text = Text::of(
+    "No forces are drawn: the tracker does not see the endoscope's marker, or there is no hand-eye calibration",
+    "Keine Kräfte im Bild: Der Tracker sieht den Marker des Endoskops nicht, oder die Hand-Auge-Kalibrierung fehlt",
+);
+pub(in crate::console) const NO_PLACE: Text = Text::of(
+    "No forces are drawn: the camera's place is not known; calibrate the camera",
+    "No forces are drawn: the camera's place is not known; calibrate the camera",
+);
 
 /// The check of the camera was too bad.
 pub(in crate::console) fn forces_off(off_px: f64) -> String {
-    format!("Forces are drawn {off_px:.0} px beside the tips or more: calibrate the camera; O hides them")
+    told!(
+        "Forces are drawn {off_px:.0} px beside the tips or more: calibrate the camera; O hides them",
+        "Forces are drawn {off_px:.0} px beside the tips or more: calibrate the camera; O hides them"
+    )
 }
 
 /// No new picture for so long.
 pub(in crate::console) fn frozen(stood: Duration) -> String {
-    format!("Picture is frozen: nothing new for {:.1} s", stood.as_secs_f64())
+    told!(
+        "Picture is frozen: nothing new for {:.1} s",
+        "Picture is frozen: nothing new for {:.1} s",
+        stood.as_secs_f64()
+    )
 }
 
 /// How old a late picture is.
 pub(in crate::console) fn late(late: Duration) -> String {
-    format!("Picture is {} ms old", 10 * (late.as_millis() / 10))
+    told!("Picture is {} ms old", "Picture is {} ms old", 10 * (late.as_millis() / 10))
 }
 
 /// A picture that cannot be shown.
 pub(in crate::console) fn damaged(why: &str) -> String {
-    format!("Picture is damaged: {why}")
+    told!("Picture is damaged: {why}", "Picture is damaged: {why}")
 }
 
 /// A picture of another size, px.
 pub(in crate::console) fn size([width, height]: [usize; 2], [wanted_width, wanted_height]: [usize; 2]) -> String {
-    format!("Picture is {width} x {height} pixels, not {wanted_width} x {wanted_height}")
+    told!(
+        "Picture is {width} x {height} pixels, not {wanted_width} x {wanted_height}",
+        "Picture is {width} x {height} pixels, not {wanted_width} x {wanted_height}"
+    )
 }
 
 /// There is no picture.
 pub(in crate::console) fn lost(why: &str) -> String {
-    format!("Picture is lost: {why}")
+    told!("Picture is lost: {why}", "Picture is lost: {why}")
 }
 
 /// The address cannot be used.
 pub(in crate::console) fn refused(why: &str) -> String {
-    format!("No picture: {why}")
+    told!("No picture: {why}", "No picture: {why}")
 }
 
 /// What to do about an address that cannot be used.
-pub(in crate::console) const REFUSED_CURE: &str = "Correct endoscope.url in the rig file";
+pub(in crate::console) const REFUSED_CURE: Text =
+    Text::of("Correct endoscope.url in the rig file", "Correct endoscope.url in the rig file");
 
 /// Age and rate of the picture.
 pub(in crate::console) fn figures(age: Duration, rate_hz: f64) -> String {
-    format!("{} ms old, {rate_hz:.0} pictures a second", age.as_millis())
+    told!("{} ms old, {rate_hz:.0} pictures a second", "{} ms old, {rate_hz:.0} pictures a second", age.as_millis())
 }
 
 /// Age of a recorded picture.
 pub(in crate::console) fn recorded(age: Duration) -> String {
-    format!("Recorded picture, {} ms old then", age.as_millis())
+    told!("Recorded picture, {} ms old then", "Recorded picture, {} ms old then", age.as_millis())
 }
 
-pub(in crate::console) const SEARCHING: &str = "Looking for the picture of this moment";
+pub(in crate::console) const SEARCHING: Text =
+    Text::of("Looking for the picture of this moment", "Looking for the picture of this moment");
 
 /// There is no recorded picture of a moment.
 pub(in crate::console) fn none_then(why: Option<&str>) -> String {
     why.map_or_else(
-        || "No picture came in the two seconds before this moment".to_owned(),
-        |why| format!("The picture of this moment cannot be read: {why}"),
+        || {
+            word(
+                "No picture came in the two seconds before this moment",
+                "No picture came in the two seconds before this moment",
+            )
+            .to_owned()
+        },
+        |why| {
+            told!(
+                "The picture of this moment cannot be read: {why}",
+                "The picture of this moment cannot be read: {why}"
+            )
+        },
     )
 }
 
 /// How far the picture is zoomed, and how to get back.
 pub(in crate::console) fn zoomed(zoom: f32) -> String {
-    format!("Zoom {zoom:.1}; drag moves, a double click shows all")
+    told!(
+        "Zoom {zoom:.1}; drag moves, a double click shows all",
+        "Zoom {zoom:.1}; drag moves, a double click shows all"
+    )
 }
 
 /// A tip that is not in the view.
 pub(in crate::console) fn tip(side: &str) -> String {
-    format!("{side} tip")
+    told!("{side} tip", "{side} tip")
 }
 
 /// The whole picture in words.
 pub(in crate::console) fn picture(standing: &str) -> String {
-    format!("Endoscope's picture: {standing}")
+    told!("Endoscope's picture: {standing}", "Endoscope's picture: {standing}")
 }
 
 /// A picture that comes as it should.
-pub(in crate::console) const LIVE: &str = "live";
+pub(in crate::console) const LIVE: Text = Text::of("live", "live");
 
 /// Label of a force at a tip, N.
 pub(in crate::console) fn force(size_n: f64) -> String {

@@ -1,24 +1,39 @@
 //! The view of both forces in force space.
 
-pub(in crate::console) const HOVER: &str = "Measured and rendered force of the last six seconds in force space (N, world axes), one line each. \
+use crate::language::{Text, told};
+
+pub(in crate::console) const HOVER: Text = Text::of(
+    "Measured and rendered force of the last six seconds in force space (N, world axes), one line each. \
     The dot is the force now, or at the time under the pointer in a trace. The three rings are an \
     ellipsoid around the force measured now; it contains 95 % of the errors (rendered minus measured) if \
     they are normally distributed. The share that it really contains is written below. The dashed circle \
-    is the force ceiling. Drag to turn, double-click to reset.";
+    is the force ceiling. Drag to turn, double-click to reset.",
+    "Measured and rendered force of the last six seconds in force space (N, world axes), one line each. \
+    The dot is the force now, or at the time under the pointer in a trace. The three rings are an \
+    ellipsoid around the force measured now; it contains 95 % of the errors (rendered minus measured) if \
+    they are normally distributed. The share that it really contains is written below. The dashed circle \
+    is the force ceiling. Drag to turn, double-click to reset.",
+);
 
 /// Accessible name of the plot.
 pub(in crate::console) fn canvas(words: &str) -> String {
-    format!("Force space. {words}")
+    told!("Force space. {words}", "Force space. {words}")
 }
 
 /// Not enough data for the ellipsoid yet; two lines, separated by a semicolon.
 pub(in crate::console) fn too_short(seconds: f64) -> String {
-    format!("Last {seconds:.0} s; the error ellipsoid needs one second of data")
+    told!(
+        "Last {seconds:.0} s; the error ellipsoid needs one second of data",
+        "Last {seconds:.0} s; the error ellipsoid needs one second of data"
+    )
 }
 
 /// The ellipsoid (mean and half axes in N, share of samples inside in percent); two lines, separated by a semicolon.
 pub(in crate::console) fn error(seconds: f64, mean_n: f64, [a, b, c]: [f64; 3], percent: f64) -> String {
-    format!(
-        "Error, last {seconds:.0} s: mean {mean_n:.2} N, 95 % half axes; {a:.2}, {b:.2}, {c:.2} N (contains {percent:.0} %)"
+    told!(
+        "Error, last {seconds:.0} s: mean {mean_n:.2} N, 95 % half axes; {a:.2}, {b:.2}, {c:.2} N (contains \
+         {percent:.0} %)",
+        "Error, last {seconds:.0} s: mean {mean_n:.2} N, 95 % half axes; {a:.2}, {b:.2}, {c:.2} N (contains \
+         {percent:.0} %)"
     )
 }

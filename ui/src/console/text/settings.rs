@@ -1,15 +1,20 @@
 //! Errors of the settings file.
 
-pub(in crate::console) const LAYOUT_LOST: &str = "The panel layout cannot be read; the default layout is used";
+use crate::language::{Text, told};
+
+pub(in crate::console) const LAYOUT_LOST: Text = Text::of(
+    "The panel layout cannot be read; the default layout is used",
+    "The panel layout cannot be read; the default layout is used",
+);
 
 /// The file cannot be read.
 pub(in crate::console) fn not_read(error: &impl std::fmt::Display) -> String {
-    format!("The settings cannot be read: {error}")
+    told!("The settings cannot be read: {error}", "The settings cannot be read: {error}")
 }
 
 /// The file cannot be written.
 pub(in crate::console) fn not_kept(error: &impl std::fmt::Display) -> String {
-    format!("The settings cannot be saved: {error}")
+    told!("The settings cannot be saved: {error}", "The settings cannot be saved: {error}")
 }
 
 /// Only the layout cannot be read.
@@ -19,10 +24,16 @@ pub(in crate::console) fn layout_lost(error: &impl std::fmt::Display) -> String 
 
 /// The file is invalid and was renamed.
 pub(in crate::console) fn set_aside(error: &impl std::fmt::Display, name: &str) -> String {
-    format!("The settings file was damaged ({error}); it was renamed to {name}, and the defaults are used")
+    told!(
+        "The settings file was damaged ({error}); it was renamed to {name}, and the defaults are used",
+        "The settings file was damaged ({error}); it was renamed to {name}, and the defaults are used"
+    )
 }
 
 /// The file is invalid.
 pub(in crate::console) fn damaged(error: &impl std::fmt::Display) -> String {
-    format!("The settings file is damaged ({error}); the defaults are used")
+    told!(
+        "The settings file is damaged ({error}); the defaults are used",
+        "The settings file is damaged ({error}); the defaults are used"
+    )
 }

@@ -24,7 +24,7 @@ impl Wizards {
             if wizard.attend(binding) && wizard.may_go_on(binding).is_ok() {
                 wizard.go_to(now + 1);
             }
-            return Some(Attended::Working(steps[now].name, wizard.notice().map(str::to_owned)));
+            return Some(Attended::Working(steps[now].name.get(), wizard.notice().map(str::to_owned)));
         }
         let proven = wizard.proof().is_some();
         let made = wizard.made(binding);

@@ -13,10 +13,10 @@ use crate::console::{
 pub(super) fn check_ui(ui: &mut Ui, check: &Check) {
     let (what, colour, words) = match &check.state {
         CheckState::Good if check.measured.is_empty() => {
-            (Sign::Disc, theme::now().engaged, text::wizards::FINE.to_owned())
+            (Sign::Disc, theme::now().engaged, text::wizards::FINE.get().to_owned())
         }
         CheckState::Good => (Sign::Disc, theme::now().engaged, text::wizards::met(&check.measured)),
-        CheckState::Waiting => (Sign::Ring, theme::now().at_rest, text::wizards::WAITING.to_owned()),
+        CheckState::Waiting => (Sign::Ring, theme::now().at_rest, text::wizards::WAITING.get().to_owned()),
         CheckState::Bad { cause, cure } => (Sign::Triangle, theme::now().text, format!("{cause}; {cure}")),
     };
     line_ui(ui, what, colour, &format!("{}: {words}", sentence(check.name)));
@@ -25,7 +25,7 @@ pub(super) fn check_ui(ui: &mut Ui, check: &Check) {
 /// A check that has passed, or what to do.
 pub(super) fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
     let (what, colour, words) = if met {
-        (Sign::Disc, theme::now().engaged, text::wizards::FINE)
+        (Sign::Disc, theme::now().engaged, text::wizards::FINE.get())
     } else {
         (Sign::Triangle, theme::now().text, otherwise)
     };
@@ -43,6 +43,6 @@ fn line_ui(ui: &mut Ui, what: Sign, colour: egui::Color32, words: &str) {
 pub(super) fn switch_ui(ui: &mut Ui, free: bool, on: bool, name: &str, meaning: &str) -> Option<bool> {
     let mut wanted = on;
     let switch = ui.add_enabled(free, Checkbox::new(&mut wanted, name));
-    let switch = switch.on_hover_text(meaning).on_disabled_hover_text(text::wizards::SWITCH_DISABLED_HOVER);
+    let switch = switch.on_hover_text(meaning).on_disabled_hover_text(text::wizards::SWITCH_DISABLED_HOVER.get());
     switch.changed().then_some(wanted)
 }

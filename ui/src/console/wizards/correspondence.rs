@@ -101,11 +101,11 @@ impl CorrespondenceWizard {
 
     /// Whether all sources deliver and both sensors have been at rest.
     fn may_push(&self) -> Result<(), &'static str> {
-        let Some(sources) = self.sources else { return Err(text::correspondence::NEEDS_WRIST_SENSOR) };
+        let Some(sources) = self.sources else { return Err(text::correspondence::NEEDS_WRIST_SENSOR.get()) };
         match self.session.phase() {
-            _ if !sources.gravity => Err(text::correspondence::NEEDS_GRAVITY),
-            Phase::Missing(_) => Err(text::wizards::NEEDS_CHECKS),
-            Phase::Resting { .. } => Err(text::correspondence::NEEDS_REST),
+            _ if !sources.gravity => Err(text::correspondence::NEEDS_GRAVITY.get()),
+            Phase::Missing(_) => Err(text::wizards::NEEDS_CHECKS.get()),
+            Phase::Resting { .. } => Err(text::correspondence::NEEDS_REST.get()),
             _ => Ok(()),
         }
     }
@@ -115,31 +115,31 @@ impl CorrespondenceWizard {
     }
 
     fn check_ui(&mut self, ui: &mut Ui) {
-        card(ui, text::correspondence::CHECKS_TITLE, text::correspondence::CHECKS_HOVER, |ui| {
-            ui.label(text::correspondence::CHECKS_TASK);
+        card(ui, text::correspondence::CHECKS_TITLE.get(), text::correspondence::CHECKS_HOVER.get(), |ui| {
+            ui.label(text::correspondence::CHECKS_TASK.get());
             ui.add_space(6.0);
             let Sources { gravity, tissue, chain } = self.sources.unwrap_or_default();
-            check_line(ui, text::correspondence::CHECK_WRIST, gravity, Missing::WristForce.words());
-            check_line(ui, text::correspondence::CHECK_TISSUE, tissue, Missing::TissueForce.words());
+            check_line(ui, text::correspondence::CHECK_WRIST.get(), gravity, Missing::WristForce.words());
+            check_line(ui, text::correspondence::CHECK_TISSUE.get(), tissue, Missing::TissueForce.words());
             let tracker = if self.session.settings().chain {
-                text::correspondence::CHECK_TRACKER
+                text::correspondence::CHECK_TRACKER.get()
             } else {
-                text::correspondence::CHECK_TRACKER_UNUSED
+                text::correspondence::CHECK_TRACKER_UNUSED.get()
             };
             check_line(ui, tracker, chain || !self.session.settings().chain, Missing::Chain.words());
             let (_, words) = phase_words(&self.session.phase());
-            check_line(ui, text::correspondence::CHECK_REST, self.may_push().is_ok(), &words);
+            check_line(ui, text::correspondence::CHECK_REST.get(), self.may_push().is_ok(), &words);
         });
-        card(ui, text::wizards::OPTIONS_TITLE, text::wizards::OPTIONS_HOVER, |ui| {
+        card(ui, text::wizards::OPTIONS_TITLE.get(), text::wizards::OPTIONS_HOVER.get(), |ui| {
             let SessionSettings { chain, options, .. } = *self.session.settings();
-            let flip = text::correspondence::OPTION_FLIP;
-            let meaning = text::correspondence::OPTION_FLIP_HOVER;
+            let flip = text::correspondence::OPTION_FLIP.get();
+            let meaning = text::correspondence::OPTION_FLIP_HOVER.get();
             if let Some(flip_s2) = switch_ui(ui, true, options.flip_s2, flip, meaning) {
                 self.session.set_flip_s2(flip_s2);
                 self.fit();
             }
-            let alone = text::correspondence::OPTION_NO_TRACKER;
-            let meaning = text::correspondence::OPTION_NO_TRACKER_HOVER;
+            let alone = text::correspondence::OPTION_NO_TRACKER.get();
+            let meaning = text::correspondence::OPTION_NO_TRACKER_HOVER.get();
             if let Some(alone) = switch_ui(ui, self.session.pushes() == 0, !chain, alone, meaning) {
                 self.start_anew(SessionSettings { chain: !alone, ..*self.session.settings() });
             }
@@ -149,20 +149,20 @@ impl CorrespondenceWizard {
     fn pushes_ui(&mut self, ui: &mut Ui) {
         let count = self.session.pushes();
         let wanted = self.wanted();
-        card(ui, text::correspondence::PUSH_TITLE, text::correspondence::PUSH_HOVER, |ui| {
+        card(ui, text::correspondence::PUSH_TITLE.get(), text::correspondence::PUSH_HOVER.get(), |ui| {
             ui.label(RichText::new(sentence(wanted.name)).font(theme::strong(19.0)));
             let (share, words) = if self.sources.is_some() {
                 phase_words(&self.session.phase())
             } else {
-                (0.0, text::correspondence::PHASE_WRIST_SILENT.to_owned())
+                (0.0, text::correspondence::PHASE_WRIST_SILENT.get().to_owned())
             };
-            progress(ui, text::correspondence::PUSH_PROGRESS, share, &words);
+            progress(ui, text::correspondence::PUSH_PROGRESS.get(), share, &words);
             ui.add_space(6.0);
             let directions = TARGETS.map(|target| target.push_in_world);
             let taken = self.session.taken_in_world();
             sphere_picture(
                 ui,
-                text::correspondence::DIRECTIONS_PICTURE,
+                text::correspondence::DIRECTIONS_PICTURE.get(),
                 &directions,
                 &taken,
                 Some(wanted.push_in_world),
@@ -170,17 +170,17 @@ impl CorrespondenceWizard {
             let share = count as f64 / PUSHES_ASKED as f64;
             progress(
                 ui,
-                text::correspondence::STEP_PUSHES,
+                text::correspondence::STEP_PUSHES.get(),
                 share,
                 &text::correspondence::taken_of(count, PUSHES_ASKED),
             );
         });
-        card(ui, text::wizards::SO_FAR, text::correspondence::SO_FAR_HOVER, |ui| {
+        card(ui, text::wizards::SO_FAR.get(), text::correspondence::SO_FAR_HOVER.get(), |ui| {
             figure(
                 ui,
-                text::correspondence::RECORDED,
+                text::correspondence::RECORDED.get(),
                 text::correspondence::pushes(count),
-                text::correspondence::RECORDED_HOVER,
+                text::correspondence::RECORDED_HOVER.get(),
             );
             match &self.report {
                 Some(Ok(report)) => verdict_line(ui, report.verdict, &report.reason),
@@ -188,10 +188,10 @@ impl CorrespondenceWizard {
                     ui.label(error);
                 }
                 None => {
-                    ui.label(small(text::correspondence::SO_FAR_EMPTY));
+                    ui.label(small(text::correspondence::SO_FAR_EMPTY.get()));
                 }
             }
-            if ui.add_enabled(count > 0, Button::new(text::correspondence::REMOVE_LAST)).clicked() {
+            if ui.add_enabled(count > 0, Button::new(text::correspondence::REMOVE_LAST.get())).clicked() {
                 self.session.undo();
                 self.fit();
             }
@@ -199,7 +199,7 @@ impl CorrespondenceWizard {
     }
 
     fn result_ui(&self, ui: &mut Ui) {
-        let otherwise = [text::correspondence::NO_RESULT_HOVER, text::correspondence::TOO_FEW];
+        let otherwise = [text::correspondence::NO_RESULT_HOVER.get(), text::correspondence::TOO_FEW.get()];
         result_ui(ui, self.report.as_ref(), otherwise, |ui, report| {
             verdict_ui(ui, report);
             if let Some(solution) = &report.solution {
@@ -261,10 +261,10 @@ impl Wizard for CorrespondenceWizard {
         match self.frame.step {
             CHECK => self.may_push(),
             PUSHES if self.session.pushes() >= PUSHES_MIN => Ok(()),
-            PUSHES => Err(text::correspondence::NEEDS_PUSHES),
+            PUSHES => Err(text::correspondence::NEEDS_PUSHES.get()),
             RESULT if self.solution().is_some() => Ok(()),
-            RESULT => Err(text::correspondence::NEEDS_ROTATION),
-            _ => Err(text::wizards::LAST_STEP),
+            RESULT => Err(text::correspondence::NEEDS_ROTATION.get()),
+            _ => Err(text::wizards::LAST_STEP.get()),
         }
     }
 
@@ -283,7 +283,7 @@ impl Wizard for CorrespondenceWizard {
 
     fn proof(&self) -> Option<String> {
         let accepted = self.good_report().is_some_and(|report| report.verdict == Verdict::Accepted);
-        accepted.then(|| text::correspondence::PROOF.to_owned())
+        accepted.then(|| text::correspondence::PROOF.get().to_owned())
     }
 
     fn made(&self, binding: &Binding) -> Option<Saving> {
@@ -303,7 +303,7 @@ fn phase_words(phase: &Phase) -> (f64, String) {
     match phase {
         Phase::Missing(missing) => (0.0, missing.words().to_owned()),
         Phase::Resting { share, f1_n, f2_n } => (*share, text::correspondence::at_rest(*f1_n, *f2_n)),
-        Phase::Ready => (0.0, text::correspondence::PHASE_READY.to_owned()),
+        Phase::Ready => (0.0, text::correspondence::PHASE_READY.get().to_owned()),
         Phase::Pushing { force_n, enough: false } => (0.5, text::correspondence::hold(*force_n)),
         Phase::Pushing { force_n, enough: true } => (1.0, text::correspondence::let_go(*force_n)),
         Phase::Recorded(index) => (1.0, text::correspondence::push_taken(index + 1)),
@@ -312,59 +312,59 @@ fn phase_words(phase: &Phase) -> (f64, String) {
 }
 
 fn verdict_ui(ui: &mut Ui, report: &CorrespondenceReport) {
-    card(ui, report.verdict.words(), text::correspondence::VERDICT_HOVER, |ui| {
+    card(ui, report.verdict.words(), text::correspondence::VERDICT_HOVER.get(), |ui| {
         ui.label(&report.reason);
         ui.add_space(4.0);
         let (left_out, weak) = (report.outliers.len(), report.weak.len());
         let pushes = text::correspondence::used(report.pairs, left_out, weak);
-        figure(ui, text::correspondence::STEP_PUSHES, pushes, text::correspondence::PUSHES_HOVER);
+        figure(ui, text::correspondence::STEP_PUSHES.get(), pushes, text::correspondence::PUSHES_HOVER.get());
         let spread = format!("{:.2}, {:.2}", report.excitation.second, report.excitation.third);
-        figure(ui, text::correspondence::SPREAD, spread, text::correspondence::SPREAD_HOVER);
+        figure(ui, text::correspondence::SPREAD.get(), spread, text::correspondence::SPREAD_HOVER.get());
         let Some(solution) = &report.solution else { return };
         let [roll, pitch, yaw] = solution.roll_pitch_yaw_deg;
         let name = text::correspondence::rotation(solution.target.name());
-        figure(ui, &name, format!("{roll:.2}, {pitch:.2}, {yaw:.2} deg"), text::correspondence::ROTATION_HOVER);
+        figure(ui, &name, format!("{roll:.2}, {pitch:.2}, {yaw:.2} deg"), text::correspondence::ROTATION_HOVER.get());
         figure(
             ui,
-            text::correspondence::UNCERTAINTY,
+            text::correspondence::UNCERTAINTY.get(),
             format!("{:.2} deg", solution.uncertainty_deg),
-            text::correspondence::UNCERTAINTY_HOVER,
+            text::correspondence::UNCERTAINTY_HOVER.get(),
         );
         let check = format!("{:.3} deg", solution.cross_check_deg);
-        figure(ui, text::correspondence::CROSS_CHECK, check, text::correspondence::CROSS_CHECK_HOVER);
+        figure(ui, text::correspondence::CROSS_CHECK.get(), check, text::correspondence::CROSS_CHECK_HOVER.get());
         if let Some(diagnosis) = &solution.diagnosis {
             let gain = format!("{:.3} ± {:.3}", diagnosis.gain, diagnosis.gain_se);
-            figure(ui, text::correspondence::GAIN, gain, text::correspondence::GAIN_HOVER);
+            figure(ui, text::correspondence::GAIN.get(), gain, text::correspondence::GAIN_HOVER.get());
             let offset = format!("{:.3} ± {:.3} N", diagnosis.offset_norm_n(), diagnosis.offset_se_n);
             figure(
                 ui,
-                text::correspondence::OFFSET,
+                text::correspondence::OFFSET.get(),
                 format!("{offset} ({})", frame_words(diagnosis.offset_frame)),
-                text::correspondence::OFFSET_HOVER,
+                text::correspondence::OFFSET_HOVER.get(),
             );
         }
     });
 }
 
-const fn frame_words(frame: OffsetFrame) -> &'static str {
+fn frame_words(frame: OffsetFrame) -> &'static str {
     match frame {
-        OffsetFrame::S1 => text::correspondence::OFFSET_OF_WRIST,
-        OffsetFrame::S2 => text::correspondence::OFFSET_OF_TISSUE,
-        OffsetFrame::Unknown => text::correspondence::OFFSET_OF_EITHER,
+        OffsetFrame::S1 => text::correspondence::OFFSET_OF_WRIST.get(),
+        OffsetFrame::S2 => text::correspondence::OFFSET_OF_TISSUE.get(),
+        OffsetFrame::Unknown => text::correspondence::OFFSET_OF_EITHER.get(),
     }
 }
 
 /// The paper's Validation I: agreement of the rotated force under the tissue with that at the wrist.
 fn agreement_ui(ui: &mut Ui, agreement: &Agreement) {
-    let meaning = text::correspondence::AGREEMENT_HOVER;
-    card(ui, text::correspondence::AGREEMENT_TITLE, meaning, |ui| {
+    let meaning = text::correspondence::AGREEMENT_HOVER.get();
+    card(ui, text::correspondence::AGREEMENT_TITLE.get(), meaning, |ui| {
         Grid::new("agreement").num_columns(7).spacing(vec2(22.0, 6.0)).show(ui, |ui| {
             for head in [
-                text::correspondence::AXIS,
-                text::correspondence::FITTED_MAE,
+                text::correspondence::AXIS.get(),
+                text::correspondence::FITTED_MAE.get(),
                 "SD",
                 "R2",
-                text::correspondence::HELD_OUT_MAE,
+                text::correspondence::HELD_OUT_MAE.get(),
                 "SD",
                 "R2",
             ] {
@@ -388,9 +388,9 @@ fn agreement_ui(ui: &mut Ui, agreement: &Agreement) {
         let (fitted, held_out) = (agreement.r2_fitted_overall, agreement.r2_held_out_overall);
         figure(
             ui,
-            text::correspondence::R2_OVERALL,
+            text::correspondence::R2_OVERALL.get(),
             text::correspondence::agreement(fitted, held_out),
-            text::correspondence::R2_OVERALL_HOVER,
+            text::correspondence::R2_OVERALL_HOVER.get(),
         );
     });
 }

@@ -9,12 +9,13 @@ use crate::console::{
     text, theme,
     widgets::{card, figure, next_button, small, weak},
 };
+use crate::language::Text;
 
 /// One step of a wizard.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
-    pub(super) name: &'static str,
-    pub(super) meaning: &'static str,
+    pub(super) name: Text,
+    pub(super) meaning: Text,
 }
 
 /// A request of the technician.
@@ -176,22 +177,24 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, going_on: &GoingOn) -> Opti
             } else {
                 (theme::regular(14.0), theme::now().text_weak)
             };
-            let mark = if i < now { text::wizards::DONE } else { "" };
+            let mark = if i < now { text::wizards::DONE.get() } else { "" };
             let words = format!("{}. {} {mark}", i + 1, step.name);
-            ui.label(RichText::new(words.trim_end()).font(font).color(colour)).on_hover_text(step.meaning);
+            ui.label(RichText::new(words.trim_end()).font(font).color(colour)).on_hover_text(step.meaning.get());
             ui.add_space(10.0);
         }
     });
-    ui.label(small(steps[now].meaning));
+    ui.label(small(steps[now].meaning.get()));
     ui.horizontal(|ui| {
         let size = vec2(96.0, 34.0);
-        if ui.add_enabled(now > 0, Button::new(text::wizards::BACK).min_size(size)).clicked() {
+        if ui.add_enabled(now > 0, Button::new(text::wizards::BACK.get()).min_size(size)).clicked() {
             wish = Some(Wish::GoTo(now - 1));
         }
         let last = now + 1 == steps.len();
         let (name, goes_to) = match going_on.following.filter(|_| last) {
             Some(following) => (following.words(), Some(Wish::GoOn(following))),
-            None => (text::wizards::NEXT.to_owned(), (!last && going_on.may.is_ok()).then_some(Wish::GoTo(now + 1))),
+            None => {
+                (text::wizards::NEXT.get().to_owned(), (!last && going_on.may.is_ok()).then_some(Wish::GoTo(now + 1)))
+            }
         };
         let next = next_button(name, goes_to.is_some() && going_on.is_done).min_size(size);
         let next = ui.add_enabled(goes_to.is_some(), next);
@@ -203,7 +206,7 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, going_on: &GoingOn) -> Opti
             ui.label(small(reason));
         }
         ui.add_space(24.0);
-        if ui.button(text::wizards::START_OVER).on_hover_text(text::wizards::START_OVER_HOVER).clicked() {
+        if ui.button(text::wizards::START_OVER.get()).on_hover_text(text::wizards::START_OVER_HOVER.get()).clicked() {
             wish = Some(Wish::StartOver);
         }
     });
@@ -213,24 +216,24 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, going_on: &GoingOn) -> Opti
 /// The last step of every wizard: sensor and tool of the record, if it is bound to them, and the save button; returns true when it is pressed.
 /// Without `proof` a name and a reason are required.
 fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame: &mut Frame) -> bool {
-    let meaning = if binding.is_some() { text::wizards::SAVE_HOVER } else { text::camera::STEP_SAVE_HOVER };
-    card(ui, text::wizards::STEP_SAVE, meaning, |ui| {
+    let meaning = if binding.is_some() { text::wizards::SAVE_HOVER.get() } else { text::camera::STEP_SAVE_HOVER.get() };
+    card(ui, text::wizards::STEP_SAVE.get(), meaning, |ui| {
         if let Some(binding) = binding {
-            figure(ui, text::wizards::SENSOR, &binding.sensor, text::wizards::SENSOR_HOVER);
-            figure(ui, text::wizards::TOOL, &binding.tool, text::wizards::TOOL_HOVER);
+            figure(ui, text::wizards::SENSOR.get(), &binding.sensor, text::wizards::SENSOR_HOVER.get());
+            figure(ui, text::wizards::TOOL.get(), &binding.tool, text::wizards::TOOL_HOVER.get());
         }
         let wanted = if let Some(proof) = proof {
             ui.label(proof);
             let known = binding.is_none_or(|binding| !binding.sensor.is_empty());
             let next = !frame.is_saved();
             let save =
-                ui.add_enabled(known, next_button(text::wizards::SAVE_AND_USE, next).min_size(vec2(180.0, 36.0)));
+                ui.add_enabled(known, next_button(text::wizards::SAVE_AND_USE.get(), next).min_size(vec2(180.0, 36.0)));
             if !known {
-                ui.label(small(text::calibrations::SENSOR_NOT_CONNECTED));
+                ui.label(small(text::calibrations::SENSOR_NOT_CONNECTED.get()));
             }
             save.clicked()
         } else {
-            ui.label(weak(text::wizards::NOT_PROVEN));
+            ui.label(weak(text::wizards::NOT_PROVEN.get()));
             override_ui(ui, [&mut frame.name, &mut frame.why])
         };
         if let Some(Ok(told) | Err(told)) = &frame.saved {
@@ -243,14 +246,14 @@ fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame:
 /// Name and reason for an override; returns true when both are entered and confirmed.
 fn override_ui(ui: &mut Ui, by: [&mut String; 2]) -> bool {
     let mut named = true;
-    for (label, text) in [text::wizards::YOUR_NAME, text::wizards::REASON].into_iter().zip(by) {
+    for (label, text) in [text::wizards::YOUR_NAME.get(), text::wizards::REASON.get()].into_iter().zip(by) {
         ui.horizontal(|ui| {
             let label = ui.label(label);
             ui.add(TextEdit::singleline(text).desired_width(280.0).char_limit(120)).labelled_by(label.id);
         });
         named &= !text.trim().is_empty();
     }
-    ui.add_enabled(named, Button::new(text::wizards::SAVE_ANYWAY).min_size(vec2(220.0, 36.0)))
-        .on_disabled_hover_text(text::wizards::SAVE_ANYWAY_DISABLED_HOVER)
+    ui.add_enabled(named, Button::new(text::wizards::SAVE_ANYWAY.get()).min_size(vec2(220.0, 36.0)))
+        .on_disabled_hover_text(text::wizards::SAVE_ANYWAY_DISABLED_HOVER.get())
         .clicked()
 }

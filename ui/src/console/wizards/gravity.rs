@@ -112,23 +112,23 @@ impl GravityWizard {
     }
 
     fn check_ui(&mut self, ui: &mut Ui) {
-        card(ui, text::gravity::CHECKS_TITLE, text::gravity::CHECKS_HOVER, |ui| {
-            ui.label(text::gravity::CHECKS_TASK);
+        card(ui, text::gravity::CHECKS_TITLE.get(), text::gravity::CHECKS_HOVER.get(), |ui| {
+            ui.label(text::gravity::CHECKS_TASK.get());
             ui.add_space(6.0);
             for check in self.precheck.checks(self.rate_hz) {
                 check_ui(ui, &check);
             }
         });
-        card(ui, text::wizards::OPTIONS_TITLE, text::wizards::OPTIONS_HOVER, |ui| {
+        card(ui, text::wizards::OPTIONS_TITLE.get(), text::wizards::OPTIONS_HOVER.get(), |ui| {
             let SessionSettings { use_arm, fit, .. } = *self.session.settings();
             let none_taken = self.session.poses().is_empty();
-            let by_arm = text::gravity::OPTION_BY_ARM;
-            let meaning = text::gravity::OPTION_BY_ARM_HOVER;
+            let by_arm = text::gravity::OPTION_BY_ARM.get();
+            let meaning = text::gravity::OPTION_BY_ARM_HOVER.get();
             if let Some(use_arm) = switch_ui(ui, none_taken, use_arm, by_arm, meaning) {
                 *self = Self::of(SessionSettings { use_arm, ..*self.session.settings() });
             }
-            let flipped = text::gravity::OPTION_FLIP_IMU;
-            let meaning = text::gravity::OPTION_FLIP_IMU_HOVER;
+            let flipped = text::gravity::OPTION_FLIP_IMU.get();
+            let meaning = text::gravity::OPTION_FLIP_IMU_HOVER.get();
             if let Some(flip) = switch_ui(ui, !use_arm, fit.imu_sign < 0, flipped, meaning) {
                 self.session.set_imu_sign(if flip { -1 } else { 1 });
                 self.precheck = Precheck::new(*self.session.settings());
@@ -141,35 +141,35 @@ impl GravityWizard {
         let count = self.session.poses().len();
         let met = self.session.targets_met();
         let target = self.session.target();
-        card(ui, text::gravity::POSE_TITLE, text::gravity::POSE_HOVER, |ui| {
-            let name = target.map_or(text::gravity::ALL_POSES_RECORDED, |target| target.name);
+        card(ui, text::gravity::POSE_TITLE.get(), text::gravity::POSE_HOVER.get(), |ui| {
+            let name = target.map_or(text::gravity::ALL_POSES_RECORDED.get(), |target| target.name);
             ui.label(RichText::new(crate::console::alarms::sentence(name)).font(theme::strong(19.0)));
             let (share, words) = phase_words(&self.phase);
-            progress(ui, text::gravity::POSE_PROGRESS, share, &words);
+            progress(ui, text::gravity::POSE_PROGRESS.get(), share, &words);
             ui.add_space(6.0);
             let directions: Vec<Vector3<f64>> = TARGETS.iter().map(|target| Vector3::from(target.down_s1)).collect();
             let taken = self.session.taken_down_s1();
             let down_now = self.held.map(|held| held.inverse() * -Vector3::z());
             ui.horizontal_wrapped(|ui| {
                 pose_picture(ui, target.map(|target| target.world_from_s1()).as_ref(), self.held.as_ref());
-                sphere_picture(ui, text::gravity::DIRECTIONS_PICTURE, &directions, &taken, down_now);
+                sphere_picture(ui, text::gravity::DIRECTIONS_PICTURE.get(), &directions, &taken, down_now);
             });
             progress(
                 ui,
-                text::gravity::DIRECTIONS,
+                text::gravity::DIRECTIONS.get(),
                 met as f64 / TARGETS.len() as f64,
                 &text::gravity::recorded_of(met, TARGETS.len()),
             );
         });
-        card(ui, text::wizards::SO_FAR, text::gravity::SO_FAR_HOVER, |ui| {
-            figure(ui, text::gravity::STEP_POSES, count.to_string(), text::gravity::POSES_HOVER);
+        card(ui, text::wizards::SO_FAR.get(), text::gravity::SO_FAR_HOVER.get(), |ui| {
+            figure(ui, text::gravity::STEP_POSES.get(), count.to_string(), text::gravity::POSES_HOVER.get());
             if let Some(report) = self.good_report() {
                 report_figures(ui, report);
             } else {
-                ui.label(small(text::gravity::SO_FAR_EMPTY));
+                ui.label(small(text::gravity::SO_FAR_EMPTY.get()));
             }
             self.touched_ui(ui);
-            if ui.add_enabled(count > 0, Button::new(text::gravity::REMOVE_LAST)).clicked() {
+            if ui.add_enabled(count > 0, Button::new(text::gravity::REMOVE_LAST.get())).clicked() {
                 self.session.undo();
                 self.fit();
             }
@@ -181,12 +181,12 @@ impl GravityWizard {
         let touched_s = self.session.touched_s();
         let is_bad = self.good_report().is_some_and(|report| report.verdict != Verdict::Accepted);
         if touched_s >= TOUCHED_S || is_bad && touched_s > 0.0 {
-            ui.label(text::gravity::was_touched(touched_s)).on_hover_text(text::gravity::WAS_TOUCHED_HOVER);
+            ui.label(text::gravity::was_touched(touched_s)).on_hover_text(text::gravity::WAS_TOUCHED_HOVER.get());
         }
     }
 
     fn result_ui(&self, ui: &mut Ui) {
-        let otherwise = [text::gravity::NO_RESULT_HOVER, text::gravity::NO_POSES];
+        let otherwise = [text::gravity::NO_RESULT_HOVER.get(), text::gravity::NO_POSES.get()];
         result_ui(ui, self.report.as_ref(), otherwise, |ui, report| {
             verdict_ui(ui, report);
             self.touched_ui(ui);
@@ -195,28 +195,29 @@ impl GravityWizard {
     }
 
     fn free_motion_ui(&mut self, ui: &mut Ui) {
-        card(ui, text::gravity::FREE_MOTION_TITLE, text::gravity::FREE_MOTION_HOVER, |ui| {
-            ui.label(text::gravity::FREE_MOTION_TASK);
+        card(ui, text::gravity::FREE_MOTION_TITLE.get(), text::gravity::FREE_MOTION_HOVER.get(), |ui| {
+            ui.label(text::gravity::FREE_MOTION_TASK.get());
             ui.add_space(4.0);
-            let left = self.left_n.map_or(text::gravity::NO_READING.to_owned(), |left_n| format!("{left_n:.2} N"));
+            let left =
+                self.left_n.map_or(text::gravity::NO_READING.get().to_owned(), |left_n| format!("{left_n:.2} N"));
             ui.label(RichText::new(left).font(theme::strong(34.0)));
             let Some(result) = self.pass_result() else { return };
-            figure(ui, text::gravity::MEAN, format!("{:.3} N", result.mean_n), text::gravity::MEAN_HOVER);
+            figure(ui, text::gravity::MEAN.get(), format!("{:.3} N", result.mean_n), text::gravity::MEAN_HOVER.get());
             figure(
                 ui,
-                text::gravity::P95,
+                text::gravity::P95.get(),
                 text::gravity::of_allowed(result.p95_n, FREE_MOTION_LIMIT_N),
-                text::gravity::P95_HOVER,
+                text::gravity::P95_HOVER.get(),
             );
             figure(
                 ui,
-                text::gravity::TILT,
+                text::gravity::TILT.get(),
                 format!("{:.0} deg", result.tilt_rad.to_degrees()),
-                text::gravity::TILT_HOVER,
+                text::gravity::TILT_HOVER.get(),
             );
-            let words = if result.passed { text::gravity::PASSED } else { text::gravity::NOT_PASSED };
+            let words = if result.passed { text::gravity::PASSED.get() } else { text::gravity::NOT_PASSED.get() };
             ui.label(RichText::new(format!("{words}: {}", result.reason)).font(theme::strong(15.0)));
-            if ui.button(text::gravity::MEASURE_AGAIN).clicked() {
+            if ui.button(text::gravity::MEASURE_AGAIN.get()).clicked() {
                 self.pass = None;
                 self.go_to(FREE_MOTION);
             }
@@ -267,14 +268,14 @@ impl Wizard for GravityWizard {
     fn may_go_on(&self, _: &Binding) -> Result<(), &'static str> {
         match self.frame.step {
             CHECK if self.precheck.passed(self.rate_hz) => Ok(()),
-            CHECK => Err(text::wizards::NEEDS_CHECKS),
+            CHECK => Err(text::wizards::NEEDS_CHECKS.get()),
             POSES if self.session.poses().len() >= POSES_MIN => Ok(()),
-            POSES => Err(text::gravity::NEEDS_POSES),
+            POSES => Err(text::gravity::NEEDS_POSES.get()),
             RESULT if self.good_report().is_some_and(|report| report.chosen_fit().is_some()) => Ok(()),
-            RESULT => Err(text::gravity::NEEDS_MODEL),
+            RESULT => Err(text::gravity::NEEDS_MODEL.get()),
             FREE_MOTION if self.pass_result().is_some_and(|result| result.samples > 0) => Ok(()),
-            FREE_MOTION => Err(text::gravity::NEEDS_FREE_MOTION),
-            _ => Err(text::wizards::LAST_STEP),
+            FREE_MOTION => Err(text::gravity::NEEDS_FREE_MOTION.get()),
+            _ => Err(text::wizards::LAST_STEP.get()),
         }
     }
 
@@ -297,7 +298,7 @@ impl Wizard for GravityWizard {
     }
 
     fn proof(&self) -> Option<String> {
-        self.is_proven().then(|| text::gravity::PROOF.to_owned())
+        self.is_proven().then(|| text::gravity::PROOF.get().to_owned())
     }
 
     fn made(&self, binding: &Binding) -> Option<Saving> {
@@ -328,11 +329,11 @@ impl Wizard for GravityWizard {
 
 fn phase_words(phase: &Phase) -> (f64, String) {
     match phase {
-        Phase::NoSample => (0.0, text::gravity::PHASE_NO_SAMPLE.to_owned()),
-        Phase::Moving => (0.0, text::gravity::PHASE_MOVING.to_owned()),
-        Phase::Disturbed => (0.0, text::gravity::PHASE_DISTURBED.to_owned()),
-        Phase::TakenHere => (0.0, text::gravity::PHASE_SAME_POSE.to_owned()),
-        Phase::Recording { share } => (*share, text::gravity::PHASE_RECORDING.to_owned()),
+        Phase::NoSample => (0.0, text::gravity::PHASE_NO_SAMPLE.get().to_owned()),
+        Phase::Moving => (0.0, text::gravity::PHASE_MOVING.get().to_owned()),
+        Phase::Disturbed => (0.0, text::gravity::PHASE_DISTURBED.get().to_owned()),
+        Phase::TakenHere => (0.0, text::gravity::PHASE_SAME_POSE.get().to_owned()),
+        Phase::Recording { share } => (*share, text::gravity::PHASE_RECORDING.get().to_owned()),
         Phase::Recorded { index } => (1.0, text::gravity::pose_taken(index + 1)),
         Phase::Touched { by_n } => (0.0, text::gravity::touched(*by_n)),
     }
@@ -340,47 +341,57 @@ fn phase_words(phase: &Phase) -> (f64, String) {
 
 fn report_figures(ui: &mut Ui, report: &GravityReport) {
     verdict_line(ui, report.verdict, &report.reason);
-    figure(ui, text::gravity::COVERAGE, format!("{:.2}", report.coverage), text::gravity::COVERAGE_HOVER);
+    figure(ui, text::gravity::COVERAGE.get(), format!("{:.2}", report.coverage), text::gravity::COVERAGE_HOVER.get());
     if let Some(mass_kg) = report.mass_kg {
-        figure(ui, text::gravity::MASS, format!("{mass_kg:.3} kg"), text::gravity::MASS_HOVER);
+        figure(ui, text::gravity::MASS.get(), format!("{mass_kg:.3} kg"), text::gravity::MASS_HOVER.get());
     }
 }
 
 fn verdict_ui(ui: &mut Ui, report: &GravityReport) {
-    card(ui, report.verdict.words(), text::gravity::VERDICT_HOVER, |ui| {
+    card(ui, report.verdict.words(), text::gravity::VERDICT_HOVER.get(), |ui| {
         ui.label(&report.reason);
         ui.add_space(4.0);
-        figure(ui, text::gravity::STEP_POSES, report.poses.to_string(), text::gravity::POSES_USED_HOVER);
-        figure(ui, text::gravity::COVERAGE, format!("{:.2}", report.coverage), text::gravity::COVERAGE_HOVER);
-        let condition = report.condition.map_or(text::gravity::UNDETERMINED.to_owned(), three_digits);
-        figure(ui, text::gravity::CONDITION, condition, text::gravity::CONDITION_HOVER);
+        figure(ui, text::gravity::STEP_POSES.get(), report.poses.to_string(), text::gravity::POSES_USED_HOVER.get());
+        figure(
+            ui,
+            text::gravity::COVERAGE.get(),
+            format!("{:.2}", report.coverage),
+            text::gravity::COVERAGE_HOVER.get(),
+        );
+        let condition = report.condition.map_or(text::gravity::UNDETERMINED.get().to_owned(), three_digits);
+        figure(ui, text::gravity::CONDITION.get(), condition, text::gravity::CONDITION_HOVER.get());
         if let (Some(mass_kg), Some(com_m)) = (report.mass_kg, report.com_m) {
-            figure(ui, text::gravity::MASS, format!("{mass_kg:.3} kg"), text::gravity::MASS_HOVER);
+            figure(ui, text::gravity::MASS.get(), format!("{mass_kg:.3} kg"), text::gravity::MASS_HOVER.get());
             let [x, y, z] = com_m.map(|m| m * 1e3);
             figure(
                 ui,
-                text::gravity::CENTRE_OF_MASS,
+                text::gravity::CENTRE_OF_MASS.get(),
                 format!("{x:.1}, {y:.1}, {z:.1} mm"),
-                text::gravity::CENTRE_OF_MASS_HOVER,
+                text::gravity::CENTRE_OF_MASS_HOVER.get(),
             );
         }
         if !report.outliers.is_empty() {
             let list = report.outliers.iter().map(|i| (i + 1).to_string()).collect::<Vec<_>>().join(", ");
-            figure(ui, text::gravity::LEFT_OUT, text::gravity::left_out(&list), text::gravity::LEFT_OUT_HOVER);
+            figure(
+                ui,
+                text::gravity::LEFT_OUT.get(),
+                text::gravity::left_out(&list),
+                text::gravity::LEFT_OUT_HOVER.get(),
+            );
         }
     });
 }
 
 /// Table of the models' errors on the poses of the fit and on held-out ones.
 fn models_ui(ui: &mut Ui, report: &GravityReport) {
-    card(ui, text::gravity::MODELS_TITLE, text::gravity::MODELS_HOVER, |ui| {
+    card(ui, text::gravity::MODELS_TITLE.get(), text::gravity::MODELS_HOVER.get(), |ui| {
         Grid::new("gravity_models").num_columns(5).spacing(vec2(22.0, 6.0)).show(ui, |ui| {
             for head in [
-                text::gravity::MODEL,
-                text::gravity::FITTED_MEAN,
-                text::gravity::LARGEST,
-                text::gravity::HELD_OUT_MEAN,
-                text::gravity::LARGEST,
+                text::gravity::MODEL.get(),
+                text::gravity::FITTED_MEAN.get(),
+                text::gravity::LARGEST.get(),
+                text::gravity::HELD_OUT_MEAN.get(),
+                text::gravity::LARGEST.get(),
             ] {
                 ui.label(small(head));
             }

@@ -126,24 +126,24 @@ impl Which {
     ];
 
     /// Name on buttons.
-    pub const fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
-            Self::Gravity => text::wizards::GRAVITY,
-            Self::Correspondence => text::wizards::CORRESPONDENCE,
-            Self::TipForce => text::wizards::TIP_FORCE,
+            Self::Gravity => text::wizards::GRAVITY.get(),
+            Self::Correspondence => text::wizards::CORRESPONDENCE.get(),
+            Self::TipForce => text::wizards::TIP_FORCE.get(),
             Self::Frame(kind) => kind.name(),
-            Self::Camera => text::camera::NAME,
+            Self::Camera => text::camera::NAME.get(),
         }
     }
 
     /// Its purpose.
-    pub const fn meaning(self) -> &'static str {
+    pub fn meaning(self) -> &'static str {
         match self {
-            Self::Gravity => text::wizards::GRAVITY_MEANING,
-            Self::Correspondence => text::wizards::CORRESPONDENCE_MEANING,
-            Self::TipForce => text::wizards::TIP_FORCE_MEANING,
+            Self::Gravity => text::wizards::GRAVITY_MEANING.get(),
+            Self::Correspondence => text::wizards::CORRESPONDENCE_MEANING.get(),
+            Self::TipForce => text::wizards::TIP_FORCE_MEANING.get(),
             Self::Frame(kind) => kind.meaning(),
-            Self::Camera => text::camera::MEANING,
+            Self::Camera => text::camera::MEANING.get(),
         }
     }
 
@@ -183,8 +183,8 @@ pub struct Wanted {
 
 impl Wanted {
     /// Name of the calibration.
-    pub const fn name(&self) -> &'static str {
-        if self.by_handle { text::overview::HANDLE } else { self.which.name() }
+    pub fn name(&self) -> &'static str {
+        if self.by_handle { text::overview::HANDLE.get() } else { self.which.name() }
     }
 }
 
@@ -202,7 +202,7 @@ impl GoOn {
     pub(in crate::console) fn words(self) -> String {
         match self {
             Self::Calibrate(wanted) => text::wizards::following(side_name(wanted.side), wanted.name()),
-            Self::Check => text::wizards::FOLLOWING_CHECK.to_owned(),
+            Self::Check => text::wizards::FOLLOWING_CHECK.get().to_owned(),
         }
     }
 }

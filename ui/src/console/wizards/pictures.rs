@@ -23,7 +23,7 @@ pub(super) fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2,
 pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, held: Option<&UnitQuaternion<f64>>) {
     let size = vec2(ui.available_width().min(320.0), 250.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text::wizards::POSE_PICTURE));
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text::wizards::POSE_PICTURE.get()));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
     let (centre, scale) = (rect.center() - vec2(0.0, 22.0), rect.height() * 0.31);
@@ -39,8 +39,8 @@ pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, he
             let tilt = (target.inverse() * -Vector3::z()).angle(&(held.inverse() * -Vector3::z()));
             text::wizards::tilt_off(tilt.to_degrees())
         }
-        (None, Some(_)) => text::wizards::POSE_HELD.to_owned(),
-        _ => text::wizards::POSE_UNKNOWN.to_owned(),
+        (None, Some(_)) => text::wizards::POSE_HELD.get().to_owned(),
+        _ => text::wizards::POSE_UNKNOWN.get().to_owned(),
     };
     caption_below(&painter, rect, caption);
 }

@@ -101,11 +101,11 @@ enum Size {
 impl Size {
     const ALL: [Self; 3] = [Self::Small, Self::Usual, Self::Large];
 
-    const fn name(self) -> &'static str {
+    fn name(self) -> &'static str {
         match self {
-            Self::Small => text::tip_force::SIZE_SMALL,
-            Self::Usual => text::tip_force::SIZE_USUAL,
-            Self::Large => text::tip_force::SIZE_LARGE,
+            Self::Small => text::tip_force::SIZE_SMALL.get(),
+            Self::Usual => text::tip_force::SIZE_USUAL.get(),
+            Self::Large => text::tip_force::SIZE_LARGE.get(),
         }
     }
 
@@ -167,15 +167,15 @@ impl TipForceWizard {
 
     fn may_record(&self, binding: &Binding) -> Result<(), &'static str> {
         if binding.correspondence.is_none() {
-            return Err(text::tip_force::NEEDS_CORRESPONDENCE);
+            return Err(text::tip_force::NEEDS_CORRESPONDENCE.get());
         }
-        if self.sources.iter().all(|there| *there) { Ok(()) } else { Err(text::wizards::NEEDS_CHECKS) }
+        if self.sources.iter().all(|there| *there) { Ok(()) } else { Err(text::wizards::NEEDS_CHECKS.get()) }
     }
 
     /// Handles results of background work, and a change of the rig.
     fn take_in(&mut self, binding: &Binding) {
         if self.recorded_with.as_ref().is_some_and(|with| !with.fits(binding)) {
-            let told = text::tip_force::RECORDING_DISCARDED;
+            let told = text::tip_force::RECORDING_DISCARDED.get();
             *self = Self { clock: self.clock, told: Some(told.to_owned()), ..Self::default() };
         }
         if let Some((job, narrow)) = &mut self.training
@@ -202,7 +202,7 @@ impl TipForceWizard {
                 (self.trained, self.proof, self.checked) = (Some(Trained { model, narrow }), None, None);
                 (self.judging, self.frame.saved, self.told) = (None, None, None);
             }
-            Err(_) if cancelled => self.told = Some(text::tip_force::CANCELLED.to_owned()),
+            Err(_) if cancelled => self.told = Some(text::tip_force::CANCELLED.get().to_owned()),
             Err(error) => self.told = Some(text::tip_force::not_trained(&error)),
         }
     }
@@ -217,7 +217,7 @@ impl TipForceWizard {
 
     fn start_training(&mut self, binding: &Binding) {
         let (Some(take), Some(with), Some(store)) = (&self.recording, &self.recorded_with, &binding.store) else {
-            self.told = Some(text::tip_force::NO_FOLDER.to_owned());
+            self.told = Some(text::tip_force::NO_FOLDER.get().to_owned());
             return;
         };
         self.curves = Shared::default();
@@ -315,11 +315,11 @@ impl Wizard for TipForceWizard {
     fn may_go_on(&self, binding: &Binding) -> Result<(), &'static str> {
         match self.frame.step {
             READY => self.may_record(binding),
-            RECORD if self.rows() == 0 => Err(text::tip_force::NEEDS_RECORDING),
-            RECORD if self.lacking().is_some() => Err(text::tip_force::NEEDS_GOALS),
-            TRAIN if self.is_training() => Err(text::tip_force::NEEDS_TRAINING_END),
-            TRAIN if self.trained.is_none() => Err(text::tip_force::NEEDS_NETWORK),
-            CHECK if self.checked.is_none() => Err(text::tip_force::NEEDS_CHECK),
+            RECORD if self.rows() == 0 => Err(text::tip_force::NEEDS_RECORDING.get()),
+            RECORD if self.lacking().is_some() => Err(text::tip_force::NEEDS_GOALS.get()),
+            TRAIN if self.is_training() => Err(text::tip_force::NEEDS_TRAINING_END.get()),
+            TRAIN if self.trained.is_none() => Err(text::tip_force::NEEDS_NETWORK.get()),
+            CHECK if self.checked.is_none() => Err(text::tip_force::NEEDS_CHECK.get()),
             _ => Ok(()),
         }
     }
@@ -365,7 +365,7 @@ impl Wizard for TipForceWizard {
 
     fn before_saving(&self, ui: &mut Ui) -> bool {
         let (Some(_), Some(checked)) = (&self.trained, &self.checked) else {
-            ui.label(text::tip_force::NO_CHECKED_NETWORK);
+            ui.label(text::tip_force::NO_CHECKED_NETWORK.get());
             return false;
         };
         if self.proof().is_none() {

@@ -37,7 +37,7 @@ pub(super) fn chooser_ui(
     ui.indent(part.key(), |ui| {
         chosen = others_ui(ui, live, part, refused);
         if live.rig.devices.as_ref().is_some_and(|devices| devices.emulated) {
-            ui.add(Label::new(small(text::devices::EMULATED)).wrap());
+            ui.add(Label::new(small(text::devices::EMULATED.get())).wrap());
             return;
         }
         look_ui(ui, live, chooser);
@@ -56,7 +56,7 @@ pub(super) fn chooser_ui(
             }
         }
         if chooser.sought.found().is_some_and(Vec::is_empty) {
-            ui.label(small(text::devices::NOTHING_FOUND));
+            ui.label(small(text::devices::NOTHING_FOUND.get()));
         }
     });
     chosen.map(|chosen| Change::Choose(part, chosen))
@@ -70,37 +70,38 @@ fn others_ui(ui: &mut Ui, live: &Live, part: Part, refused: Option<&str>) -> Opt
         let Some(other) = entry.part.filter(|other| *other != part && other.kind() == part.kind()) else { continue };
         any = true;
         let identity = entry.view.report().identity.as_ref().and_then(identity_words);
-        let identity = identity.as_deref().unwrap_or(text::devices::UNKNOWN_IDENTITY);
+        let identity = identity.as_deref().unwrap_or(text::devices::UNKNOWN_IDENTITY.get());
         if candidate_ui(ui, &text::devices::candidate(identity, other), refused) {
             chosen = Some(Chosen::Of(other));
         }
     }
     if !any {
-        ui.label(small(text::devices::NO_OTHER));
+        ui.label(small(text::devices::NO_OTHER.get()));
     }
     chosen
 }
 
 fn candidate_ui(ui: &mut Ui, words: &str, refused: Option<&str>) -> bool {
     let button = Button::new(words).wrap().min_size(vec2(ui.available_width(), 26.0));
-    let button = ui.add_enabled(refused.is_none(), button).on_hover_text(text::devices::EXCHANGE_HOVER);
+    let button = ui.add_enabled(refused.is_none(), button).on_hover_text(text::devices::EXCHANGE_HOVER.get());
     button.on_disabled_hover_text(refused.unwrap_or_default()).clicked()
 }
 
 fn words_of(offer: &Offer) -> String {
-    identity_words(&offer.identity).unwrap_or_else(|| text::devices::UNKNOWN_IDENTITY.to_owned())
+    identity_words(&offer.identity).unwrap_or_else(|| text::devices::UNKNOWN_IDENTITY.get().to_owned())
 }
 
 fn look_ui(ui: &mut Ui, live: &Live, chooser: &mut Chooser) {
     let Chooser { part, place, sought } = chooser;
     ui.horizontal(|ui| {
         let looking = sought.is_running();
-        let words = if looking { text::devices::LOOKING } else { text::devices::LOOK };
+        let words = if looking { text::devices::LOOKING.get() } else { text::devices::LOOK.get() };
         let button = ui.add_enabled(!looking, Button::new(small(words)).min_size(vec2(110.0, 24.0)));
-        let field = TextEdit::singleline(place).hint_text(text::devices::PLACE).desired_width(ui.available_width());
-        let field = ui.add(field).on_hover_text(text::devices::PLACE_HOVER);
-        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, text::devices::PLACE));
-        if button.on_hover_text(text::devices::LOOK_HOVER).clicked()
+        let field =
+            TextEdit::singleline(place).hint_text(text::devices::PLACE.get()).desired_width(ui.available_width());
+        let field = ui.add(field).on_hover_text(text::devices::PLACE_HOVER.get());
+        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, text::devices::PLACE.get()));
+        if button.on_hover_text(text::devices::LOOK_HOVER.get()).clicked()
             && let Some(devices) = live.rig.devices.clone()
         {
             let (part, place) = (*part, place.clone());

@@ -102,7 +102,7 @@ impl DevicesState {
         if live.blocks_counted < test.from + BLOCKS as u64 {
             if test.began.elapsed() > TEST_MAX {
                 self.test = None;
-                self.tell(text::devices::TEST_BROKEN_OFF.to_owned());
+                self.tell(text::devices::TEST_BROKEN_OFF.get().to_owned());
             }
             return;
         }
@@ -124,11 +124,11 @@ impl DevicesState {
 /// Why the rig cannot be changed now.
 pub(in crate::console) fn why_not_to_change(live: &Live, is_starting: bool) -> Option<&'static str> {
     if is_starting {
-        return Some(text::devices::STARTING);
+        return Some(text::devices::STARTING.get());
     }
     live.ticks.iter().flatten().find_map(|tick| match tick.state {
-        LoopState::Ready | LoopState::Engaged | LoopState::Clutched => Some(text::devices::ENGAGED),
-        LoopState::Stopped => Some(text::devices::STOPPED),
+        LoopState::Ready | LoopState::Engaged | LoopState::Clutched => Some(text::devices::ENGAGED.get()),
+        LoopState::Stopped => Some(text::devices::STOPPED.get()),
         LoopState::Idle | LoopState::Disconnected | LoopState::Faulted(_) => None,
     })
 }
@@ -137,8 +137,8 @@ pub(in crate::console) fn why_not_to_change(live: &Live, is_starting: bool) -> O
 pub fn devices_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState) -> Option<Change> {
     state.is_seen = true;
     if live.roster.is_empty() {
-        ui.label(weak(text::devices::NONE));
-        ui.add(Label::new(small(text::devices::NONE_TO_CONNECT)).wrap());
+        ui.label(weak(text::devices::NONE.get()));
+        ui.add(Label::new(small(text::devices::NONE_TO_CONNECT.get())).wrap());
         picture_ui(ui, state);
         return None;
     }
@@ -176,7 +176,7 @@ pub fn devices_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState) -> Option<
 fn picture_ui(ui: &mut Ui, state: &DevicesState) {
     let Some([told, cure]) = &state.picture else { return };
     ui.add_space(6.0);
-    ui.label(small(text::eyes::ENDOSCOPE));
+    ui.label(small(text::eyes::ENDOSCOPE.get()));
     ui.add(Label::new(RichText::new(told)).wrap());
     if !cure.is_empty() {
         ui.add(Label::new(weak(cure)).wrap());
@@ -202,7 +202,7 @@ fn columns_of(roster: &Roster, width: f32) -> Vec<Vec<Column>> {
 
 /// Above the devices: what the lights are for, the test of all, the exchanges.
 fn head_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState, refused: Option<&str>) -> Option<Change> {
-    ui.add(Label::new(weak(text::devices::WHICH)).wrap());
+    ui.add(Label::new(weak(text::devices::WHICH.get())).wrap());
     let mut change = None;
     let both = |kind: PartKind| {
         let has = |side| live.roster.iter().any(|entry| entry.part.is_some() && entry.part == kind.of(side));
@@ -211,14 +211,14 @@ fn head_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState, refused: Option<&
     let kinds: Vec<_> = PartKind::OF_A_SIDE.into_iter().filter(|kind| both(*kind)).collect();
     ui.horizontal_wrapped(|ui| {
         let parts: Vec<_> = (0..live.roster.len()).filter(|place| live.roster[*place].part.is_some()).collect();
-        let button = Button::new(RichText::new(text::devices::TEST_ALL)).min_size(vec2(84.0, 26.0));
+        let button = Button::new(RichText::new(text::devices::TEST_ALL.get())).min_size(vec2(84.0, 26.0));
         let button = ui.add_enabled(!state.is_testing() && !parts.is_empty(), button);
-        if button.on_hover_text(text::devices::TEST_HOVER).clicked() {
+        if button.on_hover_text(text::devices::TEST_HOVER.get()).clicked() {
             state.begin_test(parts, live);
         }
         if !kinds.is_empty() {
             ui.add_space(8.0);
-            ui.label(small(text::devices::EXCHANGE));
+            ui.label(small(text::devices::EXCHANGE.get()));
         }
         for kind in kinds {
             let button = Button::new(small(text::devices::kind(kind))).min_size(vec2(58.0, 26.0));
@@ -226,7 +226,7 @@ fn head_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState, refused: Option<&
             button.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::Role::Button, refused.is_none(), text::devices::exchange(kind))
             });
-            let button = button.on_hover_text(text::devices::EXCHANGE_HOVER);
+            let button = button.on_hover_text(text::devices::EXCHANGE_HOVER.get());
             if button.on_disabled_hover_text(refused.unwrap_or_default()).clicked() {
                 change = Some(Change::ExchangeSides(kind));
             }

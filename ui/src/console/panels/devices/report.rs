@@ -24,9 +24,9 @@ pub(super) fn report_ui(ui: &mut Ui, checkup: &Checkup) {
 fn result_ui(ui: &mut Ui, checkup: &Checkup) {
     let fine = checkup.findings.is_empty();
     let (what, colour, verdict) = if fine {
-        (Sign::Disc, theme::now().engaged, text::devices::FINE)
+        (Sign::Disc, theme::now().engaged, text::devices::FINE.get())
     } else {
-        (Sign::Triangle, theme::now().alarm_medium, text::devices::LOOK_AT)
+        (Sign::Triangle, theme::now().alarm_medium, text::devices::LOOK_AT.get())
     };
     ui.horizontal(|ui| {
         sign_ui(ui, what, 5.0, colour);
@@ -55,24 +55,24 @@ fn figures(checkup: &Checkup) -> Vec<Figure> {
     let named = |name: &str, value: String, meaning| (name.to_owned(), value, meaning);
     let mut figures = Vec::new();
     if checkup.part.kind() != PartKind::Pedal {
-        figures.push(named(words::RATE, words::rate(rate_hz, nominal_hz), words::RATE_HOVER));
-        let age = age_s.map_or_else(|| words::NO_AGE.to_owned(), words::age);
-        figures.push(named(words::AGE, age, words::AGE_HOVER));
+        figures.push(named(words::RATE.get(), words::rate(rate_hz, nominal_hz), words::RATE_HOVER.get()));
+        let age = age_s.map_or_else(|| words::NO_AGE.get().to_owned(), words::age);
+        figures.push(named(words::AGE.get(), age, words::AGE_HOVER.get()));
     }
-    figures.push(named(words::LOSSES, words::losses(lost, damaged, refused), words::LOSSES_HOVER));
+    figures.push(named(words::LOSSES.get(), words::losses(lost, damaged, refused), words::LOSSES_HOVER.get()));
     for (name, unit, scale, members) in groups(checkup) {
         let noise: Vec<_> = members.iter().map(|one| three_digits(one.noise * scale)).collect();
-        figures.push((words::noise_of(name), format!("{} {unit}", noise.join(", ")), words::NOISE_HOVER));
+        figures.push((words::noise_of(name), format!("{} {unit}", noise.join(", ")), words::NOISE_HOVER.get()));
         let spans: Vec<_> = members.iter().map(|one| span(one, scale)).collect();
         let mut value = format!("{} {unit}", spans.join(", "));
         let shares: Vec<f64> = members.iter().filter_map(|one| reached_percent(one)).collect();
         if let Some(most) = shares.into_iter().reduce(f64::max) {
             value = format!("{value}; {}", words::share(most));
         }
-        figures.push((words::span_of(name), value, words::SPAN_HOVER));
+        figures.push((words::span_of(name), value, words::SPAN_HOVER.get()));
     }
     if let Some((axis, off_deg, size)) = checkup.up_m_s2.and_then(|up| nearest_axis(&up)) {
-        figures.push(named(words::UP, words::up(axis, off_deg, size), words::UP_HOVER));
+        figures.push(named(words::UP.get(), words::up(axis, off_deg, size), words::UP_HOVER.get()));
     }
     figures
 }

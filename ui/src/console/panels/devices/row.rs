@@ -60,7 +60,7 @@ fn light_ui(ui: &mut Ui, live: &Live, entry: &RosterEntry, place: usize) {
     let (rect, light) = ui.allocate_exact_size(Vec2::splat(LIGHT * 2.4), Sense::hover());
     let name = text::devices::light(&entry.name, motion.as_deref());
     light.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &name));
-    light.on_hover_text(text::devices::LIGHT_HOVER);
+    light.on_hover_text(text::devices::LIGHT_HOVER.get());
     let palette = theme::now();
     match &motion {
         Some(motion) => {
@@ -76,11 +76,11 @@ fn trouble_ui(ui: &mut Ui, entry: &RosterEntry, trouble: &Trouble) {
     ui.add(Label::new(trouble.to_string()).wrap());
     ui.add(Label::new(small(trouble.cure())).wrap());
     if let (Trouble::DeviceFault { .. }, Some(clear)) = (trouble, &entry.clear_faults) {
-        let button = ui.add(Button::new(small(text::devices::CLEAR_FAULTS)).min_size(vec2(84.0, 22.0)));
+        let button = ui.add(Button::new(small(text::devices::CLEAR_FAULTS.get())).min_size(vec2(84.0, 22.0)));
         button.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Button, true, text::devices::clear_faults_of(&entry.name))
         });
-        if button.on_hover_text(text::devices::CLEAR_FAULTS_HOVER).clicked() {
+        if button.on_hover_text(text::devices::CLEAR_FAULTS_HOVER.get()).clicked() {
             clear.command();
         }
     }
@@ -99,19 +99,19 @@ fn buttons_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState, place: usize) 
     let wanted = live.healths.devices.get(place).is_some_and(|health| health.standing != Standing::Closed);
     ui.horizontal_wrapped(|ui| {
         if let Some(part) = entry.part {
-            if button_ui(ui, entry, text::devices::TEST, text::devices::TEST_HOVER, !state.is_testing()) {
+            if button_ui(ui, entry, text::devices::TEST.get(), text::devices::TEST_HOVER.get(), !state.is_testing()) {
                 state.begin_test(vec![place], live);
             }
-            if button_ui(ui, entry, text::devices::CHOOSE, text::devices::CHOOSE_HOVER, true) {
+            if button_ui(ui, entry, text::devices::CHOOSE.get(), text::devices::CHOOSE_HOVER.get(), true) {
                 choosing::toggle(state, part);
             }
         }
-        let words = if wanted { text::devices::DISCONNECT } else { text::devices::CONNECT };
-        if button_ui(ui, entry, words, text::devices::CONNECT_HOVER, true) {
+        let words = if wanted { text::devices::DISCONNECT.get() } else { text::devices::CONNECT.get() };
+        if button_ui(ui, entry, words, text::devices::CONNECT_HOVER.get(), true) {
             entry.view.want(!wanted);
         }
         if state.is_tested(place) {
-            ui.label(small(text::devices::TESTING));
+            ui.label(small(text::devices::TESTING.get()));
         }
     });
 }
@@ -124,8 +124,8 @@ fn standing_words(health: &Health) -> (Sign, Color32, String) {
     };
     match health.standing {
         Standing::Connected => (Sign::Disc, theme::now().engaged, figures()),
-        Standing::Opening => (Sign::Ring, theme::now().text, text::devices::OPENING.to_owned()),
-        Standing::Closed => (Sign::Ring, theme::now().text_weak, text::devices::DISCONNECTED.to_owned()),
+        Standing::Opening => (Sign::Ring, theme::now().text, text::devices::OPENING.get().to_owned()),
+        Standing::Closed => (Sign::Ring, theme::now().text_weak, text::devices::DISCONNECTED.get().to_owned()),
         Standing::Lost(loss) => {
             (Sign::Triangle, theme::now().alarm_medium, text::devices::lost(loss.cause(), &figures()))
         }

@@ -208,8 +208,8 @@ impl CameraWizard {
     /// How it stands with the board in the newest picture.
     fn told(&self) -> String {
         match &self.last {
-            None => texts::LOOKING.to_owned(),
-            Some(Ok(_)) if self.frame.step != VIEWS => texts::SEEN.to_owned(),
+            None => texts::LOOKING.get().to_owned(),
+            Some(Ok(_)) if self.frame.step != VIEWS => texts::SEEN.get().to_owned(),
             Some(Ok(offer)) => words::offer(*offer).to_owned(),
             Some(Err(unseen)) => words::unseen(*unseen),
         }
@@ -320,15 +320,15 @@ impl Wizard for CameraWizard {
 
     fn may_go_on(&self, _: &Binding) -> Result<(), &'static str> {
         match self.frame.step {
-            CHECK if self.endoscope.is_none() || !self.shown.has_come() => Err(text::wizards::NEEDS_CHECKS),
-            CHECK => self.board().map(|_| ()).map_err(|_| texts::NEEDS_BOARD),
+            CHECK if self.endoscope.is_none() || !self.shown.has_come() => Err(text::wizards::NEEDS_CHECKS.get()),
+            CHECK => self.board().map(|_| ()).map_err(|_| texts::NEEDS_BOARD.get()),
             VIEWS | LENS if self.keeps_lens => Ok(()),
             VIEWS if self.views() >= 4 => Ok(()),
-            VIEWS => Err(texts::NEEDS_VIEWS),
-            LENS => self.lens().map(|_| ()).ok_or(texts::NEEDS_LENS),
+            VIEWS => Err(texts::NEEDS_VIEWS.get()),
+            LENS => self.lens().map(|_| ()).ok_or(texts::NEEDS_LENS.get()),
             TOUCH if self.good_place().is_some() || self.touches.is_empty() && !self.keeps_lens => Ok(()),
-            TOUCH => Err(texts::NEEDS_PLACE),
-            _ => Err(text::wizards::LAST_STEP),
+            TOUCH => Err(texts::NEEDS_PLACE.get()),
+            _ => Err(text::wizards::LAST_STEP.get()),
         }
     }
 
@@ -366,7 +366,7 @@ impl Wizard for CameraWizard {
 
     fn before_saving(&self, ui: &mut Ui) -> bool {
         if self.lens().is_none() {
-            ui.label(texts::NEEDS_LENS);
+            ui.label(texts::NEEDS_LENS.get());
         }
         self.lens().is_some()
     }
@@ -375,8 +375,8 @@ impl Wizard for CameraWizard {
         if self.undoable.is_empty() {
             return None;
         }
-        let wanted = card(ui, text::frames::UNDO_TITLE, text::frames::UNDO_CARD_HOVER, |ui| {
-            ui.button(text::frames::UNDO).clicked()
+        let wanted = card(ui, text::frames::UNDO_TITLE.get(), text::frames::UNDO_CARD_HOVER.get(), |ui| {
+            ui.button(text::frames::UNDO.get()).clicked()
         });
         wanted.then(|| Saving::Undo(undone(&self.undoable)))
     }

@@ -75,7 +75,7 @@ pub(super) fn coverage_ui(ui: &mut Ui, coverage: &Coverage, size_px: [usize; 2])
     let (rect, response) = ui.allocate_exact_size(vec2(MAP_WIDTH, height + 20.0), Sense::hover());
     let words = texts::covered(coverage.share());
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, words.clone()));
-    response.on_hover_text(texts::COVERAGE_HOVER);
+    response.on_hover_text(texts::COVERAGE_HOVER.get());
     let painter = ui.painter_at(rect);
     let map = Rect::from_min_size(rect.min, vec2(MAP_WIDTH, height));
     painter.rect_filled(map, 2.0, theme::now().groove);

@@ -27,29 +27,34 @@ const PICTURE: f32 = 500.0;
 
 impl CameraWizard {
     pub(super) fn check_ui(&mut self, ui: &mut Ui) {
-        card(ui, texts::CHECKS_TITLE, texts::CHECKS_HOVER, |ui| {
-            ui.label(texts::TASK);
+        card(ui, texts::CHECKS_TITLE.get(), texts::CHECKS_HOVER.get(), |ui| {
+            ui.label(texts::TASK.get());
             ui.add_space(6.0);
-            check_line(ui, texts::CHECK_ENDOSCOPE, self.endoscope.is_some(), texts::NO_ENDOSCOPE);
-            check_line(ui, texts::CHECK_PICTURE, self.shown.has_come(), texts::NO_PICTURE);
+            check_line(ui, texts::CHECK_ENDOSCOPE.get(), self.endoscope.is_some(), texts::NO_ENDOSCOPE.get());
+            check_line(ui, texts::CHECK_PICTURE.get(), self.shown.has_come(), texts::NO_PICTURE.get());
         });
         let free = self.views() == 0 && self.touches.is_empty();
-        card(ui, texts::BOARD_TITLE, texts::BOARD_HOVER, |ui| {
+        card(ui, texts::BOARD_TITLE.get(), texts::BOARD_HOVER.get(), |ui| {
             ui.horizontal(|ui| {
-                let label = ui.label(texts::CORNERS);
+                let label = ui.label(texts::CORNERS.get());
                 let edit = TextEdit::singleline(&mut self.corners).desired_width(60.0).char_limit(7);
-                ui.add_enabled(free, edit).labelled_by(label.id).on_hover_text(texts::CORNERS_HOVER);
+                ui.add_enabled(free, edit).labelled_by(label.id).on_hover_text(texts::CORNERS_HOVER.get());
                 ui.add_space(16.0);
-                let label = ui.label(texts::SQUARE);
+                let label = ui.label(texts::SQUARE.get());
                 let drag = DragValue::new(&mut self.square_mm).range(0.5..=200.0).speed(0.1).suffix(" mm");
-                ui.add_enabled(free, drag).labelled_by(label.id).on_hover_text(texts::SQUARE_HOVER);
+                ui.add_enabled(free, drag).labelled_by(label.id).on_hover_text(texts::SQUARE_HOVER.get());
             });
             match self.board() {
-                Ok(_) => ui.label(small(texts::PRINT)),
+                Ok(_) => ui.label(small(texts::PRINT.get())),
                 Err(error) => ui.label(texts::no_board(&error.to_string())),
             };
-            let keeps =
-                switch_ui(ui, free && self.rig_lens().is_some(), self.keeps_lens, texts::KEEP, texts::KEEP_HOVER);
+            let keeps = switch_ui(
+                ui,
+                free && self.rig_lens().is_some(),
+                self.keeps_lens,
+                texts::KEEP.get(),
+                texts::KEEP_HOVER.get(),
+            );
             self.keeps_lens = keeps.unwrap_or(self.keeps_lens);
         });
         self.live_ui(ui, None);
@@ -57,75 +62,79 @@ impl CameraWizard {
 
     pub(super) fn views_ui(&mut self, ui: &mut Ui) {
         if self.keeps_lens {
-            ui.label(texts::LENS_IS_KEPT);
+            ui.label(texts::LENS_IS_KEPT.get());
             return;
         }
         let Some(session) = &self.session else {
-            ui.label(texts::NO_PICTURE);
+            ui.label(texts::NO_PICTURE.get());
             return;
         };
         let (asked, share, views) = (session.asks(), session.share(), session.views().len());
         let (coverage, size_px) = (session.coverage(), session.size_px());
-        card(ui, texts::VIEWS_TITLE, texts::VIEWS_HOVER, |ui| {
+        card(ui, texts::VIEWS_TITLE.get(), texts::VIEWS_HOVER.get(), |ui| {
             ui.label(RichText::new(words::ask(asked)).font(theme::strong(19.0)));
             let told = self.told();
-            progress(ui, texts::PROGRESS, share, &texts::views(views, &told));
+            progress(ui, texts::PROGRESS.get(), share, &texts::views(views, &told));
             ui.add_space(4.0);
             ui.horizontal_top(|ui| {
                 self.live_ui(ui, None);
                 ui.vertical(|ui| coverage_ui(ui, &coverage, size_px));
             });
             ui.add_space(4.0);
-            if ui.add_enabled(views > 0, Button::new(texts::REMOVE_LAST)).clicked() {
+            if ui.add_enabled(views > 0, Button::new(texts::REMOVE_LAST.get())).clicked() {
                 self.session.iter_mut().for_each(nima_camera::Session::undo);
                 self.report = None;
             }
             if asked != Ask::Complete {
-                ui.label(small(texts::VIEWS_NOTE));
+                ui.label(small(texts::VIEWS_NOTE.get()));
             }
         });
     }
 
     pub(super) fn lens_ui(&self, ui: &mut Ui) {
         if self.keeps_lens {
-            ui.label(texts::LENS_IS_KEPT);
+            ui.label(texts::LENS_IS_KEPT.get());
             return;
         }
         let Some(report) = &self.report else {
-            ui.label(texts::CALCULATING);
+            ui.label(texts::CALCULATING.get());
             return;
         };
-        card(ui, texts::LENS_TITLE, texts::LENS_HOVER, |ui| lens_figures(ui, report));
+        card(ui, texts::LENS_TITLE.get(), texts::LENS_HOVER.get(), |ui| lens_figures(ui, report));
     }
 
     pub(super) fn touch_ui(&mut self, ui: &mut Ui) {
         let marked = self.next_corner();
         let still = self.tip.still_m().is_some();
-        card(ui, texts::TOUCH_TITLE, texts::TOUCH_HOVER, |ui| {
+        card(ui, texts::TOUCH_TITLE.get(), texts::TOUCH_HOVER.get(), |ui| {
             let asked = match (&self.base, marked) {
-                (None, _) => texts::LAY_DOWN.to_owned(),
+                (None, _) => texts::LAY_DOWN.get().to_owned(),
                 (Some(_), Some(corner)) => texts::touch(corner),
-                (Some(_), None) => texts::ALL_TOUCHED.to_owned(),
+                (Some(_), None) => texts::ALL_TOUCHED.get().to_owned(),
             };
             ui.label(RichText::new(asked).font(theme::strong(19.0)));
             if self.moved {
-                ui.label(texts::MOVED);
+                ui.label(texts::MOVED.get());
             }
             ui.horizontal(|ui| {
                 let can = self.base.is_some() && marked.is_some() && still && !self.moved;
-                let take = ui.add_enabled(can, Button::new(texts::TOUCHED).min_size(egui::vec2(150.0, 34.0)));
-                if take.on_hover_text(texts::TOUCHED_HOVER).on_disabled_hover_text(texts::TOUCHED_DISABLED).clicked() {
+                let take = ui.add_enabled(can, Button::new(texts::TOUCHED.get()).min_size(egui::vec2(150.0, 34.0)));
+                if take
+                    .on_hover_text(texts::TOUCHED_HOVER.get())
+                    .on_disabled_hover_text(texts::TOUCHED_DISABLED.get())
+                    .clicked()
+                {
                     self.take_touch();
                 }
-                if ui.add_enabled(!self.touches.is_empty(), Button::new(texts::REMOVE_TOUCH)).clicked() {
+                if ui.add_enabled(!self.touches.is_empty(), Button::new(texts::REMOVE_TOUCH.get())).clicked() {
                     self.touches.pop();
                     self.find_place();
                 }
-                if ui.button(texts::LAY_ANEW).on_hover_text(texts::LAY_ANEW_HOVER).clicked() {
+                if ui.button(texts::LAY_ANEW.get()).on_hover_text(texts::LAY_ANEW_HOVER.get()).clicked() {
                     self.lay_anew();
                 }
             });
-            let tip = if still { texts::TIP_STILL } else { texts::TIP_MOVES };
+            let tip = if still { texts::TIP_STILL.get() } else { texts::TIP_MOVES.get() };
             ui.label(small(texts::touched(self.touches.len(), tip)));
             ui.add_space(4.0);
             ui.horizontal_top(|ui| {
@@ -139,7 +148,7 @@ impl CameraWizard {
         ui.set_max_width(MAP_WIDTH);
         match &self.placed {
             None => {
-                ui.label(small(texts::PLACE_OPTIONAL));
+                ui.label(small(texts::PLACE_OPTIONAL.get()));
             }
             Some(Err(error)) => {
                 ui.label(words::place_error(*error));
@@ -148,16 +157,21 @@ impl CameraWizard {
                 let reason = placed
                     .lack
                     .as_ref()
-                    .map_or_else(|| texts::PLACE_GOOD.to_owned(), |lack: &Lack| words::place_lack(lack));
+                    .map_or_else(|| texts::PLACE_GOOD.get().to_owned(), |lack: &Lack| words::place_lack(lack));
                 verdict_line(ui, placed.verdict(), &reason);
-                figure(ui, texts::HELD_OUT, format!("{:.1} px", placed.held_out_px), texts::PLACE_HELD_OUT_HOVER);
                 figure(
                     ui,
-                    texts::HELD_OUT_MAX,
-                    format!("{:.1} px", placed.held_out_max_px),
-                    texts::PLACE_HELD_OUT_HOVER,
+                    texts::HELD_OUT.get(),
+                    format!("{:.1} px", placed.held_out_px),
+                    texts::PLACE_HELD_OUT_HOVER.get(),
                 );
-                figure(ui, texts::RIGID, format!("{:.2} mm", placed.fitted_m * 1e3), texts::RIGID_HOVER);
+                figure(
+                    ui,
+                    texts::HELD_OUT_MAX.get(),
+                    format!("{:.1} px", placed.held_out_max_px),
+                    texts::PLACE_HELD_OUT_HOVER.get(),
+                );
+                figure(ui, texts::RIGID.get(), format!("{:.2} mm", placed.fitted_m * 1e3), texts::RIGID_HOVER.get());
             }
         }
     }
@@ -174,28 +188,28 @@ impl CameraWizard {
 }
 
 fn lens_figures(ui: &mut Ui, report: &Report) {
-    let reason = report.cause.as_ref().map_or_else(|| texts::LENS_GOOD.to_owned(), words::camera_cause);
+    let reason = report.cause.as_ref().map_or_else(|| texts::LENS_GOOD.get().to_owned(), words::camera_cause);
     verdict_line(ui, report.verdict(), &reason);
     ui.add_space(4.0);
-    figure(ui, texts::VIEWS_USED, report.used.len().to_string(), texts::VIEWS_USED_HOVER);
+    figure(ui, texts::VIEWS_USED.get(), report.used.len().to_string(), texts::VIEWS_USED_HOVER.get());
     for (at, why) in &report.left_out {
         ui.label(small(texts::left_out(at + 1, words::left_out(*why))));
     }
-    figure(ui, texts::COVERAGE, format!("{:.0} %", 100.0 * report.coverage.share()), texts::COVERAGE_HOVER);
+    figure(ui, texts::COVERAGE.get(), format!("{:.0} %", 100.0 * report.coverage.share()), texts::COVERAGE_HOVER.get());
     let Some(found) = &report.lens else { return };
     let (lens, sd) = (&found.lens, &found.deviations);
     let with = |value: f64, sd: f64| texts::with_deviation(value, sd);
-    figure(ui, texts::HELD_OUT, format!("{:.3} px", found.held_out_px), texts::HELD_OUT_HOVER);
-    figure(ui, texts::HELD_OUT_MAX, format!("{:.2} px", found.held_out_max_px), texts::HELD_OUT_HOVER);
-    figure(ui, texts::FITTED, format!("{:.3} px", found.fitted_px), texts::FITTED_HOVER);
-    figure(ui, texts::TILT, format!("{:.0} deg", found.tilt_deg), texts::TILT_HOVER);
-    figure(ui, texts::FOCAL, with(lens.focal_px.x, sd.focal_px.x), texts::FOCAL_HOVER);
+    figure(ui, texts::HELD_OUT.get(), format!("{:.3} px", found.held_out_px), texts::HELD_OUT_HOVER.get());
+    figure(ui, texts::HELD_OUT_MAX.get(), format!("{:.2} px", found.held_out_max_px), texts::HELD_OUT_HOVER.get());
+    figure(ui, texts::FITTED.get(), format!("{:.3} px", found.fitted_px), texts::FITTED_HOVER.get());
+    figure(ui, texts::TILT.get(), format!("{:.0} deg", found.tilt_deg), texts::TILT_HOVER.get());
+    figure(ui, texts::FOCAL.get(), with(lens.focal_px.x, sd.focal_px.x), texts::FOCAL_HOVER.get());
     if found.terms.aspect {
-        figure(ui, texts::FOCAL_DOWN, with(lens.focal_px.y, sd.focal_px.y), texts::FOCAL_HOVER);
+        figure(ui, texts::FOCAL_DOWN.get(), with(lens.focal_px.y, sd.focal_px.y), texts::FOCAL_HOVER.get());
     }
     let centre = format!("{}, {}", with(lens.centre_px.x, sd.centre_px.x), with(lens.centre_px.y, sd.centre_px.y));
-    figure(ui, texts::CENTRE, centre, texts::CENTRE_HOVER);
-    figure(ui, texts::BEND, texts::bend(&lens.bend, &sd.bend), texts::BEND_HOVER);
+    figure(ui, texts::CENTRE.get(), centre, texts::CENTRE_HOVER.get());
+    figure(ui, texts::BEND.get(), texts::bend(&lens.bend, &sd.bend), texts::BEND_HOVER.get());
 }
 
 /// Whether a lens may be used.

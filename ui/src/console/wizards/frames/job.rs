@@ -13,6 +13,7 @@ use nima_core::calibration::{
 use nima_recording::store::{self, Age, Loaded, Store, StoreError};
 
 use super::kind::Kind;
+use crate::language::{self, Language};
 
 /// A session of any frame calibration.
 pub(super) trait Job: Debug {
@@ -134,7 +135,7 @@ impl Outcome {
 
     /// The record of the result; `None` if there is none.
     pub(super) fn record(&self, head: RecordHead, serials: Serials) -> Option<FrameCalibration> {
-        let reason = crate::words::cause(&self.quality().cause);
+        let reason = language::with(Language::English, || crate::words::cause(&self.quality().cause));
         each!(self, report => report.record(head, serials, &reason).map(Into::into))
     }
 }

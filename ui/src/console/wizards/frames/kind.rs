@@ -45,40 +45,42 @@ impl Kind {
     pub const ALL: [Self; 6] = [Self::Mount, Self::Tip, Self::HandEye, Self::Table, Self::View, Self::Trocar];
 
     /// Name on buttons.
-    pub const fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
-            Self::Mount => texts::MOUNT,
-            Self::Tip => texts::TIP,
-            Self::HandEye => texts::HAND_EYE,
-            Self::Table => texts::TABLE,
-            Self::View => texts::VIEW,
-            Self::Trocar => texts::TROCAR,
+            Self::Mount => texts::MOUNT.get(),
+            Self::Tip => texts::TIP.get(),
+            Self::HandEye => texts::HAND_EYE.get(),
+            Self::Table => texts::TABLE.get(),
+            Self::View => texts::VIEW.get(),
+            Self::Trocar => texts::TROCAR.get(),
         }
     }
 
     /// Its purpose.
-    pub const fn meaning(self) -> &'static str {
+    pub fn meaning(self) -> &'static str {
         match self {
-            Self::Mount => texts::MOUNT_MEANING,
-            Self::Tip => texts::TIP_MEANING,
-            Self::HandEye => texts::HAND_EYE_MEANING,
-            Self::Table => texts::TABLE_MEANING,
-            Self::View => texts::VIEW_MEANING,
-            Self::Trocar => texts::TROCAR_MEANING,
+            Self::Mount => texts::MOUNT_MEANING.get(),
+            Self::Tip => texts::TIP_MEANING.get(),
+            Self::HandEye => texts::HAND_EYE_MEANING.get(),
+            Self::Table => texts::TABLE_MEANING.get(),
+            Self::View => texts::VIEW_MEANING.get(),
+            Self::Trocar => texts::TROCAR_MEANING.get(),
         }
     }
 
-    pub(super) const fn texts(self, other_way: bool) -> Texts {
-        let by_tracker = Some([texts::BY_TRACKER, texts::BY_TRACKER_HOVER]);
-        let by_handle = Some([texts::BY_HANDLE, texts::BY_HANDLE_HOVER]);
+    pub(super) fn texts(self, other_way: bool) -> Texts {
+        let by_tracker = Some([texts::BY_TRACKER.get(), texts::BY_TRACKER_HOVER.get()]);
+        let by_handle = Some([texts::BY_HANDLE.get(), texts::BY_HANDLE_HOVER.get()]);
         let (before, task, units, other) = match self {
-            Self::Mount => (texts::MOUNT_BEFORE, texts::MOUNT_TASK, texts::POSES, None),
-            Self::Tip => (texts::TIP_BEFORE, texts::TIP_TASK, texts::POSES, by_tracker),
-            Self::HandEye => (texts::HAND_EYE_BEFORE, texts::HAND_EYE_TASK, texts::POSES, None),
-            Self::Table => (texts::TABLE_BEFORE, texts::TABLE_TASK, texts::POINTS, None),
-            Self::View if other_way => (texts::VIEW_HANDLE_BEFORE, texts::VIEW_HANDLE_TASK, texts::PLACES, by_handle),
-            Self::View => (texts::VIEW_BEFORE, texts::VIEW_TASK, texts::PLACES, by_handle),
-            Self::Trocar => (texts::TROCAR_BEFORE, texts::TROCAR_TASK, texts::LINES, by_tracker),
+            Self::Mount => (texts::MOUNT_BEFORE.get(), texts::MOUNT_TASK.get(), texts::POSES.get(), None),
+            Self::Tip => (texts::TIP_BEFORE.get(), texts::TIP_TASK.get(), texts::POSES.get(), by_tracker),
+            Self::HandEye => (texts::HAND_EYE_BEFORE.get(), texts::HAND_EYE_TASK.get(), texts::POSES.get(), None),
+            Self::Table => (texts::TABLE_BEFORE.get(), texts::TABLE_TASK.get(), texts::POINTS.get(), None),
+            Self::View if other_way => {
+                (texts::VIEW_HANDLE_BEFORE.get(), texts::VIEW_HANDLE_TASK.get(), texts::PLACES.get(), by_handle)
+            }
+            Self::View => (texts::VIEW_BEFORE.get(), texts::VIEW_TASK.get(), texts::PLACES.get(), by_handle),
+            Self::Trocar => (texts::TROCAR_BEFORE.get(), texts::TROCAR_TASK.get(), texts::LINES.get(), by_tracker),
         };
         Texts { before, task, units, other_way: other }
     }
@@ -86,7 +88,7 @@ impl Kind {
     /// Whether the other way is open on this rig, or why not.
     pub(super) fn other_way_needs(self, subject: &Subject) -> Result<(), &'static str> {
         match self {
-            Self::Tip | Self::Trocar if subject.hand_eye().is_none() => Err(texts::NEEDS_HAND_EYE),
+            Self::Tip | Self::Trocar if subject.hand_eye().is_none() => Err(texts::NEEDS_HAND_EYE.get()),
             _ => Ok(()),
         }
     }
@@ -151,16 +153,16 @@ impl Kind {
     pub(super) fn asks(prompt: &Prompt, target: &str) -> String {
         match prompt {
             Prompt::Hold { .. } => texts::hold(target),
-            Prompt::PivotInDimple => texts::PIVOT.to_owned(),
-            Prompt::Turn => texts::TURN.to_owned(),
-            Prompt::PivotInTrocar => texts::PIVOT_IN_TROCAR.to_owned(),
-            Prompt::Touch { point: 0 } => texts::TOUCH_ORIGIN.to_owned(),
-            Prompt::Touch { point: 1 } => texts::TOUCH_X.to_owned(),
-            Prompt::Touch { point: 2 } => texts::TOUCH_Y.to_owned(),
-            Prompt::Touch { .. } => texts::TOUCH_FURTHER.to_owned(),
-            Prompt::MoveTip(way) => texts::moved(texts::THE_TIP, crate::words::Words::words(*way)),
-            Prompt::MoveHandle(way) => texts::moved(texts::THE_HANDLE, crate::words::Words::words(*way)),
-            _ => texts::HOLD_STILL.to_owned(),
+            Prompt::PivotInDimple => texts::PIVOT.get().to_owned(),
+            Prompt::Turn => texts::TURN.get().to_owned(),
+            Prompt::PivotInTrocar => texts::PIVOT_IN_TROCAR.get().to_owned(),
+            Prompt::Touch { point: 0 } => texts::TOUCH_ORIGIN.get().to_owned(),
+            Prompt::Touch { point: 1 } => texts::TOUCH_X.get().to_owned(),
+            Prompt::Touch { point: 2 } => texts::TOUCH_Y.get().to_owned(),
+            Prompt::Touch { .. } => texts::TOUCH_FURTHER.get().to_owned(),
+            Prompt::MoveTip(way) => texts::moved(texts::THE_TIP.get(), crate::words::Words::words(*way)),
+            Prompt::MoveHandle(way) => texts::moved(texts::THE_HANDLE.get(), crate::words::Words::words(*way)),
+            _ => texts::HOLD_STILL.get().to_owned(),
         }
     }
 }

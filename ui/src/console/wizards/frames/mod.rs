@@ -214,7 +214,7 @@ impl FrameWizard {
     }
 
     fn result_ui(&self, ui: &mut Ui) {
-        let otherwise = [texts::NO_RESULT_HOVER, texts::TOO_FEW];
+        let otherwise = [texts::NO_RESULT_HOVER.get(), texts::TOO_FEW.get()];
         let Some(subject) = &self.subject else { return };
         result_ui(ui, self.report.as_ref(), otherwise, |ui, outcome| {
             outcome_ui(ui, outcome, subject, self.seen_view, self.texts().units);
@@ -285,13 +285,13 @@ impl Wizard for FrameWizard {
 
     fn may_go_on(&self, _: &Binding) -> Result<(), &'static str> {
         match self.frame.step {
-            CHECK if self.job.is_none() => Err(texts::NEEDS_ARM),
-            CHECK => self.lacks().map_or(Ok(()), |_| Err(text::wizards::NEEDS_CHECKS)),
+            CHECK if self.job.is_none() => Err(texts::NEEDS_ARM.get()),
+            CHECK => self.lacks().map_or(Ok(()), |_| Err(text::wizards::NEEDS_CHECKS.get())),
             RECORD if self.taken() >= 3 => Ok(()),
-            RECORD => Err(texts::NEEDS_MORE),
+            RECORD => Err(texts::NEEDS_MORE.get()),
             RESULT if self.outcome().is_some_and(Outcome::is_found) => Ok(()),
-            RESULT => Err(texts::NEEDS_RESULT),
-            _ => Err(text::wizards::LAST_STEP),
+            RESULT => Err(texts::NEEDS_RESULT.get()),
+            _ => Err(text::wizards::LAST_STEP.get()),
         }
     }
 
@@ -310,7 +310,7 @@ impl Wizard for FrameWizard {
 
     fn proof(&self) -> Option<String> {
         let proven = self.outcome().is_some_and(|outcome| outcome.quality().verdict == Verdict::Accepted);
-        proven.then(|| texts::PROOF.to_owned())
+        proven.then(|| texts::PROOF.get().to_owned())
     }
 
     fn made(&self, binding: &Binding) -> Option<Saving> {
@@ -329,7 +329,9 @@ impl Wizard for FrameWizard {
         if self.undoable.is_empty() {
             return None;
         }
-        let wanted = card(ui, texts::UNDO_TITLE, texts::UNDO_CARD_HOVER, |ui| ui.button(texts::UNDO).clicked());
+        let wanted = card(ui, texts::UNDO_TITLE.get(), texts::UNDO_CARD_HOVER.get(), |ui| {
+            ui.button(texts::UNDO.get()).clicked()
+        });
         wanted.then(|| Saving::Undo(self.undoable.iter().cloned().map(RigChange::undone).collect()))
     }
 

@@ -28,7 +28,7 @@ pub(super) fn outcome_ui(
     units: &str,
 ) {
     let quality = outcome.quality();
-    card(ui, quality.verdict.words(), texts::VERDICT_HOVER, |ui| {
+    card(ui, quality.verdict.words(), texts::VERDICT_HOVER.get(), |ui| {
         ui.label(sentence(&words::cause(&quality.cause)));
         ui.add_space(4.0);
         figures_ui(ui, &quality, outcome.outliers(), units);
@@ -39,37 +39,37 @@ pub(super) fn outcome_ui(
             if let Some(axes) = found.axes.filter(|axes| *axes != SignedAxes::SAME) {
                 ui.label(texts::mount_axes(&words::axes_words(axes)));
             }
-            figure(ui, texts::TOOL_MASS, format!("{:.3} kg", found.mass_kg), texts::TOOL_MASS_HOVER);
+            figure(ui, texts::TOOL_MASS.get(), format!("{:.3} kg", found.mass_kg), texts::TOOL_MASS_HOVER.get());
         }
     });
     let Some((numbers, effect)) = numbers::of(outcome, subject, seen_view) else { return };
-    card(ui, texts::CHANGE_TITLE, texts::CHANGE_HOVER, |ui| {
+    card(ui, texts::CHANGE_TITLE.get(), texts::CHANGE_HOVER.get(), |ui| {
         effect_picture(ui, &effect);
         ui.add_space(6.0);
         if numbers.is_empty() {
-            ui.label(texts::NO_CHANGE);
+            ui.label(texts::NO_CHANGE.get());
         } else {
             numbers_ui(ui, &numbers);
         }
         let were_given = !numbers.is_empty() && numbers.iter().all(|number| number.before.is_some());
         if were_given && effect.is_within(quality.uncertainty) {
             ui.add_space(4.0);
-            ui.label(texts::WITHIN_UNCERTAINTY);
+            ui.label(texts::WITHIN_UNCERTAINTY.get());
         }
     });
 }
 
 fn figures_ui(ui: &mut Ui, quality: &Quality, outliers: &[usize], units: &str) {
-    figure(ui, &sentence(units), quality.poses.to_string(), texts::RECORDED_HOVER);
+    figure(ui, &sentence(units), quality.poses.to_string(), texts::RECORDED_HOVER.get());
     if !outliers.is_empty() {
         let list = outliers.iter().map(|i| (i + 1).to_string()).collect::<Vec<_>>().join(", ");
-        figure(ui, texts::LEFT_OUT, list, texts::LEFT_OUT_HOVER);
+        figure(ui, texts::LEFT_OUT.get(), list, texts::LEFT_OUT_HOVER.get());
     }
     let rows = [
-        (texts::HELD_OUT, quality.held_out, texts::HELD_OUT_HOVER),
-        (texts::HELD_OUT_MAX, quality.held_out_max, texts::HELD_OUT_MAX_HOVER),
-        (texts::FITTED, quality.fitted, texts::FITTED_HOVER),
-        (texts::UNCERTAINTY, quality.uncertainty, texts::UNCERTAINTY_HOVER),
+        (texts::HELD_OUT.get(), quality.held_out, texts::HELD_OUT_HOVER.get()),
+        (texts::HELD_OUT_MAX.get(), quality.held_out_max, texts::HELD_OUT_MAX_HOVER.get()),
+        (texts::FITTED.get(), quality.fitted, texts::FITTED_HOVER.get()),
+        (texts::UNCERTAINTY.get(), quality.uncertainty, texts::UNCERTAINTY_HOVER.get()),
     ];
     for (name, sizes, meaning) in rows {
         if let Some(words) = sizes_words(sizes) {
@@ -87,13 +87,15 @@ pub(in crate::console) fn sizes_words(sizes: Sizes) -> Option<String> {
 
 fn numbers_ui(ui: &mut Ui, numbers: &[Number]) {
     Grid::new("rig_numbers").num_columns(4).spacing(vec2(22.0, 6.0)).show(ui, |ui| {
-        for head in [texts::KEY, texts::BEFORE, texts::AFTER, texts::CHANGE] {
+        for head in [texts::KEY.get(), texts::BEFORE.get(), texts::AFTER.get(), texts::CHANGE.get()] {
             ui.label(small(head));
         }
         ui.end_row();
         for number in numbers {
             ui.label(&number.key);
-            ui.label(number.before.as_ref().map_or(texts::NOT_GIVEN.to_owned(), |before| shown(before, number.unit)));
+            ui.label(
+                number.before.as_ref().map_or(texts::NOT_GIVEN.get().to_owned(), |before| shown(before, number.unit)),
+            );
             ui.label(shown(&number.after, number.unit));
             ui.label(number.before.as_ref().map_or(String::new(), |before| changed(before, number)));
             ui.end_row();

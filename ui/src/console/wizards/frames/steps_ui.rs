@@ -20,25 +20,25 @@ use crate::{
 
 impl FrameWizard {
     pub(super) fn check_ui(&mut self, ui: &mut Ui) {
-        card(ui, texts::CHECKS_TITLE, texts::CHECKS_HOVER, |ui| {
+        card(ui, texts::CHECKS_TITLE.get(), texts::CHECKS_HOVER.get(), |ui| {
             let Some(job) = &self.job else {
-                ui.label(texts::NO_ARM);
+                ui.label(texts::NO_ARM.get());
                 return;
             };
             ui.label(self.texts().before);
             ui.add_space(6.0);
             for source in job.needs() {
                 let (name, met) = match source {
-                    Source::Flange => (texts::CHECK_ARM, self.seen.base_from_flange.is_some()),
-                    Source::Marker => (texts::CHECK_MARKER, self.seen.c_from_m.is_some()),
-                    Source::Handle => (texts::CHECK_HANDLE, self.seen.leader_from_handle.is_some()),
-                    Source::Wrench => (texts::CHECK_WRENCH, self.seen.wrench.is_some()),
+                    Source::Flange => (texts::CHECK_ARM.get(), self.seen.base_from_flange.is_some()),
+                    Source::Marker => (texts::CHECK_MARKER.get(), self.seen.c_from_m.is_some()),
+                    Source::Handle => (texts::CHECK_HANDLE.get(), self.seen.leader_from_handle.is_some()),
+                    Source::Wrench => (texts::CHECK_WRENCH.get(), self.seen.wrench.is_some()),
                 };
                 check_line(ui, name, met, source.words());
             }
         });
         let (Some([name, meaning]), Some(subject)) = (self.texts().other_way, self.subject.clone()) else { return };
-        card(ui, texts::OPTIONS_TITLE, texts::OPTIONS_HOVER, |ui| {
+        card(ui, texts::OPTIONS_TITLE.get(), texts::OPTIONS_HOVER.get(), |ui| {
             let needs = self.kind.other_way_needs(&subject);
             let free = needs.is_ok() && self.taken() == 0;
             if let Some(other_way) = switch_ui(ui, free, self.other_way, name, meaning) {
@@ -55,27 +55,30 @@ impl FrameWizard {
         let Texts { task, units, .. } = self.texts();
         let Some(coverage) = self.job.as_ref().map(|job| job.coverage()) else { return };
         let complete = coverage.share >= 1.0;
-        card(ui, texts::RECORD_TITLE, texts::RECORD_HOVER, |ui| {
-            let asked =
-                if complete { texts::ALL_RECORDED.to_owned() } else { Kind::asks(&self.prompt(), self.target().name) };
+        card(ui, texts::RECORD_TITLE.get(), texts::RECORD_HOVER.get(), |ui| {
+            let asked = if complete {
+                texts::ALL_RECORDED.get().to_owned()
+            } else {
+                Kind::asks(&self.prompt(), self.target().name)
+            };
             ui.label(RichText::new(asked).font(theme::strong(19.0)));
             if !complete {
                 ui.label(task);
                 ui.add_space(6.0);
-                let paused = (0.0, texts::PAUSED.to_owned());
+                let paused = (0.0, texts::PAUSED.get().to_owned());
                 let (share, phase) = if self.paused { paused } else { words::phase(&self.phase) };
-                progress(ui, texts::PROGRESS, share, &phase);
+                progress(ui, texts::PROGRESS.get(), share, &phase);
                 ui.add_space(4.0);
             }
             let words = texts::coverage(self.taken(), units, coverage.missing.map(words::Words::words));
-            progress(ui, texts::COVERAGE, coverage.share, &words);
+            progress(ui, texts::COVERAGE.get(), coverage.share, &words);
             ui.add_space(6.0);
             ui.horizontal(|ui| {
-                let pause = if self.paused { texts::GO_ON } else { texts::PAUSE };
-                if ui.add_enabled(!complete, Button::new(pause)).on_hover_text(texts::PAUSE_HOVER).clicked() {
+                let pause = if self.paused { texts::GO_ON.get() } else { texts::PAUSE.get() };
+                if ui.add_enabled(!complete, Button::new(pause)).on_hover_text(texts::PAUSE_HOVER.get()).clicked() {
                     self.paused = !self.paused;
                 }
-                if ui.add_enabled(self.taken() > 0, Button::new(texts::REMOVE_LAST)).clicked() {
+                if ui.add_enabled(self.taken() > 0, Button::new(texts::REMOVE_LAST.get())).clicked() {
                     self.job.iter_mut().for_each(|job| job.undo());
                     (self.report, self.frame.saved) = (None, None);
                 }

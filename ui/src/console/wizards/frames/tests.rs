@@ -112,7 +112,7 @@ fn a_tip_is_recorded_judged_written_into_the_rig_file_and_undone() {
     let mut bench = Bench::new(Kind::Tip);
     let before = bench.subject();
     let tip_m = before.tip_in_flange_m() + Vector3::new(0.002, -0.001, 0.003);
-    assert_eq!(bench.wizard.may_go_on(&bench.binding()), Err(text::wizards::NEEDS_CHECKS), "no joints yet");
+    assert_eq!(bench.wizard.may_go_on(&bench.binding()), Err(text::wizards::NEEDS_CHECKS.get()), "no joints yet");
     assert_eq!(bench.wizard.prompt(), Prompt::Rest);
     bench.hold(&pivoting(tip_m, 0), 0.1);
     bench.next();
@@ -194,7 +194,7 @@ fn hand_eye_gives_marker_and_camera_and_opens_the_tracker_for_the_trocar() {
     let flange_from_m = at(Vector3::new(0.03, -0.04, 0.08), turn(7));
     let base_from_c = at(Vector3::new(1.3, 0.7, 0.9), turn(3) * turn(5));
     let mut bench = Bench::new(Kind::HandEye);
-    assert_eq!(Kind::Trocar.other_way_needs(&bench.subject()), Err(texts::NEEDS_HAND_EYE));
+    assert_eq!(Kind::Trocar.other_way_needs(&bench.subject()), Err(texts::NEEDS_HAND_EYE.get()));
     bench.hold(&FrameSample { c_from_m: None, ..seen(0, &flange_from_m, &base_from_c) }, 0.1);
     assert_eq!(bench.wizard.lacks(), Some(Source::Marker));
     bench.hold(&seen(0, &flange_from_m, &base_from_c), 0.1);

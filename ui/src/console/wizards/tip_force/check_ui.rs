@@ -30,7 +30,7 @@ impl TipForceWizard {
     /// Returns the request to go back and record more.
     pub(super) fn check_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
         let mut wish = None;
-        card(ui, text::tip_force::CHECK_TITLE, text::tip_force::CHECK_HOVER, |ui| {
+        card(ui, text::tip_force::CHECK_TITLE.get(), text::tip_force::CHECK_HOVER.get(), |ui| {
             let (work_s, free_s) = (CHECK_WORK as f64 * ROW_EVERY_S, (CHECK_ROWS - CHECK_WORK) as f64 * ROW_EVERY_S);
             ui.label(RichText::new(self.task(work_s, free_s)).font(theme::strong(18.0)));
             if let Some(take) = &self.proof {
@@ -39,8 +39,8 @@ impl TipForceWizard {
             ui.horizontal(|ui| {
                 self.check_button_ui(ui, binding);
                 if ui
-                    .add(Button::new(text::tip_force::RECORD_MORE).min_size(vec2(130.0, 40.0)))
-                    .on_hover_text(text::tip_force::RECORD_MORE_HOVER)
+                    .add(Button::new(text::tip_force::RECORD_MORE.get()).min_size(vec2(130.0, 40.0)))
+                    .on_hover_text(text::tip_force::RECORD_MORE_HOVER.get())
                     .clicked()
                 {
                     wish = Some(Wish::GoTo(RECORD));
@@ -51,7 +51,7 @@ impl TipForceWizard {
             let rows = self.proof.as_ref().map_or(none, |take| take.recorder.rows());
             progress(
                 ui,
-                text::tip_force::CHECK_PROGRESS,
+                text::tip_force::CHECK_PROGRESS.get(),
                 rows as f64 / CHECK_ROWS as f64,
                 &text::tip_force::rows_of(rows, CHECK_ROWS),
             );
@@ -66,10 +66,10 @@ impl TipForceWizard {
 
     fn task(&self, work_s: f64, free_s: f64) -> String {
         match &self.proof {
-            _ if self.judging.is_some() => text::tip_force::CHECK_JUDGING.to_owned(),
+            _ if self.judging.is_some() => text::tip_force::CHECK_JUDGING.get().to_owned(),
             Some(take) if take.running => words(take.prompt()).to_owned(),
-            Some(_) => text::tip_force::CHECK_PAUSED.to_owned(),
-            None if self.checked.is_some() => text::tip_force::CHECK_DONE.to_owned(),
+            Some(_) => text::tip_force::CHECK_PAUSED.get().to_owned(),
+            None if self.checked.is_some() => text::tip_force::CHECK_DONE.get().to_owned(),
             None => text::tip_force::check_task(work_s, free_s),
         }
     }
@@ -77,12 +77,13 @@ impl TipForceWizard {
     fn check_button_ui(&mut self, ui: &mut Ui, binding: &Binding) {
         let running = self.proof.as_ref().is_some_and(|take| take.running);
         let text = match &self.proof {
-            Some(_) if running => text::tip_force::PAUSE,
-            Some(_) => text::tip_force::CHECK_GO_ON,
-            None if self.checked.is_some() => text::tip_force::CHECK_AGAIN,
-            None => text::tip_force::CHECK_START,
+            Some(_) if running => text::tip_force::PAUSE.get(),
+            Some(_) => text::tip_force::CHECK_GO_ON.get(),
+            None if self.checked.is_some() => text::tip_force::CHECK_AGAIN.get(),
+            None => text::tip_force::CHECK_START.get(),
         };
-        let may = if self.judging.is_some() { Err(text::tip_force::CHECK_WAIT) } else { self.may_record(binding) };
+        let may =
+            if self.judging.is_some() { Err(text::tip_force::CHECK_WAIT.get()) } else { self.may_record(binding) };
         let next = !running && self.checked.is_none() && may.is_ok();
         let button = next_button(RichText::new(text).font(theme::strong(16.0)), next).min_size(vec2(220.0, 40.0));
         let response = ui.add_enabled(running || may.is_ok(), button);
@@ -100,14 +101,14 @@ impl TipForceWizard {
 
 fn verdict_ui(ui: &mut Ui, checked: &Checked) {
     let check = &checked.check;
-    card(ui, check.judgement.verdict.words(), text::tip_force::VERDICT_HOVER, |ui| {
+    card(ui, check.judgement.verdict.words(), text::tip_force::VERDICT_HOVER.get(), |ui| {
         let words = text::tip_force::verdict(&check.judgement.reason);
         ui.label(RichText::new(words).font(theme::strong(14.0)));
         if check.judgement.verdict != Verdict::Accepted {
-            ui.label(small(text::tip_force::VERDICT_OVERRIDE));
+            ui.label(small(text::tip_force::VERDICT_OVERRIDE.get()));
         }
         let doubt = text::tip_force::doubt(100.0 * check.doubt_share, check.rows);
-        figure(ui, text::tip_force::DOUBT, doubt, text::tip_force::DOUBT_HOVER);
+        figure(ui, text::tip_force::DOUBT.get(), doubt, text::tip_force::DOUBT_HOVER.get());
     });
 }
 
@@ -119,20 +120,22 @@ fn mae_of(part: &Part, method: &str, axis: usize) -> String {
 }
 
 fn figures_ui(ui: &mut Ui, checked: &Checked) {
-    let meaning = text::tip_force::ERRORS_HOVER;
-    card(ui, text::tip_force::ERRORS_TITLE, meaning, |ui| {
+    let meaning = text::tip_force::ERRORS_HOVER.get();
+    card(ui, text::tip_force::ERRORS_TITLE.get(), meaning, |ui| {
         let check = &checked.check;
         Grid::new("tip_force_check").num_columns(9).spacing(vec2(20.0, 5.0)).show(ui, |ui| {
             let heads = [
-                text::tip_force::AXIS,
+                text::tip_force::AXIS.get(),
                 "MAE",
                 "paper",
                 "SD",
                 "paper",
-                text::tip_force::WRIST_ALONE_MAE,
-                text::tip_force::FRICTION_MODEL_MAE,
+                text::tip_force::WRIST_ALONE_MAE.get(),
+                text::tip_force::FRICTION_MODEL_MAE.get(),
             ];
-            for head in heads.into_iter().chain([text::tip_force::NO_CONTACT_MEAN, text::tip_force::NO_CONTACT_SD]) {
+            for head in
+                heads.into_iter().chain([text::tip_force::NO_CONTACT_MEAN.get(), text::tip_force::NO_CONTACT_SD.get()])
+            {
                 ui.label(small(head));
             }
             ui.end_row();
@@ -155,10 +158,10 @@ fn figures_ui(ui: &mut Ui, checked: &Checked) {
 
 fn plots_ui(ui: &mut Ui, checked: &Checked) {
     ui.columns(2, |columns| {
-        card(&mut columns[0], text::tip_force::REGRESSION_TITLE, text::tip_force::REGRESSION_HOVER, |ui| {
+        card(&mut columns[0], text::tip_force::REGRESSION_TITLE.get(), text::tip_force::REGRESSION_HOVER.get(), |ui| {
             regression_ui(ui, checked);
         });
-        card(&mut columns[1], text::tip_force::NO_CONTACT_TITLE, text::tip_force::NO_CONTACT_HOVER, |ui| {
+        card(&mut columns[1], text::tip_force::NO_CONTACT_TITLE.get(), text::tip_force::NO_CONTACT_HOVER.get(), |ui| {
             free_ui(ui, checked);
         });
     });
@@ -178,24 +181,25 @@ fn plot<'a>(name: &str, x: &str, y: &str) -> Plot<'a> {
 fn regression_ui(ui: &mut Ui, checked: &Checked) {
     let all = || checked.points.iter().flatten().flatten();
     let (low, high) = all().fold((-1.0_f64, 1.0_f64), |(low, high), value| (low.min(*value), high.max(*value)));
-    let response = plot("tip_force_regression", text::tip_force::MEASURED_AXIS, text::tip_force::PREDICTED_AXIS).show(
-        ui,
-        |plot| {
-            let ends = PlotPoints::from(vec![[low, low], [high, high]]);
-            plot.line(Line::new("perfect", ends).color(theme::now().reference).style(LineStyle::dashed_loose()));
-            for ((axis, points), colour) in AXES.iter().zip(&checked.points).zip(theme::now().series) {
-                let marks = Points::new(*axis, PlotPoints::from(points.clone())).shape(MarkerShape::Circle);
-                plot.points(marks.radius(1.6).color(colour));
-            }
-        },
-    );
-    let described = text::tip_force::REGRESSION_PLOT;
+    let response =
+        plot("tip_force_regression", text::tip_force::MEASURED_AXIS.get(), text::tip_force::PREDICTED_AXIS.get()).show(
+            ui,
+            |plot| {
+                let ends = PlotPoints::from(vec![[low, low], [high, high]]);
+                plot.line(Line::new("perfect", ends).color(theme::now().reference).style(LineStyle::dashed_loose()));
+                for ((axis, points), colour) in AXES.iter().zip(&checked.points).zip(theme::now().series) {
+                    let marks = Points::new(*axis, PlotPoints::from(points.clone())).shape(MarkerShape::Circle);
+                    plot.points(marks.radius(1.6).color(colour));
+                }
+            },
+        );
+    let described = text::tip_force::REGRESSION_PLOT.get();
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described));
 }
 
 fn free_ui(ui: &mut Ui, checked: &Checked) {
-    let response =
-        plot("tip_force_free", text::tip_force::NO_CONTACT_AXIS, text::tip_force::SHARE_AXIS).show(ui, |plot| {
+    let response = plot("tip_force_free", text::tip_force::NO_CONTACT_AXIS.get(), text::tip_force::SHARE_AXIS.get())
+        .show(ui, |plot| {
             for (k, ((axis, bins), colour)) in AXES.iter().zip(&checked.bins).zip(theme::now().series).enumerate() {
                 // Three narrow bars side by side in each bin.
                 let bar = |(i, share): (usize, &f64)| {
@@ -206,6 +210,6 @@ fn free_ui(ui: &mut Ui, checked: &Checked) {
                 plot.bar_chart(BarChart::new(*axis, bars).color(colour));
             }
         });
-    let described = text::tip_force::NO_CONTACT_PLOT;
+    let described = text::tip_force::NO_CONTACT_PLOT.get();
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described));
 }

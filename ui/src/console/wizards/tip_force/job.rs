@@ -21,6 +21,7 @@ use nima_recording::{
 use nima_training::{Evaluation, Part, Progress, check, train_model};
 
 use crate::console::text;
+use crate::language::{self, Language};
 
 /// A background thread. Dropping this requests it to stop; it then ends by itself, and its result is discarded.
 #[derive(Debug)]
@@ -37,7 +38,7 @@ impl<T: Send + 'static> Job<T> {
     ) -> Result<Self, String> {
         let cancel = Arc::new(AtomicBool::new(false));
         let stop = Arc::clone(&cancel);
-        let thread = Builder::new().name(name.to_owned()).spawn(move || work(&stop));
+        let thread = Builder::new().name(name.to_owned()).spawn(language::carried(move || work(&stop)));
         let thread = thread.map_err(|error| text::tip_force::no_thread(&error))?;
         Ok(Self { cancel, thread: Some(thread) })
     }
@@ -45,7 +46,7 @@ impl<T: Send + 'static> Job<T> {
     /// The result, once; `None` while the work continues.
     pub(super) fn take_result(&mut self) -> Option<Result<T, String>> {
         let thread = self.thread.take_if(|thread| thread.is_finished())?;
-        Some(thread.join().unwrap_or_else(|_| Err(text::tip_force::JOB_FAILED.to_owned())))
+        Some(thread.join().unwrap_or_else(|_| Err(text::tip_force::JOB_FAILED.get().to_owned())))
     }
 }
 
@@ -186,7 +187,9 @@ pub(super) fn judge(
     let (mut check, evaluation) = check(&mut estimator, &data).map_err(|error| error.to_string())?;
     if let (Some(goal), Verdict::Accepted) = (narrow, check.judgement.verdict) {
         check.judgement.verdict = Verdict::InsufficientMotion;
-        check.judgement.reason = text::tip_force::trained_on_too_little(&goal.to_lowercase());
+        // It stands in the file.
+        let reason = || text::tip_force::trained_on_too_little(&goal.to_lowercase());
+        check.judgement.reason = language::with(Language::English, reason);
     }
     let (points, bins) = (points(&data, &evaluation), bins(&data, &evaluation));
     Ok(Checked { check, part: evaluation.overall, points, bins })

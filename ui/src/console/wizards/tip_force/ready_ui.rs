@@ -8,12 +8,13 @@ use super::{
     TipForceWizard,
 };
 use crate::console::{text, widgets::card};
+use crate::language::Text;
 
 /// Which of [`SOURCES`] delivered in a tick.
 pub(super) type Sources = [bool; SOURCES.len()];
 
 /// Required sources: name, and the text if it is missing.
-const SOURCES: [(&str, &str); 5] = [
+const SOURCES: [(Text, Text); 5] = [
     (text::tip_force::SOURCE_WRIST, text::tip_force::SOURCE_SILENT),
     (text::tip_force::SOURCE_GRAVITY, text::tip_force::SOURCE_NO_GRAVITY),
     (text::tip_force::SOURCE_TISSUE, text::tip_force::SOURCE_SILENT),
@@ -31,14 +32,19 @@ pub(super) fn sources(tick: &Tick) -> Sources {
 
 impl TipForceWizard {
     pub(super) fn ready_ui(&self, ui: &mut Ui, binding: &Binding) {
-        card(ui, text::tip_force::CHECKS_TITLE, text::tip_force::CHECKS_HOVER, |ui| {
-            ui.label(text::tip_force::CHECKS_TASK);
+        card(ui, text::tip_force::CHECKS_TITLE.get(), text::tip_force::CHECKS_HOVER.get(), |ui| {
+            ui.label(text::tip_force::CHECKS_TASK.get());
             ui.add_space(6.0);
             for ((name, otherwise), there) in SOURCES.into_iter().zip(self.sources) {
-                check_line(ui, name, there, otherwise);
+                check_line(ui, name.get(), there, otherwise.get());
             }
             let known = binding.correspondence.is_some();
-            check_line(ui, text::tip_force::SOURCE_CORRESPONDENCE, known, text::tip_force::SOURCE_NO_CORRESPONDENCE);
+            check_line(
+                ui,
+                text::tip_force::SOURCE_CORRESPONDENCE.get(),
+                known,
+                text::tip_force::SOURCE_NO_CORRESPONDENCE.get(),
+            );
         });
     }
 }

@@ -27,8 +27,8 @@ impl TipForceWizard {
     pub(super) fn record_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
         let (running, rows) = (self.is_recording(), self.rows());
         let mut wish = None;
-        let meaning = text::tip_force::RECORD_HOVER;
-        card(ui, text::tip_force::RECORD_TITLE, meaning, |ui| {
+        let meaning = text::tip_force::RECORD_HOVER.get();
+        card(ui, text::tip_force::RECORD_TITLE.get(), meaning, |ui| {
             self.now_ui(ui);
             ui.add_space(4.0);
             ui.horizontal(|ui| {
@@ -37,17 +37,19 @@ impl TipForceWizard {
                 }
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     let enough = rows >= MIN_ROWS && self.lacking().is_some();
-                    let anyway =
-                        ui.add_enabled(enough, Button::new(text::tip_force::TRAIN_ANYWAY).min_size(vec2(130.0, 34.0)));
-                    let anyway = anyway.on_hover_text(text::tip_force::TRAIN_ANYWAY_HOVER);
-                    if anyway.on_disabled_hover_text(text::tip_force::TRAIN_ANYWAY_DISABLED_HOVER).clicked() {
+                    let anyway = ui.add_enabled(
+                        enough,
+                        Button::new(text::tip_force::TRAIN_ANYWAY.get()).min_size(vec2(130.0, 34.0)),
+                    );
+                    let anyway = anyway.on_hover_text(text::tip_force::TRAIN_ANYWAY_HOVER.get());
+                    if anyway.on_disabled_hover_text(text::tip_force::TRAIN_ANYWAY_DISABLED_HOVER.get()).clicked() {
                         wish = Some(Wish::GoTo(TRAIN));
                     }
                 });
             });
             let seconds = rows as f64 * ROW_EVERY_S;
             let told = text::tip_force::rows_and_seconds(rows, seconds, PAPER_ROWS, PAPER_ROWS as f64 * ROW_EVERY_S);
-            progress(ui, text::tip_force::ROWS, rows as f64 / PAPER_ROWS as f64, &told);
+            progress(ui, text::tip_force::ROWS.get(), rows as f64 / PAPER_ROWS as f64, &told);
         });
         let empty = Coverage::default();
         let coverage = self.recording.as_ref().map_or(&empty, |take| take.recorder.coverage());
@@ -60,20 +62,20 @@ impl TipForceWizard {
     fn now_ui(&self, ui: &mut Ui) {
         let Some(take) = &self.recording else {
             ui.label(RichText::new(words(self.prompt())).font(theme::strong(19.0)));
-            ui.label(text::tip_force::RECORD_FIRST_STEP);
+            ui.label(text::tip_force::RECORD_FIRST_STEP.get());
             return;
         };
         let task = match self.lacking() {
-            None => text::tip_force::RECORD_COMPLETE.to_owned(),
-            Some(_) if !take.running => text::tip_force::RECORD_PAUSED.to_owned(),
+            None => text::tip_force::RECORD_COMPLETE.get().to_owned(),
+            Some(_) if !take.running => text::tip_force::RECORD_PAUSED.get().to_owned(),
             Some(_) => words(take.prompt()).to_owned(),
         };
         ui.label(RichText::new(task).font(theme::strong(19.0)));
         if let (Some(goal), true) = (self.lacking(), take.running) {
             let when = if take.prompt() == Prompt::WorkFree {
-                text::tip_force::ADVICE_LATER
+                text::tip_force::ADVICE_LATER.get()
             } else {
-                text::tip_force::ADVICE_NOW
+                text::tip_force::ADVICE_NOW.get()
             };
             let advice = text::tip_force::advice(when, goal.advice, &goal.name.to_lowercase());
             ui.label(RichText::new(advice).font(theme::strong(16.0)));
@@ -84,9 +86,9 @@ impl TipForceWizard {
     /// The start button; returns true when it is pressed.
     fn start_ui(&self, ui: &mut Ui, running: bool, rows: usize, binding: &Binding) -> bool {
         let text = match (running, rows) {
-            (true, _) => text::tip_force::PAUSE,
-            (false, 0) => text::tip_force::RECORD_START,
-            (false, _) => text::tip_force::RECORD_GO_ON,
+            (true, _) => text::tip_force::PAUSE.get(),
+            (false, 0) => text::tip_force::RECORD_START.get(),
+            (false, _) => text::tip_force::RECORD_GO_ON.get(),
         };
         let may = self.may_record(binding);
         let next = !running && !self.is_done() && may.is_ok();
@@ -108,7 +110,7 @@ impl TipForceWizard {
 }
 
 fn goals_ui(ui: &mut Ui, coverage: &Coverage) {
-    card(ui, text::tip_force::GOALS_TITLE, text::tip_force::GOALS_HOVER, |ui| {
+    card(ui, text::tip_force::GOALS_TITLE.get(), text::tip_force::GOALS_HOVER.get(), |ui| {
         ui.columns(2, |columns| {
             let goals = coverage.goals();
             for (i, goal) in goals.iter().enumerate() {
@@ -118,7 +120,7 @@ fn goals_ui(ui: &mut Ui, coverage: &Coverage) {
                     &mut columns[i / goals.len().div_ceil(2)],
                     goal.name,
                     goal.share,
-                    if goal.share < 1.0 { &percent } else { text::wizards::MET },
+                    if goal.share < 1.0 { &percent } else { text::wizards::MET.get() },
                 );
             }
         });
@@ -126,19 +128,20 @@ fn goals_ui(ui: &mut Ui, coverage: &Coverage) {
 }
 
 fn maps_ui(ui: &mut Ui, coverage: &Coverage) {
-    let tilt: [AxisWords; 2] = [["-53 deg", text::tip_force::TILT_X, "53 deg"], ["-53", text::tip_force::TILT_Y, "53"]];
+    let tilt: [AxisWords; 2] =
+        [["-53 deg", text::tip_force::TILT_X.get(), "53 deg"], ["-53", text::tip_force::TILT_Y.get(), "53"]];
     let force: [AxisWords; 2] =
-        [["0 N", text::tip_force::FORCE_ACROSS, "5 N"], ["-5", text::tip_force::FORCE_ALONG, "5"]];
+        [["0 N", text::tip_force::FORCE_ACROSS.get(), "5 N"], ["-5", text::tip_force::FORCE_ALONG.get(), "5"]];
     let travel: [AxisWords; 2] =
-        [["0 mm", text::tip_force::TRAVEL_DEPTH, "300 mm"], ["-160", text::tip_force::TRAVEL_SPEED, "160"]];
-    let meaning = text::tip_force::COVERAGE_HOVER;
-    card(ui, text::tip_force::COVERAGE_TITLE, meaning, |ui| {
+        [["0 mm", text::tip_force::TRAVEL_DEPTH.get(), "300 mm"], ["-160", text::tip_force::TRAVEL_SPEED.get(), "160"]];
+    let meaning = text::tip_force::COVERAGE_HOVER.get();
+    card(ui, text::tip_force::COVERAGE_TITLE.get(), meaning, |ui| {
         let width = ((ui.available_width() - 2.0 * 10.0) / 3.0).min(238.0);
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 10.0;
-            heat_map(ui, width, text::tip_force::MAP_TILT, &coverage.tilt, tilt);
-            heat_map(ui, width, text::tip_force::MAP_FORCE, &coverage.force, force);
-            heat_map(ui, width, text::tip_force::MAP_TRAVEL, &coverage.travel, travel);
+            heat_map(ui, width, text::tip_force::MAP_TILT.get(), &coverage.tilt, tilt);
+            heat_map(ui, width, text::tip_force::MAP_FORCE.get(), &coverage.force, force);
+            heat_map(ui, width, text::tip_force::MAP_TRAVEL.get(), &coverage.travel, travel);
         });
     });
 }

@@ -76,25 +76,25 @@ impl Take {
     /// State of the recording as text.
     pub(super) fn phase_words(&self) -> String {
         if self.recorder.rows() == MOST_ROWS {
-            return text::tip_force::PHASE_FULL.to_owned();
+            return text::tip_force::PHASE_FULL.get().to_owned();
         }
         match self.recorder.phase() {
-            _ if !self.running => text::tip_force::PHASE_PAUSED.to_owned(),
-            _ if self.silent => text::tip_force::PHASE_WRIST_SILENT.to_owned(),
+            _ if !self.running => text::tip_force::PHASE_PAUSED.get().to_owned(),
+            _ if self.silent => text::tip_force::PHASE_WRIST_SILENT.get().to_owned(),
             RecorderPhase::Lacks(lack) => text::tip_force::nothing_taken(lack.words()),
             RecorderPhase::Resting { share } => text::tip_force::taking_zero(100.0 * share),
-            RecorderPhase::NotMoved => text::tip_force::PHASE_NOT_MOVED.to_owned(),
-            RecorderPhase::Recording | RecorderPhase::Full => text::tip_force::PHASE_RECORDING.to_owned(),
+            RecorderPhase::NotMoved => text::tip_force::PHASE_NOT_MOVED.get().to_owned(),
+            RecorderPhase::Recording | RecorderPhase::Full => text::tip_force::PHASE_RECORDING.get().to_owned(),
         }
     }
 }
 
 /// Text of the instruction.
-pub(super) const fn words(prompt: Prompt) -> &'static str {
+pub(super) fn words(prompt: Prompt) -> &'static str {
     match prompt {
-        Prompt::Work => text::tip_force::TASK_WORK,
-        Prompt::WorkFree => text::tip_force::TASK_WORK_FREE,
-        _ => text::tip_force::TASK_REST,
+        Prompt::Work => text::tip_force::TASK_WORK.get(),
+        Prompt::WorkFree => text::tip_force::TASK_WORK_FREE.get(),
+        _ => text::tip_force::TASK_REST.get(),
     }
 }
 

@@ -18,32 +18,35 @@ const HEIGHT: f32 = 330.0;
 
 impl TipForceWizard {
     pub(super) fn train_ui(&mut self, ui: &mut Ui, binding: &Binding) {
-        card(ui, text::tip_force::STEP_TRAIN, text::tip_force::TRAIN_HOVER, |ui| {
+        card(ui, text::tip_force::STEP_TRAIN.get(), text::tip_force::TRAIN_HOVER.get(), |ui| {
             self.size_ui(ui);
             let rows = self.rows();
             let told = text::tip_force::rows_and_time(rows, rows as f64 * ROW_EVERY_S);
-            figure(ui, text::tip_force::TRAIN_DATA, told, text::tip_force::TRAIN_DATA_HOVER);
+            figure(ui, text::tip_force::TRAIN_DATA.get(), told, text::tip_force::TRAIN_DATA_HOVER.get());
             let (share, elapsed_s) = self.progress();
             ui.horizontal(|ui| {
                 if self.is_training() {
-                    if ui.add(Button::new(text::tip_force::TRAIN_CANCEL).min_size(vec2(180.0, 40.0))).clicked() {
+                    if ui.add(Button::new(text::tip_force::TRAIN_CANCEL.get()).min_size(vec2(180.0, 40.0))).clicked() {
                         self.cancel_training();
                     }
                     return;
                 }
-                let text =
-                    if self.trained.is_some() { text::tip_force::TRAIN_AGAIN } else { text::tip_force::TRAIN_START };
+                let text = if self.trained.is_some() {
+                    text::tip_force::TRAIN_AGAIN.get()
+                } else {
+                    text::tip_force::TRAIN_START.get()
+                };
                 let button =
                     ui.add_enabled(rows > 0, next_button(text, self.trained.is_none()).min_size(vec2(180.0, 40.0)));
-                if button.on_disabled_hover_text(text::tip_force::TRAIN_DISABLED_HOVER).clicked() {
+                if button.on_disabled_hover_text(text::tip_force::TRAIN_DISABLED_HOVER.get()).clicked() {
                     self.start_training(binding);
                 }
             });
-            progress(ui, text::tip_force::TRAIN_PROGRESS, share, &self.progress_words(share, elapsed_s));
+            progress(ui, text::tip_force::TRAIN_PROGRESS.get(), share, &self.progress_words(share, elapsed_s));
         });
         self.outcome_ui(ui);
-        let meaning = text::tip_force::LOSS_HOVER;
-        card(ui, text::tip_force::LOSS_TITLE, meaning, |ui| curves_ui(ui, &look(&self.curves)));
+        let meaning = text::tip_force::LOSS_HOVER.get();
+        card(ui, text::tip_force::LOSS_TITLE.get(), meaning, |ui| curves_ui(ui, &look(&self.curves)));
     }
 
     fn cancel_training(&self) {
@@ -55,13 +58,13 @@ impl TipForceWizard {
     fn size_ui(&mut self, ui: &mut Ui) {
         let training = self.is_training();
         ui.horizontal(|ui| {
-            ui.label(text::tip_force::SIZE);
+            ui.label(text::tip_force::SIZE.get());
             for size in Size::ALL {
                 let hidden = size.settings().hidden.iter().map(usize::to_string).collect::<Vec<_>>().join("-");
                 let chosen = self.size == size;
                 let words = format!("{} ({hidden})", size.name());
                 let response = ui.add_enabled(!training, Button::selectable(chosen, words));
-                let meaning = text::tip_force::SIZE_HOVER;
+                let meaning = text::tip_force::SIZE_HOVER.get();
                 if response.on_hover_text(meaning).clicked() {
                     self.size = size;
                 }
@@ -71,31 +74,36 @@ impl TipForceWizard {
 
     fn progress_words(&self, share: f64, elapsed_s: f64) -> String {
         match &self.training {
-            Some((job, _)) if job.is_cancelled() => text::tip_force::TRAIN_STOPPING.to_owned(),
-            Some(_) if share <= 0.0 => text::tip_force::TRAIN_STARTING.to_owned(),
+            Some((job, _)) if job.is_cancelled() => text::tip_force::TRAIN_STOPPING.get().to_owned(),
+            Some(_) if share <= 0.0 => text::tip_force::TRAIN_STARTING.get().to_owned(),
             Some(_) => {
                 let left_s = elapsed_s * (1.0 - share) / share;
                 text::tip_force::time_left(100.0 * share, elapsed_s, left_s)
             }
-            None if self.trained.is_some() => text::tip_force::TRAIN_DONE.to_owned(),
-            None => text::tip_force::TRAIN_NOT_STARTED.to_owned(),
+            None if self.trained.is_some() => text::tip_force::TRAIN_DONE.get().to_owned(),
+            None => text::tip_force::TRAIN_NOT_STARTED.get().to_owned(),
         }
     }
 
     fn outcome_ui(&self, ui: &mut Ui) {
         let Some(trained) = &self.trained else { return };
-        card(ui, text::tip_force::TRAINED_TITLE, text::tip_force::TRAINED_HOVER, |ui| {
+        card(ui, text::tip_force::TRAINED_TITLE.get(), text::tip_force::TRAINED_HOVER.get(), |ui| {
             let origin = &trained.model.origin;
             let losses = origin.figures.iter().map(|member| member.validation_loss);
             let mean = losses.sum::<f64>() / origin.figures.len().max(1) as f64;
             let told = text::tip_force::networks_on_rows(origin.figures.len(), origin.rows);
-            figure(ui, text::tip_force::ENSEMBLE, told, text::tip_force::ENSEMBLE_HOVER);
-            figure(ui, text::tip_force::HELD_OUT_LOSS, format!("{mean:.4}"), text::tip_force::HELD_OUT_LOSS_HOVER);
+            figure(ui, text::tip_force::ENSEMBLE.get(), told, text::tip_force::ENSEMBLE_HOVER.get());
+            figure(
+                ui,
+                text::tip_force::HELD_OUT_LOSS.get(),
+                format!("{mean:.4}"),
+                text::tip_force::HELD_OUT_LOSS_HOVER.get(),
+            );
             if let Some(goal) = trained.narrow {
                 ui.label(text::tip_force::not_complete(&goal.to_lowercase()));
             }
             if origin.rows < self.rows() {
-                ui.label(small(text::tip_force::TRAINED_STALE));
+                ui.label(small(text::tip_force::TRAINED_STALE.get()));
             }
         });
     }
@@ -105,10 +113,10 @@ fn curves_ui(ui: &mut Ui, curves: &Curves) {
     let decades = |mark: GridMark| power_of_ten(mark.value);
     let plot = Plot::new("losses")
         .height(HEIGHT)
-        .custom_x_axes(vec![AxisHints::new_x().label(text::tip_force::EPOCH_AXIS)])
+        .custom_x_axes(vec![AxisHints::new_x().label(text::tip_force::EPOCH_AXIS.get())])
         .custom_y_axes(vec![
             AxisHints::new_y()
-                .label(text::tip_force::LOSS_AXIS)
+                .label(text::tip_force::LOSS_AXIS.get())
                 .min_thickness(52.0)
                 .formatter(move |mark, _| decades(mark)),
         ])

@@ -1,0 +1,228 @@
+//! The language of the window.
+//!
+//! Every text of the window stands in `console/text` and `words`, in English and German side by side: a text that lacks one of them does
+//! not compile. The language belongs to a thread. The window sets that of its own before it draws; every other thread, and with it the
+//! command line, the files and the reports, writes English unless it is told otherwise ([`carried`]).
+
+use std::{
+    cell::{Cell, RefCell},
+    collections::HashMap,
+    fmt,
+};
+
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+
+/// A language of the window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+pub enum Language {
+    /// English, in which everything was written first.
+    #[default]
+    #[serde(rename = "en")]
+    #[value(name = "en")]
+    English,
+    /// German.
+    #[serde(rename = "de")]
+    #[value(name = "de")]
+    German,
+    /// English with accents, and longer by two fifths: a layout with room for it has room for most languages.
+    #[serde(rename = "pseudo")]
+    #[value(name = "pseudo", hide = true)]
+    Pseudo,
+}
+
+impl Language {
+    /// Those that a user chooses among.
+    pub const CHOICES: [Self; 2] = [Self::English, Self::German];
+
+    /// Its name in itself.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::English => "English",
+            Self::German => "Deutsch",
+            Self::Pseudo => "Pseudo",
+        }
+    }
+}
+
+thread_local! {
+    static CURRENT: Cell<Language> = const { Cell::new(Language::English) };
+    static LENGTHENED: RefCell<HashMap<&'static str, &'static str>> = RefCell::default();
+}
+
+/// The language of this thread.
+pub fn current() -> Language {
+    CURRENT.get()
+}
+
+/// Sets the language of this thread.
+pub fn set(language: Language) {
+    CURRENT.set(language);
+}
+
+/// Does this in a language: what is written into a file is English, whatever the window shows.
+pub fn with<T>(language: Language, work: impl FnOnce() -> T) -> T {
+    struct Back(Language);
+    impl Drop for Back {
+        fn drop(&mut self) {
+            set(self.0);
+        }
+    }
+    let _back = Back(CURRENT.replace(language));
+    work()
+}
+
+/// The same work for another thread, which then speaks the language of this one.
+pub(crate) fn carried<T>(work: impl FnOnce() -> T) -> impl FnOnce() -> T {
+    let language = current();
+    move || {
+        set(language);
+        work()
+    }
+}
+
+/// A text in every language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Text {
+    english: &'static str,
+    german: &'static str,
+}
+
+impl Text {
+    /// The same in English and in German.
+    pub(crate) const fn of(english: &'static str, german: &'static str) -> Self {
+        Self { english, german }
+    }
+
+    /// In the language of this thread.
+    pub(crate) fn get(self) -> &'static str {
+        match current() {
+            Language::English => self.english,
+            Language::German => self.german,
+            Language::Pseudo => lengthened(self.english),
+        }
+    }
+}
+
+impl fmt::Display for Text {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.get())
+    }
+}
+
+/// A text that is used in one place, in the language of this thread.
+pub(crate) fn word(english: &'static str, german: &'static str) -> &'static str {
+    Text::of(english, german).get()
+}
+
+/// A text with values in it: `told!("{a} of {b}", "{a} von {b}")`, and further arguments as for `format!`.
+macro_rules! told {
+    ($english:literal, $german:literal $(, $($argument:tt)*)?) => {
+        if $crate::language::current() == $crate::language::Language::German {
+            format!($german $(, $($argument)*)?)
+        } else {
+            $crate::language::spoken(format!($english $(, $($argument)*)?))
+        }
+    };
+}
+pub(crate) use told;
+
+/// An English text with its values in it, as it is or lengthened.
+pub(crate) fn spoken(english: String) -> String {
+    if current() == Language::Pseudo { pseudo(&english) } else { english }
+}
+
+/// A constant text is lengthened once in a thread, and stays in memory.
+fn lengthened(english: &'static str) -> &'static str {
+    LENGTHENED.with_borrow_mut(|known| *known.entry(english).or_insert_with(|| pseudo(english).leak()))
+}
+
+/// With accents, and two fifths longer. What is so already stays: a text may stand in another one.
+pub fn pseudo(english: &str) -> String {
+    let lines: Vec<String> = english.split('\n').map(pseudo_line).collect();
+    lines.join("\n")
+}
+
+fn pseudo_line(line: &str) -> String {
+    // What has accents was lengthened before.
+    let is_plain = |word: &&str| word.chars().all(|letter| letter.is_ascii() || !letter.is_alphabetic());
+    let plain = line.split_whitespace().filter(is_plain);
+    let letters = plain.flat_map(str::chars).filter(char::is_ascii_alphabetic).count();
+    let mut longer: String = line.chars().map(accented).collect();
+    let one_word = !line.trim().contains(' ');
+    // In words of usual length, so that a line breaks where others do.
+    for (i, letter) in
+        "\u{e5}\u{f1}\u{f0}\u{f8}\u{fe}\u{eb}".chars().cycle().take((2 * letters).div_ceil(5)).enumerate()
+    {
+        if i % 6 == 0 && !one_word {
+            longer.push(' ');
+        }
+        longer.push(letter);
+    }
+    longer
+}
+
+/// A letter that looks like this one and is as wide.
+const fn accented(letter: char) -> char {
+    match letter {
+        'A' => '\u{c5}',
+        'C' => '\u{c7}',
+        'D' => '\u{d0}',
+        'E' => '\u{c9}',
+        'I' => '\u{ce}',
+        'N' => '\u{d1}',
+        'O' => '\u{d6}',
+        'U' => '\u{db}',
+        'Y' => '\u{dd}',
+        'a' => '\u{e5}',
+        'c' => '\u{e7}',
+        'd' => '\u{f0}',
+        'e' => '\u{e9}',
+        'i' => '\u{ee}',
+        'n' => '\u{f1}',
+        'o' => '\u{f6}',
+        'u' => '\u{fb}',
+        'y' => '\u{fd}',
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAUSE: Text = Text::of("Pause", "Anhalten");
+
+    #[test]
+    fn a_text_is_in_the_language_of_its_thread_and_another_thread_is_english() {
+        assert_eq!((PAUSE.get(), word("of", "von")), ("Pause", "of"));
+        let (a, b) = (1, 2);
+        let told = with(Language::German, || {
+            let there = std::thread::spawn(|| PAUSE.get()).join().unwrap();
+            let carried = std::thread::spawn(carried(|| PAUSE.get())).join().unwrap();
+            (PAUSE.to_string(), told!("{a} of {}", "{a} von {}", b), there, carried)
+        });
+        assert_eq!(told, ("Anhalten".to_owned(), "1 von 2".to_owned(), "Pause", "Anhalten"));
+        assert_eq!((current(), told!("{a} of {b}", "{a} von {b}")), (Language::English, "1 of 2".to_owned()));
+    }
+
+    #[test]
+    fn a_panic_leaves_the_language_as_it_was() {
+        let panics = std::panic::catch_unwind(|| with(Language::German, || panic!("on purpose")));
+        assert!(panics.is_err());
+        assert_eq!(current(), Language::English);
+    }
+
+    #[test]
+    fn pseudo_is_longer_by_two_fifths_and_lengthens_nothing_twice() {
+        let english = "The control loop has stopped sending data";
+        let letters = |text: &str| text.chars().filter(|letter| letter.is_alphabetic()).count();
+        let once = pseudo(english);
+        let ratio = letters(&once) as f64 / letters(english) as f64;
+        assert!((1.4..1.45).contains(&ratio), "{ratio}: {once}");
+        let within = with(Language::Pseudo, || told!("{once}: {}", "{once}: {}", 12.5));
+        assert_eq!(within, format!("{once}: 12.5"));
+        assert!(with(Language::Pseudo, || std::ptr::eq(PAUSE.get(), PAUSE.get())), "it stays where it is");
+        assert_eq!(pseudo("0.5 \u{2026}"), "0.5 \u{2026}");
+    }
+}

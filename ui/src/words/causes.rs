@@ -1,0 +1,381 @@
+//! Texts about the ready check: why a point failed, and what to do.
+
+use nima_core::{calibration::gravity::NotChecked, kinematics::START_MISS_M};
+use nima_machine::{
+    messages::{Fault, Refusal, Watchdog},
+    ready::Cause,
+    rig::{Roster, Side},
+};
+
+use super::{
+    Remedy as _, cure_of_refusal,
+    findings::finding_words,
+    ready::{capital, with},
+    refused_because,
+    sides::{arm_stuck, exchanged, handle_askew, handle_pulls, handle_stuck, marker_stuck, no_push, trocar_moved},
+};
+use crate::language::{Text, told, word};
+
+/// Cause and cure of a point that failed, on a rig with these devices.
+pub(crate) fn cause_words(cause: &Cause, roster: &Roster) -> [String; 2] {
+    let words: [Text; 2] = match *cause {
+        Cause::Missing { place } => return missing(place, roster),
+        Cause::Found { place, ref finding } => return found(place, finding, roster),
+        Cause::BiasUnseen(why) => return bias_unseen(why),
+        Cause::OtherFault(fault) => return other_fault(fault),
+        Cause::Refused(why) => return refused(why),
+        Cause::Missed { share } => return missed(share),
+        Cause::LoopClock { by_s } => return clocks_apart(by_s),
+        Cause::BiasMoved { by_n, limit_n } => return bias_moved(by_n, limit_n),
+        Cause::Exchanged(exchange) => return exchanged(exchange),
+        Cause::ArmStuck { by_m } => return arm_stuck(by_m),
+        Cause::MarkerStuck { by_m } => return marker_stuck(by_m),
+        Cause::NoPush { most_n } => return no_push(most_n),
+        Cause::PushAskew { by_deg } => return askew(by_deg),
+        Cause::HandlePulls { by_m } => return handle_pulls(by_m),
+        Cause::HandleForce { force_n } | Cause::Force { force_n } => return unwanted_force(force_n),
+        Cause::HandleStuck { by_m } => return handle_stuck(by_m),
+        Cause::HandleAskew { by_deg } => return handle_askew(by_deg),
+        Cause::BesideTrocar { miss_m } => return beside(miss_m),
+        Cause::TrocarMoved { by_m } => return trocar_moved(by_m),
+        Cause::OtherCeiling { in_force_n, in_file_n } => return other_ceiling(in_force_n, in_file_n),
+        Cause::HalfStop(side) => return half_stop(side),
+        Cause::LateBite { after_s } => return late(after_s),
+        Cause::Engaged(side) => return engaged(side),
+        Cause::NoGauges => NO_GAUGES,
+        Cause::NoTicks => NO_TICKS,
+        Cause::DateBehind => DATE_BEHIND,
+        Cause::Uncalibrated => UNCALIBRATED,
+        Cause::NoRigFile => NO_RIG_FILE,
+        Cause::NoStop => [Text::of("No stop was seen", "No stop was seen"), STOP_CURE],
+        Cause::NotReleased(why) => return not_released(why),
+        Cause::NoBite(Watchdog::Loop) => NO_BITE_LOOP,
+        Cause::NoBite(Watchdog::Source) => NO_BITE_SOURCE,
+        Cause::NoBite(Watchdog::Link) => NO_BITE_LINK,
+    };
+    words.map(|words| words.get().to_owned())
+}
+
+const NO_GAUGES: [Text; 2] = [
+    Text::of("The devices delivered no figures", "The devices delivered no figures"),
+    Text::of("See the panel Devices, then check again", "See the panel Devices, then check again"),
+];
+
+const NO_TICKS: [Text; 2] = [
+    Text::of("The control loop sends nothing", "The control loop sends nothing"),
+    Text::of("Start the console again", "Start the console again"),
+];
+
+const DATE_BEHIND: [Text; 2] = [
+    Text::of("A calibration is dated in the future", "A calibration is dated in the future"),
+    Text::of("Set this computer's date and time", "Set this computer's date and time"),
+];
+
+const UNCALIBRATED: [Text; 2] = [
+    Text::of(
+        "There is no gravity calibration for this sensor and tool",
+        "There is no gravity calibration for this sensor and tool",
+    ),
+    Text::of("Calibrate gravity, then check again", "Calibrate gravity, then check again"),
+];
+
+const NO_RIG_FILE: [Text; 2] = [
+    Text::of("The rig file cannot be read", "The rig file cannot be read"),
+    Text::of(
+        "Put the rig file back, then start the console again",
+        "Put the rig file back, then start the console again",
+    ),
+];
+
+const NO_BITE_LOOP: [Text; 2] = [
+    Text::of(
+        "The loop was silent on purpose, and the supervisor did nothing",
+        "The loop was silent on purpose, and the supervisor did nothing",
+    ),
+    Text::of("Do not engage; start the console again", "Do not engage; start the console again"),
+];
+
+const NO_BITE_SOURCE: [Text; 2] = [
+    Text::of(
+        "Measurements were withheld on purpose, and no fault came",
+        "Measurements were withheld on purpose, and no fault came",
+    ),
+    Text::of("Do not engage; start the console again", "Do not engage; start the console again"),
+];
+
+const NO_BITE_LINK: [Text; 2] = [
+    Text::of("The link was silent on purpose, and no fault came", "The link was silent on purpose, and no fault came"),
+    Text::of("Do not engage; start the console again", "Do not engage; start the console again"),
+];
+
+/// Another fault than the one that was to come.
+fn other_fault(fault: Fault) -> [String; 2] {
+    [told!("Another fault was raised: {}", "Another fault was raised: {}", fault.cause()), fault.cure().to_owned()]
+}
+
+/// The loop did not do what the check asked for.
+fn refused(why: Refusal) -> [String; 2] {
+    [
+        told!("The loop refused the test: {}", "The loop refused the test: {}", refused_because(why)),
+        capital(cure_of_refusal(why)),
+    ]
+}
+
+/// Too many periods were missed.
+fn missed(share: f64) -> [String; 2] {
+    with(
+        told!("{:.1} % of the periods were missed", "{:.1} % of the periods were missed", 100.0 * share),
+        CLOSE_PROGRAMS.get(),
+    )
+}
+
+/// Two clocks do not agree.
+fn clocks_apart(by_s: f64) -> [String; 2] {
+    with(
+        told!(
+            "The loop's clock and this computer's went apart by {by_s:.2} s",
+            "The loop's clock and this computer's went apart by {by_s:.2} s"
+        ),
+        CLOSE_PROGRAMS.get(),
+    )
+}
+
+/// The sensor reads a force where there is none.
+fn bias_moved(by_n: f64, limit_n: f64) -> [String; 2] {
+    with(
+        told!(
+            "{by_n:.2} N remain at rest, more than {limit_n:.2} N",
+            "{by_n:.2} N remain at rest, more than {limit_n:.2} N"
+        ),
+        word(
+            "Make sure that nothing touches the tool; if it stays, calibrate gravity again",
+            "Make sure that nothing touches the tool; if it stays, calibrate gravity again",
+        ),
+    )
+}
+
+/// A force at a time without force.
+fn unwanted_force(force_n: f64) -> [String; 2] {
+    with(
+        told!(
+            "A force of {force_n:.2} N was asked for where there must be none",
+            "A force of {force_n:.2} N was asked for where there must be none"
+        ),
+        word(
+            "Do not engage; report this with the record of the check",
+            "Do not engage; report this with the record of the check",
+        ),
+    )
+}
+
+/// The loop and the rig file differ.
+fn other_ceiling(in_force_n: f64, in_file_n: f64) -> [String; 2] {
+    with(
+        told!(
+            "The largest force is {in_force_n:.2} N; the rig file says {in_file_n:.2} N",
+            "The largest force is {in_force_n:.2} N; the rig file says {in_file_n:.2} N"
+        ),
+        word(
+            "Start the console again, so that the rig file is in force",
+            "Start the console again, so that the rig file is in force",
+        ),
+    )
+}
+
+/// One arm went on.
+fn half_stop(side: Side) -> [String; 2] {
+    with(
+        told!("The {} arm did not stop with the other one", "The {} arm did not stop with the other one", side.word()),
+        STOP_CURE.get(),
+    )
+}
+
+/// A watchdog took too long.
+fn late(after_s: f64) -> [String; 2] {
+    with(
+        told!("The fault came after {after_s:.2} s, too late", "The fault came after {after_s:.2} s, too late"),
+        CLOSE_PROGRAMS.get(),
+    )
+}
+
+/// Somebody engaged an arm.
+fn engaged(side: Side) -> [String; 2] {
+    with(
+        told!("The {} arm was engaged during the check", "The {} arm was engaged during the check", side.word()),
+        word("Let both arms rest, then check again", "Let both arms rest, then check again"),
+    )
+}
+
+fn not_released(why: Option<Refusal>) -> [String; 2] {
+    let Some(why) = why else {
+        return with(
+            word("The stop or the fault was not released in time", "The stop or the fault was not released in time")
+                .to_owned(),
+            word("Press Release stop, then check again", "Press Release stop, then check again"),
+        );
+    };
+    [
+        told!("The release was refused: {}", "The release was refused: {}", refused_because(why)),
+        capital(cure_of_refusal(why)),
+    ]
+}
+
+const CLOSE_PROGRAMS: Text = Text::of(
+    "Close other programs or grant real-time priority (panel Timing), then check again",
+    "Close other programs or grant real-time priority (panel Timing), then check again",
+);
+const STOP_CURE: Text = Text::of(
+    "Do not engage; check the key, the pedal or the button with which you stop",
+    "Do not engage; check the key, the pedal or the button with which you stop",
+);
+
+fn name(place: usize, roster: &Roster) -> &str {
+    roster.get(place).map_or(word("a device", "a device"), |entry| entry.name.as_str())
+}
+
+fn missing(place: usize, roster: &Roster) -> [String; 2] {
+    let trouble = roster.get(place).and_then(|entry| entry.view.report().trouble);
+    let name = name(place, roster);
+    match trouble {
+        Some(trouble) => {
+            [told!("The {name} is not there: {trouble}", "The {name} is not there: {trouble}"), trouble.cure()]
+        }
+        None => with(
+            told!("The {name} is not there, or does not stay", "The {name} is not there, or does not stay"),
+            word("Check plug, cable and power; see Devices", "Check plug, cable and power; see Devices"),
+        ),
+    }
+}
+
+fn found(place: usize, finding: &nima_machine::rig::checkup::Finding, roster: &Roster) -> [String; 2] {
+    let kind = roster.get(place).and_then(|entry| entry.part).map(nima_machine::rig::Part::kind);
+    let Some(kind) = kind else {
+        return with(
+            word("A device is not in order", "A device is not in order").to_owned(),
+            word("See the panel Devices", "See the panel Devices"),
+        );
+    };
+    let [cause, cure] = finding_words(kind, finding);
+    [format!("{}: {cause}", capital(name(place, roster))), cure]
+}
+
+fn bias_unseen(why: NotChecked) -> [String; 2] {
+    let [why, cure] = match why {
+        NotChecked::NoSample => [
+            word("no data from the sensor", "no data from the sensor"),
+            word(
+                "Check the sensor's cable and the arm, then check again",
+                "Check the sensor's cable and the arm, then check again",
+            ),
+        ],
+        NotChecked::Moving => [
+            word("the tool moved", "the tool moved"),
+            word("Let the tool hang still, then check again", "Let the tool hang still, then check again"),
+        ],
+        NotChecked::Touched => [
+            word("something touched the tool", "something touched the tool"),
+            word(
+                "Take away what touches the tool, then check again",
+                "Take away what touches the tool, then check again",
+            ),
+        ],
+        NotChecked::InTrocar => [
+            word("the instrument was in the trocar", "the instrument was in the trocar"),
+            word(
+                "Take the instrument out of the trocar, then check again",
+                "Take the instrument out of the trocar, then check again",
+            ),
+        ],
+        NotChecked::Engaged => [
+            word("the arm was engaged", "the arm was engaged"),
+            word("Let both arms rest, then check again", "Let both arms rest, then check again"),
+        ],
+    };
+    [told!("The bias could not be looked at: {why}", "The bias could not be looked at: {why}"), cure.to_owned()]
+}
+
+fn askew(by_deg: f64) -> [String; 2] {
+    let what = if by_deg > 150.0 {
+        word("its sign is wrong", "its sign is wrong")
+    } else {
+        word("its axes are wrong, or the push was", "its axes are wrong, or the push was")
+    };
+    with(
+        told!(
+            "The push was measured {by_deg:.0} degrees off: {what}",
+            "The push was measured {by_deg:.0} degrees off: {what}"
+        ),
+        word(
+            "Repeat the push in the direction asked for; if it stays, calibrate the sensor's mount and gravity again",
+            "Repeat the push in the direction asked for; if it stays, calibrate the sensor's mount and gravity again",
+        ),
+    )
+}
+
+fn beside(miss_m: f64) -> [String; 2] {
+    let cause = if miss_m.is_finite() {
+        told!(
+            "The shaft passes the trocar at {:.0} mm; {:.0} mm would be in it",
+            "The shaft passes the trocar at {:.0} mm; {:.0} mm would be in it",
+            1e3 * miss_m,
+            1e3 * START_MISS_M
+        )
+    } else {
+        word("The instrument is not through its trocar", "The instrument is not through its trocar").to_owned()
+    };
+    with(
+        cause,
+        word(
+            "Put the instrument through its trocar; if it is, the trocar has moved: calibrate the trocar",
+            "Put the instrument through its trocar; if it is, the trocar has moved: calibrate the trocar",
+        ),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::rig::Exchange;
+
+    use super::*;
+
+    #[test]
+    fn no_sentence_ends_with_a_full_stop_and_each_cause_says_what_to_do() {
+        let causes = [
+            Cause::Missing { place: 0 },
+            Cause::Missed { share: 0.02 },
+            Cause::DateBehind,
+            Cause::BiasMoved { by_n: 0.5, limit_n: 0.2 },
+            Cause::BiasUnseen(NotChecked::Touched),
+            Cause::NoPush { most_n: 0.1 },
+            Cause::Exchanged(Exchange::Handles),
+            Cause::Exchanged(Exchange::Arms),
+            Cause::Exchanged(Exchange::Sensors),
+            Cause::Exchanged(Exchange::Servos),
+            Cause::Exchanged(Exchange::Markers),
+            Cause::Exchanged(Exchange::Trocars),
+            Cause::ArmStuck { by_m: 0.0 },
+            Cause::MarkerStuck { by_m: 0.0 },
+            Cause::PushAskew { by_deg: 178.0 },
+            Cause::PushAskew { by_deg: 88.0 },
+            Cause::HandlePulls { by_m: 0.01 },
+            Cause::HandleStuck { by_m: 0.0 },
+            Cause::HandleAskew { by_deg: 90.0 },
+            Cause::BesideTrocar { miss_m: f64::INFINITY },
+            Cause::BesideTrocar { miss_m: 0.012 },
+            Cause::TrocarMoved { by_m: 0.003 },
+            Cause::OtherCeiling { in_force_n: 4.0, in_file_n: 3.0 },
+            Cause::NoStop,
+            Cause::HalfStop(Side::Left),
+            Cause::NoBite(Watchdog::Loop),
+            Cause::NoBite(Watchdog::Source),
+            Cause::NoBite(Watchdog::Link),
+            Cause::Engaged(Side::Right),
+        ];
+        let mut told: Vec<_> = causes.iter().map(|cause| cause_words(cause, &Roster::new())).collect();
+        assert!(told.iter().flatten().all(|words| !words.is_empty() && !words.ends_with('.')), "{told:?}");
+        told.sort();
+        told.dedup();
+        assert_eq!(told.len(), causes.len(), "no two say the same");
+        assert!(told.iter().any(|[cause, _]| cause.contains("sign is wrong")));
+    }
+}

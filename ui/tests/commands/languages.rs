@@ -1,0 +1,122 @@
+//! Every text of the window stands in English and German side by side. The compiler asks for both; this test reads the sources and asks
+//! whether the German is German.
+
+use std::path::{Path, PathBuf};
+
+use crate::words::{has_words, literals, sources};
+
+/// Texts that are the same in both languages: names, abbreviations, terms that German engineers use as they are.
+const SAME: [&str; 0] = [];
+
+/// What begins a pair of literals.
+const BEGINNINGS: [&str; 3] = ["Text::of(", "word(", "told!("];
+
+/// The pairs in a source, with continued literals in one.
+pub(crate) fn pairs(source: &str) -> Vec<[String; 2]> {
+    let mut pairs = Vec::new();
+    for beginning in BEGINNINGS {
+        for (at, _) in source.match_indices(beginning) {
+            let is_within_a_name = source[..at].ends_with(|letter: char| letter.is_alphanumeric() || letter == '_');
+            let rest = &source[at + beginning.len()..];
+            if let (false, Some((english, rest))) = (is_within_a_name, literal(rest)) {
+                let rest = rest.trim_start().strip_prefix(',').unwrap_or_default();
+                let (german, _) = literal(rest).unwrap_or_else(|| panic!("no German beside \"{english}\""));
+                pairs.push([english, german]);
+            }
+        }
+    }
+    pairs
+}
+
+/// The literal at the beginning of this, and what comes after it.
+fn literal(source: &str) -> Option<(String, &str)> {
+    let rest = source.trim_start().strip_prefix('"')?;
+    let mut escaped = false;
+    let end = rest.find(|letter: char| {
+        let ends = letter == '"' && !escaped;
+        escaped = letter == '\\' && !escaped;
+        ends
+    })?;
+    let lines: Vec<&str> = rest[..end].split("\\\n").collect();
+    let joined = lines.iter().enumerate().map(|(i, line)| if i == 0 { line } else { line.trim_start() });
+    Some((joined.collect(), &rest[end + 1..]))
+}
+
+/// The modules of texts, without their tests.
+fn modules() -> Vec<(PathBuf, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files: Vec<PathBuf> = Vec::new();
+    for folder in ["console/text", "words"] {
+        sources(&root.join(folder), &mut files);
+    }
+    files.sort();
+    let read = |path: PathBuf| {
+        let source = std::fs::read_to_string(&path).unwrap();
+        let source = source.split("#[cfg(test)]\nmod tests").next().unwrap_or_default().to_owned();
+        (path, source)
+    };
+    files.into_iter().map(read).collect()
+}
+
+fn all_pairs() -> Vec<[String; 2]> {
+    let all: Vec<_> = modules().iter().flat_map(|(_, source)| pairs(source)).collect();
+    assert!(all.len() > 2000, "{} found", all.len());
+    all
+}
+
+/// What stands between braces, in the order of the alphabet.
+fn values(text: &str) -> Vec<String> {
+    let plain = text.replace("{{", "").replace("}}", "");
+    let mut values: Vec<String> =
+        plain.split('{').skip(1).map(|part| part.split('}').next().unwrap_or_default().to_owned()).collect();
+    values.sort();
+    values
+}
+
+#[test]
+fn no_text_is_left_in_english() {
+    let wrong: Vec<_> = all_pairs()
+        .into_iter()
+        .filter(|[english, german]| english == german && has_words(english) && !SAME.contains(&english.as_str()))
+        .collect();
+    assert!(wrong.is_empty(), "translate these, or list them if they are the same on purpose: {wrong:#?}");
+}
+
+#[test]
+fn what_is_listed_as_the_same_is_the_same_and_there() {
+    let all = all_pairs();
+    let stale: Vec<_> =
+        SAME.iter().filter(|same| !all.iter().any(|[english, german]| english == *same && german == *same)).collect();
+    assert!(stale.is_empty(), "{stale:?}");
+}
+
+#[test]
+fn both_languages_tell_the_same_values() {
+    let wrong: Vec<_> = all_pairs().into_iter().filter(|[english, german]| values(english) != values(german)).collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// A text with one language compiles where it is no pair at all.
+#[test]
+fn every_text_with_words_is_a_pair() {
+    let mut wrong = Vec::new();
+    for (path, source) in modules() {
+        let plain = |text: &str| text.replace("\\\"", "").replace('\\', "");
+        let known: Vec<String> = pairs(&source).concat().iter().map(|text| plain(text)).collect();
+        for text in literals(&source) {
+            let text = plain(&text);
+            let is_known = known.iter().any(|known| known.contains(text.trim()));
+            if has_words(&text) && !is_known {
+                wrong.push((path.display().to_string(), text));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn a_pair_is_read_with_its_continued_lines() {
+    let source = "let a = Text::of(\n    \"one \\\n     line\",\n    \"eine \\\"Zeile\\\"\",\n); fn told!(x: u8) {} sword(\"no\");";
+    assert_eq!(pairs(source), [["one line".to_owned(), "eine \\\"Zeile\\\"".to_owned()]]);
+    assert_eq!(values("{a:.1} of {} {{x}}"), ["", "a:.1"]);
+}

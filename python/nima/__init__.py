@@ -33,6 +33,7 @@ from ._identification import (
 )
 from ._session import Event, Session, Ticks
 from ._tip_force import Estimates, TipForce, TipForceModel
+from ._watching import ArmNow, Now, Watching, watch
 
 try:
     __version__ = _version("nima-haptics")
@@ -42,6 +43,7 @@ except PackageNotFoundError:  # not installed: run from the source
 __all__ = [
     "GATES",
     "MODES",
+    "ArmNow",
     "CorrespondenceReport",
     "Environment",
     "ErrorFigures",
@@ -50,15 +52,18 @@ __all__ = [
     "Figures",
     "GravityReport",
     "Identification",
+    "Now",
     "Parcels",
     "Recording",
     "Session",
     "Ticks",
     "TipForce",
     "TipForceModel",
+    "Watching",
     "fit_correspondence",
     "fit_gravity",
     "identify",
     "read_recording",
     "remove_gravity",
+    "watch",
 ]

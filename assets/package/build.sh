@@ -5,6 +5,9 @@
 #   ./dev package --sizes   what the program is made of
 # shellcheck shell=bash
 
+# shellcheck source=assets/package/windows.sh
+source assets/package/windows.sh
+
 package_target=x86_64-unknown-linux-gnu
 package_tools=(binutils dpkg python3 python3-venv xz-utils zstd)
 zig_version=0.15.2
@@ -35,27 +38,37 @@ fetch_zig() {
   export NIMA_ZIG ZIG_GLOBAL_CACHE_DIR=$1/zig-cache ZIG_LOCAL_CACHE_DIR=$1/zig-cache
 }
 
-# The program with its symbols, built from this folder. No path of this computer gets into it.
+# What the compiler is told, one a line. No path of this computer gets into the program.
+package_flags() {
+  local target=$1 registry=${CARGO_HOME:-$HOME/.cargo}
+  printf '%s\n' "--remap-path-prefix=$registry=/cargo" "--remap-path-prefix=$PWD=/nima" "--remap-path-prefix=$target=/target"
+}
+
+# The program with its symbols, built from this folder.
 build_program() {
-  local target=$1 registry=${CARGO_HOME:-$HOME/.cargo} flags
-  flags=(-Clinker=nima-linker -Clinker-features=-lld "--remap-path-prefix=$registry=/cargo" "--remap-path-prefix=$PWD=/nima"
-    "--remap-path-prefix=$target=/target")
+  local target=$1 flags=(-Clinker=nima-linker -Clinker-features=-lld)
+  mapfile -t -O 2 flags < <(package_flags "$target")
   PATH=$PWD/assets/package:$PATH CARGO_ENCODED_RUSTFLAGS=$(IFS=$'\x1f'; printf '%s' "${flags[*]}") CARGO_TARGET_DIR=$target CARGO_INCREMENTAL=0 \
     timed cargo build --locked --profile packages --target "$package_target" -p nima-console --bin nima
 }
 
 # SBOM, licence texts and the list of crates of the program for a kind of system.
 take_inventory() {
-  local target=$1 out=$2 system=$3 zig sysroot
+  local target=$1 out=$2 system=$3 zig sysroot also
   zig=$(dirname "$NIMA_ZIG") sysroot=$(rustc --print sysroot)
+  case $system in
+    *windows*) also=(--also "mingw-w64's start code|MIT|/usr/share/doc/mingw-w64-common/copyright"
+      --also "GCC's unwinder and run-time functions|GPL-3.0-or-later WITH GCC-exception-3.1|/usr/share/doc/gcc-mingw-w64-base/copyright") ;;
+    *) also=(--also "LLVM's unwinder and run-time functions|Apache-2.0 WITH LLVM-exception|$zig/lib/libcxxabi/LICENSE.TXT"
+      --also "zig's linker scripts and start code|MIT|$zig/LICENSE") ;;
+  esac
   mkdir -p "$out"
   cargo metadata --locked --format-version 1 --filter-platform "$system" >"$target/metadata.json"
   cargo tree --locked -p nima-console --edges normal,no-proc-macro --target "$system" --prefix none | sed 's/ (\*)$//' | sort -u >"$target/tree.txt"
   python3 assets/package/inventory.py --metadata "$target/metadata.json" --tree "$target/tree.txt" --lock Cargo.lock --standard LICENSE-APACHE \
     --also "Roboto, the fonts of the screen|Apache-2.0|assets/fonts/Roboto-LICENSE.txt" \
     --also "Rust's standard library|MIT OR Apache-2.0|$sysroot/share/doc/rust/COPYRIGHT-library.html" \
-    --also "LLVM's unwinder and run-time functions|Apache-2.0 WITH LLVM-exception|$zig/lib/libcxxabi/LICENSE.TXT" \
-    --also "zig's linker scripts and start code|MIT|$zig/LICENSE" \
+    "${also[@]}" \
     --epoch "$SOURCE_DATE_EPOCH" --out "$out"
 }
 
@@ -170,6 +183,7 @@ make_packages() {
     stage "$target/stage-rpm" "$program" "$inventory" zsh/site-functions
     make_rpm "$target/stage-rpm" "$out" "$target"
   fi
+  [ -n "$(windows_lacks)" ] || make_windows "$target" "$out"
   cp "$inventory/sbom.cdx.json" "$out/nima-console-$version.cdx.json"
   (cd "$out" && sha256sum -- *) >"$target/SHA256SUMS"
   mv "$target/SHA256SUMS" "$out/"
@@ -197,7 +211,8 @@ package() {
   case $what in '' | --twice | --try | --sizes) ;; *) say "give nothing, --twice, --try or --sizes"; exit 2 ;; esac
   need_cargo
   need "${build_packages[@]}" "${package_tools[@]}" || exit 1
-  need rpm || true
+  need rpm "${windows_tools[@]}" || true
+  fetch_windows_target
   version=$(package_version) out=$target/packages
   SOURCE_DATE_EPOCH=$(package_epoch)
   export SOURCE_DATE_EPOCH LC_ALL=C.UTF-8 TZ=UTC
@@ -210,7 +225,7 @@ package() {
   # Not by `timed`, in which a failure would not end this.
   make_packages "$target/package-build" "$out"
   command -v rpmbuild >/dev/null || leave_out ".rpm: rpmbuild is missing (Debian's package rpm)"
-  leave_out "Windows: not built (docs/installing.md, Laboratory notes)"
+  [ -z "$(windows_lacks)" ] || leave_out "Windows: $(windows_lacks)"
   leave_out "macOS and 64-bit ARM: not built, nothing here could run them"
   case $what in
     --twice) make_packages_again "$target/tools" "$out" ;;

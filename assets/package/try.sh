@@ -10,6 +10,7 @@ try_packages() {
   need "${try_tools[@]}" || true
   judge_files "$out" "$deb" || failed=1
   judge_rpm "$rpm" || failed=1
+  try_windows "$out" "$deb" || { say "FAILED: Windows"; failed=1; }
   if [ "$(id -u)" -ne 0 ] || ! command -v debootstrap >/dev/null; then
     leave_out "not tried in ${try_suites[*]}: that needs root and debootstrap"
     return $failed
@@ -17,7 +18,7 @@ try_packages() {
   for suite in "${try_suites[@]}"; do
     try_in "$suite" "$deb" "$rpm" "$archive" || { say "FAILED: Debian $suite"; failed=1; }
   done
-  leave_out "not tried on a Fedora, RHEL or openSUSE system: no root of one can be made from Debian's archive; the .rpm was installed by rpm in a Debian root"
+  leave_out "not tried on a Fedora, RHEL or openSUSE system: their archives are not Debian's, from which the roots here come; the .rpm was installed by rpm in a Debian root"
   leave_out "not tried on a real screen or with real devices"
   return $failed
 }
@@ -176,4 +177,55 @@ try_rpm() {
   say "installed from .rpm: $(grep -o '"final_state": "[a-z]*"' "$target/try-rpm.json"), group $(grep '^realtime:' "$root/etc/group")"
   rpm --root "$root" --dbpath /var/lib/rpm --nodeps --erase nima-console || return
   nothing_left "$root"
+}
+
+# The packages for Windows under wine: what Windows itself does is not known by that.
+try_windows() {
+  local out=$1 deb=$2 work=$target/try-windows status=0
+  [ -e "$(echo "$out"/*-windows.zip)" ] || return 0
+  if ! command -v wine >/dev/null && ! need wine wine64; then
+    leave_out "the packages for Windows were not tried: wine is missing"
+    return 0
+  fi
+  rm -rf "$work"
+  mkdir -p "$work"
+  walk_through_windows "$out" "$deb" "$work" || status=1
+  in_wine "$work" wineserver --kill || true
+  rm -rf "$work"
+  leave_out "the packages for Windows were not tried on Windows, only under wine, and no window was opened there"
+  return $status
+}
+
+# Without a display, and without asking for what wine would fetch.
+in_wine() {
+  local work=$1
+  shift
+  (cd "$work" && env -u DISPLAY WINEPREFIX="$work/wine" WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml=' timeout 300 "$@")
+}
+
+walk_through_windows() {
+  local out=$1 deb=$2 work=$3 nima installed
+  in_wine "$work" wine wineboot --init || return
+  python3 -m zipfile -e "$out"/*-windows.zip "$work" || return
+  nima=$(echo "$work"/nima-console-*-windows/nima.exe)
+  say "wine: $(in_wine "$work" wine "$nima" --version | tr -d '\r')"
+  in_wine "$work" wine "$nima" devices || return
+  in_wine "$work" wine "$nima" run --virtual --seconds 10 --record session.mcap --json >"$target/try-windows.json" || return
+  in_wine "$work" wine "$nima" export session.mcap --out wine.csv >/dev/null || return
+  # The same ticks as on Linux, to the last bit.
+  dpkg-deb --extract "$deb" "$work/linux" || return
+  (cd "$work" && linux/usr/bin/nima run --virtual --seconds 10 --record linux.mcap --json >/dev/null && linux/usr/bin/nima export linux.mcap --out linux.csv >/dev/null) || return
+  if ! cmp "$work/wine.csv" "$work/linux.csv"; then
+    say "the same simulation differs between the programs for Windows and Linux"
+    return 1
+  fi
+  say "wine: $(grep -o '"final_state": "[a-z]*"' "$target/try-windows.json"); its table of $(wc -l <"$work/wine.csv") lines is that of the program for Linux"
+  in_wine "$work" wine "$out"/*-windows-setup.exe /S || return
+  installed=$(find "$work/wine" -path '*/Programs/NIMA Console/nima.exe')
+  say "wine, installed by the installer: $(in_wine "$work" wine "$installed" --version | tr -d '\r')"
+  in_wine "$work" wine "${installed%/*}/uninstall.exe" /S || return
+  # It goes on from a copy of itself.
+  sleep 5
+  installed=$(find "$work/wine" -path '*NIMA Console*' ! -path '*/AppData/*/nima-console/*')
+  [ -z "$installed" ] || { say "left behind: $installed"; return 1; }
 }

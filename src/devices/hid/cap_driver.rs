@@ -33,6 +33,7 @@ impl Default for CapSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wire {
     Reports,
+    #[cfg_attr(not(unix), expect(dead_code, reason = "the daemon is reached by a UNIX socket"))]
     Spacenavd,
 }
 

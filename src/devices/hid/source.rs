@@ -52,6 +52,7 @@ impl HidIdentity {
         format!("{HELLO} {:04x}:{:04x} {serial} {}", self.vendor, self.product, self.name)
     }
 
+    #[cfg(any(target_os = "linux", test))]
     pub(super) fn of_hello(packet: &[u8]) -> Option<Self> {
         let text = std::str::from_utf8(packet).ok()?;
         let mut words = text.splitn(4, ' ');

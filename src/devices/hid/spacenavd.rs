@@ -4,6 +4,7 @@
 //! ...]` for press, `[2, button, ...]` for release. The daemon's axes are x right, y up, z away from the user (its
 //! default map), full deflection about 350 at sensitivity 1. Events arrive only on changes.
 
+#[cfg(unix)]
 use std::{
     io::{ErrorKind, Read as _, Write as _},
     path::Path,
@@ -12,6 +13,7 @@ use std::{
 use nalgebra::Vector3;
 
 use super::cap_codec::{BadReport, CapState, FULL};
+#[cfg(unix)]
 use crate::{Loss, Trouble, transport::Datagrams};
 
 /// The daemon's default socket.

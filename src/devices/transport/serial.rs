@@ -8,6 +8,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
+#[cfg(unix)]
 use serialport::SerialPort as _;
 
 use super::Bytes;

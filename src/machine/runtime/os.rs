@@ -1,5 +1,8 @@
 //! Real-time scheduling, memory locking and sleeping until a deadline: the only system calls of this crate.
-#![expect(unsafe_code, reason = "scheduling, memory locking and absolute sleep have no safe interface in std")]
+#![cfg_attr(
+    target_os = "linux",
+    expect(unsafe_code, reason = "scheduling, memory locking and absolute sleep have no safe interface in std")
+)]
 
 use crate::{config::SchedulingClass, messages::Scheduling};
 

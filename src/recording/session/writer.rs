@@ -387,6 +387,7 @@ fn create(path: &Path, library: &str, growth: u64, summary: &Summary) -> io::Res
         return Err(io::Error::new(ErrorKind::AlreadyExists, "something of this name is there"));
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    #[cfg_attr(not(unix), expect(unused_mut, reason = "rights are set where there are any"))]
     let mut new = tempfile::Builder::new();
     #[cfg(unix)]
     new.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));

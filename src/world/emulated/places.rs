@@ -24,6 +24,7 @@ pub(super) fn port(device: &str, address: &str, usual: u16) -> Result<u16, Emula
 }
 
 /// The path of a pedal's `emulated:PATH`.
+#[cfg(any(target_os = "linux", test))]
 pub(super) fn pedal<'a>(device: &str, source: &'a str) -> Result<&'a str, EmulatedRigError> {
     let path = source.strip_prefix("emulated:").filter(|path| !path.is_empty());
     path.ok_or_else(|| wrong(device, source, "it must be emulated:PATH"))

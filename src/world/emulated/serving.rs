@@ -11,7 +11,9 @@ use std::{
 
 use nalgebra::Vector3;
 use nima_core::frames::Wrench;
-use nima_devices::{ForceReading, PedalReading, Tracked, bota, dynamixel, force_dimension, hid, kinova, ndi};
+#[cfg(target_os = "linux")]
+use nima_devices::PedalReading;
+use nima_devices::{ForceReading, Tracked, bota, dynamixel, force_dimension, hid, kinova, ndi};
 use nima_machine::rig::{ArmSet, EndoscopeSettings, SIDES, SensorSettings, Settings, Side};
 
 use super::{EmulatedDevice, EmulatedRigError, Shared, SideWorld, places};

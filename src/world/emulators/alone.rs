@@ -38,6 +38,7 @@ impl Settings {
     }
 
     /// One of two models by its name; the first without one.
+    #[cfg(target_os = "linux")]
     pub(super) fn model<T: Default>(&self, names: [(&str, T); 2]) -> Result<T> {
         let Some(name) = self.get::<String>("model")? else { return Ok(T::default()) };
         let known = names.each_ref().map(|(known, _)| *known).join(" or ");

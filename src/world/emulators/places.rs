@@ -5,6 +5,7 @@
 //! accepts.
 
 use std::io::{Error, ErrorKind, Result};
+#[cfg(unix)]
 use std::path::{Path, PathBuf};
 
 /// A port that was asked for: when another program has it, the error says so and what to do.
@@ -22,6 +23,7 @@ pub(super) fn taken<T>(port: u16, protocol: &str, bound: Result<T>) -> Result<T>
 }
 
 /// `path`, its folder made; without one, `name` in a folder of its own, which goes with the second value.
+#[cfg(unix)]
 fn path_of(path: Option<&Path>, name: &str) -> Result<(PathBuf, Option<tempfile::TempDir>)> {
     let Some(path) = path else {
         let folder = tempfile::Builder::new().prefix("nima-").tempdir()?;
@@ -33,11 +35,13 @@ fn path_of(path: Option<&Path>, name: &str) -> Result<(PathBuf, Option<tempfile:
     Ok((path.to_owned(), None))
 }
 
+#[cfg(unix)]
 fn foreign(path: &Path) -> Error {
     let told = format!("{} is no emulator's: take another place, or remove it", path.display());
     Error::new(ErrorKind::AlreadyExists, told)
 }
 
+#[cfg(unix)]
 fn served(path: &Path) -> Error {
     let told = format!("{} is served by another emulator: end it, or take another place", path.display());
     Error::new(ErrorKind::AddrInUse, told)
@@ -59,8 +63,10 @@ pub(super) fn socket_path(path: Option<&Path>, name: &str) -> Result<(PathBuf, O
     Ok((path, folder))
 }
 
+#[cfg(unix)]
 pub(super) use terminal::TerminalName;
 
+#[cfg(unix)]
 mod terminal {
     use std::{
         fs::{self, File, TryLockError},

@@ -4,15 +4,30 @@ mod connections;
 mod datagrams;
 #[cfg(target_os = "linux")]
 mod paths;
+#[cfg(unix)]
 mod terminal;
 
-use std::{io, net::SocketAddr, os::fd::RawFd, time::Duration};
+#[cfg(unix)]
+use std::os::fd::RawFd;
+use std::{io, net::SocketAddr, time::Duration};
 
 pub(super) use connections::{tcp, tcp_for_one};
 pub(super) use datagrams::udp;
 #[cfg(target_os = "linux")]
 pub(super) use paths::socket;
+#[cfg(unix)]
 pub(super) use terminal::terminal;
+
+/// Other systems have no pseudo-terminals.
+///
+/// # Errors
+/// Always.
+#[cfg(not(unix))]
+pub(super) fn terminal(_: Option<&std::path::Path>, name: &str, _: Option<u32>) -> io::Result<Box<dyn End>> {
+    let told =
+        format!("{name}: this system has no pseudo-terminals, so serial lines are emulated on Linux and macOS only");
+    Err(io::Error::new(io::ErrorKind::Unsupported, told))
+}
 
 /// Who is at the other end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +70,7 @@ pub trait End: Send {
         None
     }
     /// Adds what is readable when something arrives.
+    #[cfg(unix)]
     fn watch(&self, admits: bool, watched: &mut Vec<RawFd>);
 }
 
@@ -62,6 +78,7 @@ pub trait End: Send {
 pub(super) const ARRIVALS: usize = 64;
 
 /// Waits until something arrives at one of the ends, at most this long.
+#[cfg(unix)]
 #[expect(unsafe_code, reason = "std waits for one descriptor only")]
 pub(super) fn wait(ends: &[Box<dyn End>], longest: Duration, admits: bool) {
     let mut watched = Vec::new();
@@ -82,4 +99,14 @@ pub(super) fn wait(ends: &[Box<dyn End>], longest: Duration, admits: bool) {
     unsafe {
         libc::poll(first, count, longest.as_millis() as libc::c_int);
     }
+}
+
+/// Between two looks at the ends where the system cannot wait for all of them.
+#[cfg(not(unix))]
+const LOOK: Duration = Duration::from_millis(1);
+
+/// Waits, at most this long: the ends are looked at again soon.
+#[cfg(not(unix))]
+pub(super) fn wait(_: &[Box<dyn End>], longest: Duration, _: bool) {
+    std::thread::sleep(longest.min(LOOK));
 }

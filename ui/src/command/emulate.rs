@@ -10,18 +10,18 @@ mod link;
 #[cfg(unix)]
 mod rig;
 
-use std::{
-    io::{BufRead as _, IsTerminal as _},
-    sync::mpsc::RecvTimeoutError,
-    time::Duration,
-};
+#[cfg(unix)]
+use std::io::IsTerminal as _;
+use std::{io::BufRead as _, sync::mpsc::RecvTimeoutError, time::Duration};
 
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_world::emulators::{ALONE, EmulatedFault, Serving, Settings};
 use serde::Serialize;
 
-use super::{output, setup::default_scene};
+use super::output;
+#[cfg(unix)]
+use super::setup::default_scene;
 use crate::{leaving::Leave, telling::tell};
 
 #[derive(Debug, Args)]

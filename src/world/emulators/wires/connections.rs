@@ -1,9 +1,10 @@
 //! Connections, wherever they come from; TCP on this computer's network.
 
+#[cfg(unix)]
+use std::os::fd::{AsRawFd, RawFd};
 use std::{
     io::{self, ErrorKind, Read, Write},
     net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream},
-    os::fd::{AsRawFd, RawFd},
 };
 
 use super::{Arrival, End, Peer};
@@ -19,10 +20,21 @@ pub(in crate::emulators) fn tcp_for_one(port: u16) -> Box<dyn End> {
     Box::new(Connections::new(Port((Ipv4Addr::LOCALHOST, port).into()), true))
 }
 
+/// What can be waited for together with others.
+#[cfg(unix)]
+pub(super) trait Waited: AsRawFd {}
+#[cfg(unix)]
+impl<T: AsRawFd> Waited for T {}
+/// Other systems wait for one thing only (see `wait`).
+#[cfg(not(unix))]
+pub(super) trait Waited {}
+#[cfg(not(unix))]
+impl<T> Waited for T {}
+
 /// Where connections come from.
 pub(super) trait Place: Send {
-    type Listener: Send + AsRawFd;
-    type Stream: Send + AsRawFd + Read + Write;
+    type Listener: Send + Waited;
+    type Stream: Send + Waited + Read + Write;
     /// What a client does not take is lost; else the client is.
     const LOSES: bool;
 
@@ -109,6 +121,7 @@ impl<P: Place> End for Connections<P> {
         self.clients.iter_mut().for_each(|client| client.alive = false);
     }
 
+    #[cfg(unix)]
     fn watch(&self, admits: bool, watched: &mut Vec<RawFd>) {
         watched.extend(self.listener.iter().filter(|_| admits).map(P::Listener::as_raw_fd));
         watched.extend(self.clients.iter().map(|client| client.stream.as_raw_fd()));

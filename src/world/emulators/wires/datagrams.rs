@@ -1,9 +1,10 @@
 //! Datagrams on this computer's network.
 
+#[cfg(unix)]
+use std::os::fd::{AsRawFd as _, RawFd};
 use std::{
     io,
     net::{Ipv4Addr, SocketAddr, UdpSocket},
-    os::fd::{AsRawFd as _, RawFd},
 };
 
 use super::{Arrival, End, Peer};
@@ -50,6 +51,7 @@ impl End for Datagrams {
         }
     }
 
+    #[cfg(unix)]
     fn watch(&self, _: bool, watched: &mut Vec<RawFd>) {
         watched.extend(self.socket.iter().map(UdpSocket::as_raw_fd));
     }

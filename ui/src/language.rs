@@ -95,7 +95,7 @@ impl Text {
     }
 
     /// In the language of this thread.
-    pub(crate) fn get(self) -> &'static str {
+    pub fn get(self) -> &'static str {
         match current() {
             Language::English => self.english,
             Language::German => self.german,

@@ -9,6 +9,7 @@ use clap::{Args, Subcommand};
 
 use super::run::positive_seconds;
 use crate::console::roles::Role;
+use crate::language::Language;
 
 /// Told by a program without it.
 #[cfg(not(feature = "department"))]
@@ -85,6 +86,9 @@ pub(super) struct MonitorArguments {
     /// Start in this view: surgeon or technician
     #[arg(long, value_name = "ROLE", default_value = "surgeon", value_parser = watching_role)]
     role: Role,
+    /// Language of the window: en or de (default: the one of the console on this computer)
+    #[arg(long, value_name = "LANGUAGE", hide_possible_values = true)]
+    language: Option<Language>,
     /// Close after this many seconds
     #[arg(long, visible_alias = "seconds", value_name = "S", value_parser = positive_seconds)]
     exit_after: Option<f64>,

@@ -41,6 +41,7 @@ use super::{
     stiffness::ContactStiffness,
     text,
 };
+use crate::words::{device_name, loss_words};
 
 /// Period of the degree histograms, s.
 pub const DEGREES_S: f64 = 120.0;
@@ -384,12 +385,12 @@ impl Live {
             let (cause, cure) = match (entry.view.report().trouble, health.standing) {
                 (Some(trouble), _) => (trouble.to_string(), trouble.cure()),
                 (None, Standing::Lost(loss)) => {
-                    (loss.cause().to_owned(), text::alarms::DEVICE_MISSING_CURE.get().to_owned())
+                    (loss_words(loss).to_owned(), text::alarms::DEVICE_MISSING_CURE.get().to_owned())
                 }
                 // The first attempt to open a device takes some time.
                 (None, _) => return None,
             };
-            Some(Missing { place, name: entry.name.clone(), was_there, cause, cure })
+            Some(Missing { place, name: device_name(&entry.name), was_there, cause, cure })
         })
     }
 

@@ -28,6 +28,7 @@ use super::{
     text, theme,
     widgets::weak,
 };
+use crate::language::{self, Language};
 use crate::telling::tell;
 
 const HEAD: f32 = 72.0;
@@ -77,6 +78,8 @@ impl Teller {
 pub struct Options {
     /// The view.
     pub role: Role,
+    /// The language.
+    pub language: Language,
     /// Close after this time.
     pub exit_after: Option<Duration>,
     /// Save a screenshot just before that.
@@ -242,10 +245,12 @@ impl Monitor {
 
 impl eframe::App for Monitor {
     fn logic(&mut self, _ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        language::set(self.options.language);
         self.take_in();
     }
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        language::set(self.options.language);
         let ctx = ui.ctx().clone();
         if let Some(role) = keys::role_pressed(&ctx).filter(|role| ROLES.contains(role)) {
             self.settings.role = role;
@@ -274,10 +279,13 @@ impl eframe::App for Monitor {
 /// # Errors
 /// If no window can be opened.
 pub fn open(rig: &str, options: Options, begin: impl FnOnce(Teller)) -> anyhow::Result<()> {
+    let title = language::with(options.language, || text::monitor::title(rig));
     let create: eframe::AppCreator<'_> = Box::new(|cc| {
         let (monitor, teller) = Monitor::new(cc, rig, options);
         begin(teller);
         Ok(Box::new(monitor))
     });
-    super::open_window(&text::monitor::title(rig), create)
+    let ended = super::open_window(&title, create);
+    language::set(Language::English);
+    ended
 }

@@ -188,13 +188,17 @@ fn rank(word: &str, entry: &Entry) -> Option<usize> {
     };
     let is_key = entry.keys.iter().any(|stroke| stroke.name().to_lowercase() == word);
     let within = || entry.title.to_lowercase().contains(word).then_some(20);
-    is_key.then_some(0).or_else(|| begins(&entry.title)).or_else(within).or_else(|| begins(entry.does).map(|_| 40))
+    let by_title = || begins(&entry.title).or_else(within);
+    is_key.then_some(0).or_else(by_title).or_else(|| begins(entry.does).or_else(|| begins(&entry.english)).map(|_| 40))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::{commands::table, roles::Role};
+    use crate::{
+        console::{commands::table, roles::Role},
+        language::{self, Language},
+    };
 
     fn all() -> Vec<Row> {
         table().iter().map(|entry| (entry, Reach::Can)).collect()
@@ -215,6 +219,13 @@ mod tests {
         assert_eq!(first("printing"), Some(Action::Light(true)));
         assert_eq!(first("xylophone"), None);
         assert_eq!(found("", &all()).len(), table().len());
+    }
+
+    #[test]
+    fn in_german_a_command_is_found_by_its_german_and_by_its_english_name() {
+        let first = |words: &str| language::with(Language::German, || first(words));
+        assert_eq!((first("sitzungen"), first("recorded sessions")), (Some(Action::Sessions), Some(Action::Sessions)));
+        assert_eq!((first("halt"), first("stop")), (Some(Action::Stop), Some(Action::Stop)));
     }
 
     #[test]

@@ -12,23 +12,23 @@ use crate::language::{Text, told, word};
 
 const NO_WRIST_FORCE: Text = Text::of(
     "no gravity-free force at the wrist; connect the sensor and calibrate gravity",
-    "no gravity-free force at the wrist; connect the sensor and calibrate gravity",
+    "keine schwerkraftfreie Kraft am Handgelenk; Sensor anschließen und Schwerkraft kalibrieren",
 );
 const NO_TISSUE_FORCE: Text = Text::of(
     "the sensor under the tissue sends no data; connect it",
-    "the sensor under the tissue sends no data; connect it",
+    "der Sensor unter dem Gewebe sendet keine Daten; anschließen",
 );
 const NO_CHAIN: Text = Text::of(
     "the tracker does not see the marker, or the arm sends no data; clear the line of sight and check the arm",
-    "the tracker does not see the marker, or the arm sends no data; clear the line of sight and check the arm",
+    "der Tracker sieht den Marker nicht, oder der Arm sendet keine Daten; Sichtlinie freimachen und Arm prüfen",
 );
 
 impl Words for Verdict {
     fn words(self) -> &'static str {
         match self {
-            Self::Accepted => word("Accepted", "Accepted"),
-            Self::InsufficientMotion => word("Insufficient motion", "Insufficient motion"),
-            Self::PoorData => word("Poor data", "Poor data"),
+            Self::Accepted => word("Accepted", "Angenommen"),
+            Self::InsufficientMotion => word("Insufficient motion", "Zu wenig Bewegung"),
+            Self::PoorData => word("Poor data", "Schlechte Daten"),
         }
     }
 }
@@ -41,7 +41,7 @@ impl Words for Missing {
             Self::Chain => NO_CHAIN.get(),
             Self::Sense => word(
                 "a sample is not finite or not newer than the previous one; check the sensors",
-                "a sample is not finite or not newer than the previous one; check the sensors",
+                "ein Messwert ist nicht endlich oder nicht neuer als der vorige; Sensoren prüfen",
             ),
         }
     }
@@ -55,7 +55,7 @@ impl Words for Lack {
             Self::Chain => NO_CHAIN.get(),
             Self::Pose => word(
                 "no depth through the trocar or no orientation; mount the trocar and check the arm",
-                "no depth through the trocar or no orientation; mount the trocar and check the arm",
+                "keine Tiefe durch den Trokar oder keine Orientierung; Trokar montieren und Arm prüfen",
             ),
         }
     }
@@ -66,19 +66,20 @@ pub(crate) fn refusal(refusal: &Refusal) -> String {
     match refusal {
         Refusal::TooShort => word(
             "the push was too short; hold it for half a second",
-            "the push was too short; hold it for half a second",
+            "der Druck war zu kurz; eine halbe Sekunde halten",
         )
         .to_owned(),
         Refusal::Moved { by_n } => {
-            told!("the force varied by {by_n:.2} N; hold it still", "the force varied by {by_n:.2} N; hold it still")
+            told!("the force varied by {by_n:.2} N; hold it still", "die Kraft schwankte um {by_n:.2} N; ruhig halten")
         }
         Refusal::MissedTissue => word(
             "the sensor under the tissue measured nothing; push onto the tissue",
-            "the sensor under the tissue measured nothing; push onto the tissue",
+            "der Sensor unter dem Gewebe maß nichts; auf das Gewebe drücken",
         )
         .to_owned(),
         Refusal::Full => {
-            word("the session is full; remove a push first", "the session is full; remove a push first").to_owned()
+            word("the session is full; remove a push first", "die Sitzung ist voll; erst einen Druck entfernen")
+                .to_owned()
         }
     }
 }
@@ -86,31 +87,30 @@ pub(crate) fn refusal(refusal: &Refusal) -> String {
 /// Whether a saved gravity calibration still holds, and what to do.
 pub(crate) fn drift(drift: Drift) -> String {
     match drift {
-        Drift::Waiting => word(
-            "being checked: do not touch the tool for a moment",
-            "being checked: do not touch the tool for a moment",
-        )
-        .to_owned(),
+        Drift::Waiting => {
+            word("being checked: do not touch the tool for a moment", "wird geprüft: Instrument kurz nicht berühren")
+                .to_owned()
+        }
         Drift::NotChecked(why) => {
             let why = match why {
                 NotChecked::NoSample => word(
                     "no data from the sensor, or its orientation is unknown",
-                    "no data from the sensor, or its orientation is unknown",
+                    "keine Daten vom Sensor, oder seine Orientierung ist unbekannt",
                 ),
-                NotChecked::Moving => word("the tool moves", "the tool moves"),
-                NotChecked::Touched => word("something touches the tool", "something touches the tool"),
+                NotChecked::Moving => word("the tool moves", "das Instrument bewegt sich"),
+                NotChecked::Touched => word("something touches the tool", "etwas berührt das Instrument"),
                 NotChecked::InTrocar => word(
                     "the instrument is in the trocar; start with it outside",
-                    "the instrument is in the trocar; start with it outside",
+                    "das Instrument steckt im Trokar; außerhalb starten",
                 ),
-                NotChecked::Engaged => word("the loop was engaged too early", "the loop was engaged too early"),
+                NotChecked::Engaged => word("the loop was engaged too early", "die Regelung wurde zu früh gekoppelt"),
             };
-            told!("not checked: {why}", "not checked: {why}")
+            told!("not checked: {why}", "nicht geprüft: {why}")
         }
-        Drift::Fine { by_n } => told!("{by_n:.2} N without contact, good", "{by_n:.2} N without contact, good"),
+        Drift::Fine { by_n } => told!("{by_n:.2} N without contact, good", "{by_n:.2} N ohne Kontakt, OK"),
         Drift::Moved { by_n } => told!(
             "drifted by {by_n:.2} N: make sure that nothing touches the tool; if this stays, calibrate gravity again",
-            "drifted by {by_n:.2} N: make sure that nothing touches the tool; if this stays, calibrate gravity again"
+            "um {by_n:.2} N gedriftet: nichts darf das Instrument berühren; bleibt es so, Schwerkraft neu kalibrieren"
         ),
     }
 }

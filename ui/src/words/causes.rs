@@ -10,8 +10,9 @@ use nima_machine::{
 use super::{
     Remedy as _, cure_of_refusal,
     findings::finding_words,
+    names::device_name,
     ready::{capital, with},
-    refused_because,
+    refused_because, side_word,
     sides::{arm_stuck, exchanged, handle_askew, handle_pulls, handle_stuck, marker_stuck, no_push, trocar_moved},
 };
 use crate::language::{Text, told, word};
@@ -47,7 +48,7 @@ pub(crate) fn cause_words(cause: &Cause, roster: &Roster) -> [String; 2] {
         Cause::DateBehind => DATE_BEHIND,
         Cause::Uncalibrated => UNCALIBRATED,
         Cause::NoRigFile => NO_RIG_FILE,
-        Cause::NoStop => [Text::of("No stop was seen", "No stop was seen"), STOP_CURE],
+        Cause::NoStop => [Text::of("No stop was seen", "Kein Halt erkannt"), STOP_CURE],
         Cause::NotReleased(why) => return not_released(why),
         Cause::NoBite(Watchdog::Loop) => NO_BITE_LOOP,
         Cause::NoBite(Watchdog::Source) => NO_BITE_SOURCE,
@@ -57,66 +58,70 @@ pub(crate) fn cause_words(cause: &Cause, roster: &Roster) -> [String; 2] {
 }
 
 const NO_GAUGES: [Text; 2] = [
-    Text::of("The devices delivered no figures", "The devices delivered no figures"),
-    Text::of("See the panel Devices, then check again", "See the panel Devices, then check again"),
+    Text::of("The devices delivered no figures", "Die Geräte lieferten keine Kennzahlen"),
+    Text::of("See the panel Devices, then check again", "Siehe Panel Geräte, dann neu prüfen"),
 ];
 
 const NO_TICKS: [Text; 2] = [
-    Text::of("The control loop sends nothing", "The control loop sends nothing"),
-    Text::of("Start the console again", "Start the console again"),
+    Text::of("The control loop sends nothing", "Die Regelung sendet nichts"),
+    Text::of("Start the console again", "Konsole neu starten"),
 ];
 
 const DATE_BEHIND: [Text; 2] = [
-    Text::of("A calibration is dated in the future", "A calibration is dated in the future"),
-    Text::of("Set this computer's date and time", "Set this computer's date and time"),
+    Text::of("A calibration is dated in the future", "Eine Kalibrierung ist in die Zukunft datiert"),
+    Text::of("Set this computer's date and time", "Datum und Uhrzeit dieses Rechners stellen"),
 ];
 
 const UNCALIBRATED: [Text; 2] = [
     Text::of(
         "There is no gravity calibration for this sensor and tool",
-        "There is no gravity calibration for this sensor and tool",
+        "Für diesen Sensor mit diesem Instrument fehlt die Schwerkraft-Kalibrierung",
     ),
-    Text::of("Calibrate gravity, then check again", "Calibrate gravity, then check again"),
+    Text::of("Calibrate gravity, then check again", "Schwerkraft kalibrieren, dann neu prüfen"),
 ];
 
 const NO_RIG_FILE: [Text; 2] = [
-    Text::of("The rig file cannot be read", "The rig file cannot be read"),
+    Text::of("The rig file cannot be read", "Die Aufbaudatei ist nicht lesbar"),
     Text::of(
         "Put the rig file back, then start the console again",
-        "Put the rig file back, then start the console again",
+        "Aufbaudatei zurücklegen, dann Konsole neu starten",
     ),
 ];
 
 const NO_BITE_LOOP: [Text; 2] = [
     Text::of(
         "The loop was silent on purpose, and the supervisor did nothing",
-        "The loop was silent on purpose, and the supervisor did nothing",
+        "Die Regelung schwieg absichtlich, und die Überwachung tat nichts",
     ),
-    Text::of("Do not engage; start the console again", "Do not engage; start the console again"),
+    Text::of("Do not engage; start the console again", "Nicht koppeln; Konsole neu starten"),
 ];
 
 const NO_BITE_SOURCE: [Text; 2] = [
     Text::of(
         "Measurements were withheld on purpose, and no fault came",
-        "Measurements were withheld on purpose, and no fault came",
+        "Messwerte wurden absichtlich zurückgehalten, und keine Störung kam",
     ),
-    Text::of("Do not engage; start the console again", "Do not engage; start the console again"),
+    Text::of("Do not engage; start the console again", "Nicht koppeln; Konsole neu starten"),
 ];
 
 const NO_BITE_LINK: [Text; 2] = [
-    Text::of("The link was silent on purpose, and no fault came", "The link was silent on purpose, and no fault came"),
-    Text::of("Do not engage; start the console again", "Do not engage; start the console again"),
+    Text::of(
+        "The link was silent on purpose, and no fault came",
+        "Die Verbindung schwieg absichtlich, und keine \
+     Störung kam",
+    ),
+    Text::of("Do not engage; start the console again", "Nicht koppeln; Konsole neu starten"),
 ];
 
 /// Another fault than the one that was to come.
 fn other_fault(fault: Fault) -> [String; 2] {
-    [told!("Another fault was raised: {}", "Another fault was raised: {}", fault.cause()), fault.cure().to_owned()]
+    [told!("Another fault was raised: {}", "Eine andere Störung trat auf: {}", fault.cause()), fault.cure().to_owned()]
 }
 
 /// The loop did not do what the check asked for.
 fn refused(why: Refusal) -> [String; 2] {
     [
-        told!("The loop refused the test: {}", "The loop refused the test: {}", refused_because(why)),
+        told!("The loop refused the test: {}", "Die Regelung lehnte den Test ab: {}", refused_because(why)),
         capital(cure_of_refusal(why)),
     ]
 }
@@ -124,7 +129,7 @@ fn refused(why: Refusal) -> [String; 2] {
 /// Too many periods were missed.
 fn missed(share: f64) -> [String; 2] {
     with(
-        told!("{:.1} % of the periods were missed", "{:.1} % of the periods were missed", 100.0 * share),
+        told!("{:.1} % of the periods were missed", "{:.1} % der Takte wurden versäumt", 100.0 * share),
         CLOSE_PROGRAMS.get(),
     )
 }
@@ -134,7 +139,7 @@ fn clocks_apart(by_s: f64) -> [String; 2] {
     with(
         told!(
             "The loop's clock and this computer's went apart by {by_s:.2} s",
-            "The loop's clock and this computer's went apart by {by_s:.2} s"
+            "Die Uhren von Regelung und Rechner liefen um {by_s:.2} s auseinander"
         ),
         CLOSE_PROGRAMS.get(),
     )
@@ -145,11 +150,11 @@ fn bias_moved(by_n: f64, limit_n: f64) -> [String; 2] {
     with(
         told!(
             "{by_n:.2} N remain at rest, more than {limit_n:.2} N",
-            "{by_n:.2} N remain at rest, more than {limit_n:.2} N"
+            "{by_n:.2} N bleiben in Ruhe, mehr als {limit_n:.2} N"
         ),
         word(
             "Make sure that nothing touches the tool; if it stays, calibrate gravity again",
-            "Make sure that nothing touches the tool; if it stays, calibrate gravity again",
+            "Sicherstellen, dass nichts das Instrument berührt; bleibt es, Schwerkraft neu kalibrieren",
         ),
     )
 }
@@ -159,11 +164,11 @@ fn unwanted_force(force_n: f64) -> [String; 2] {
     with(
         told!(
             "A force of {force_n:.2} N was asked for where there must be none",
-            "A force of {force_n:.2} N was asked for where there must be none"
+            "{force_n:.2} N wurden verlangt, wo keine Kraft sein darf"
         ),
         word(
             "Do not engage; report this with the record of the check",
-            "Do not engage; report this with the record of the check",
+            "Nicht koppeln; mit dem Protokoll der Prüfung melden",
         ),
     )
 }
@@ -173,11 +178,11 @@ fn other_ceiling(in_force_n: f64, in_file_n: f64) -> [String; 2] {
     with(
         told!(
             "The largest force is {in_force_n:.2} N; the rig file says {in_file_n:.2} N",
-            "The largest force is {in_force_n:.2} N; the rig file says {in_file_n:.2} N"
+            "Die Höchstkraft ist {in_force_n:.2} N; laut Aufbaudatei {in_file_n:.2} N"
         ),
         word(
             "Start the console again, so that the rig file is in force",
-            "Start the console again, so that the rig file is in force",
+            "Konsole neu starten, damit die Aufbaudatei gilt",
         ),
     )
 }
@@ -185,7 +190,7 @@ fn other_ceiling(in_force_n: f64, in_file_n: f64) -> [String; 2] {
 /// One arm went on.
 fn half_stop(side: Side) -> [String; 2] {
     with(
-        told!("The {} arm did not stop with the other one", "The {} arm did not stop with the other one", side.word()),
+        told!("The {} arm did not stop with the other one", "Arm {} hielt nicht mit dem anderen an", side_word(side)),
         STOP_CURE.get(),
     )
 }
@@ -193,7 +198,7 @@ fn half_stop(side: Side) -> [String; 2] {
 /// A watchdog took too long.
 fn late(after_s: f64) -> [String; 2] {
     with(
-        told!("The fault came after {after_s:.2} s, too late", "The fault came after {after_s:.2} s, too late"),
+        told!("The fault came after {after_s:.2} s, too late", "Die Störung kam nach {after_s:.2} s, zu spät"),
         CLOSE_PROGRAMS.get(),
     )
 }
@@ -201,48 +206,46 @@ fn late(after_s: f64) -> [String; 2] {
 /// Somebody engaged an arm.
 fn engaged(side: Side) -> [String; 2] {
     with(
-        told!("The {} arm was engaged during the check", "The {} arm was engaged during the check", side.word()),
-        word("Let both arms rest, then check again", "Let both arms rest, then check again"),
+        told!("The {} arm was engaged during the check", "Arm {} wurde während der Prüfung gekoppelt", side_word(side)),
+        word("Let both arms rest, then check again", "Beide Arme in Leerlauf setzen, dann neu prüfen"),
     )
 }
 
 fn not_released(why: Option<Refusal>) -> [String; 2] {
     let Some(why) = why else {
         return with(
-            word("The stop or the fault was not released in time", "The stop or the fault was not released in time")
+            word("The stop or the fault was not released in time", "Halt oder Störung wurde nicht rechtzeitig gelöst")
                 .to_owned(),
-            word("Press Release stop, then check again", "Press Release stop, then check again"),
+            word("Press Release stop, then check again", "Halt lösen drücken, dann neu prüfen"),
         );
     };
     [
-        told!("The release was refused: {}", "The release was refused: {}", refused_because(why)),
+        told!("The release was refused: {}", "Das Lösen wurde abgelehnt: {}", refused_because(why)),
         capital(cure_of_refusal(why)),
     ]
 }
 
 const CLOSE_PROGRAMS: Text = Text::of(
     "Close other programs or grant real-time priority (panel Timing), then check again",
-    "Close other programs or grant real-time priority (panel Timing), then check again",
+    "Andere Programme schließen oder Echtzeitpriorität gewähren (Panel Timing), dann neu prüfen",
 );
 const STOP_CURE: Text = Text::of(
     "Do not engage; check the key, the pedal or the button with which you stop",
-    "Do not engage; check the key, the pedal or the button with which you stop",
+    "Nicht koppeln; Taste, Pedal oder Knopf für den Halt prüfen",
 );
 
-fn name(place: usize, roster: &Roster) -> &str {
-    roster.get(place).map_or(word("a device", "a device"), |entry| entry.name.as_str())
+fn name(place: usize, roster: &Roster) -> String {
+    roster.get(place).map_or_else(|| word("a device", "Gerät").to_owned(), |entry| device_name(&entry.name))
 }
 
 fn missing(place: usize, roster: &Roster) -> [String; 2] {
     let trouble = roster.get(place).and_then(|entry| entry.view.report().trouble);
     let name = name(place, roster);
     match trouble {
-        Some(trouble) => {
-            [told!("The {name} is not there: {trouble}", "The {name} is not there: {trouble}"), trouble.cure()]
-        }
+        Some(trouble) => [told!("The {name} is not there: {trouble}", "{name} fehlt: {trouble}"), trouble.cure()],
         None => with(
-            told!("The {name} is not there, or does not stay", "The {name} is not there, or does not stay"),
-            word("Check plug, cable and power; see Devices", "Check plug, cable and power; see Devices"),
+            told!("The {name} is not there, or does not stay", "{name} fehlt oder bleibt nicht"),
+            word("Check plug, cable and power; see Devices", "Stecker, Kabel und Strom prüfen; siehe Geräte"),
         ),
     }
 }
@@ -251,63 +254,63 @@ fn found(place: usize, finding: &nima_machine::rig::checkup::Finding, roster: &R
     let kind = roster.get(place).and_then(|entry| entry.part).map(nima_machine::rig::Part::kind);
     let Some(kind) = kind else {
         return with(
-            word("A device is not in order", "A device is not in order").to_owned(),
-            word("See the panel Devices", "See the panel Devices"),
+            word("A device is not in order", "Ein Gerät ist nicht in Ordnung").to_owned(),
+            word("See the panel Devices", "Siehe Panel Geräte"),
         );
     };
     let [cause, cure] = finding_words(kind, finding);
-    [format!("{}: {cause}", capital(name(place, roster))), cure]
+    [format!("{}: {cause}", capital(&name(place, roster))), cure]
 }
 
 fn bias_unseen(why: NotChecked) -> [String; 2] {
     let [why, cure] = match why {
         NotChecked::NoSample => [
-            word("no data from the sensor", "no data from the sensor"),
+            word("no data from the sensor", "keine Daten vom Sensor"),
             word(
                 "Check the sensor's cable and the arm, then check again",
-                "Check the sensor's cable and the arm, then check again",
+                "Sensorkabel und Arm prüfen, dann neu prüfen",
             ),
         ],
         NotChecked::Moving => [
-            word("the tool moved", "the tool moved"),
-            word("Let the tool hang still, then check again", "Let the tool hang still, then check again"),
+            word("the tool moved", "das Instrument bewegte sich"),
+            word("Let the tool hang still, then check again", "Instrument ruhig hängen lassen, dann neu prüfen"),
         ],
         NotChecked::Touched => [
-            word("something touched the tool", "something touched the tool"),
+            word("something touched the tool", "etwas berührte das Instrument"),
             word(
                 "Take away what touches the tool, then check again",
-                "Take away what touches the tool, then check again",
+                "Entfernen, was das Instrument berührt, dann neu prüfen",
             ),
         ],
         NotChecked::InTrocar => [
-            word("the instrument was in the trocar", "the instrument was in the trocar"),
+            word("the instrument was in the trocar", "das Instrument steckte im Trokar"),
             word(
                 "Take the instrument out of the trocar, then check again",
-                "Take the instrument out of the trocar, then check again",
+                "Instrument aus dem Trokar nehmen, dann neu prüfen",
             ),
         ],
         NotChecked::Engaged => [
-            word("the arm was engaged", "the arm was engaged"),
-            word("Let both arms rest, then check again", "Let both arms rest, then check again"),
+            word("the arm was engaged", "der Arm war gekoppelt"),
+            word("Let both arms rest, then check again", "Beide Arme in Leerlauf setzen, dann neu prüfen"),
         ],
     };
-    [told!("The bias could not be looked at: {why}", "The bias could not be looked at: {why}"), cure.to_owned()]
+    [told!("The bias could not be looked at: {why}", "Der Nullpunkt war nicht prüfbar: {why}"), cure.to_owned()]
 }
 
 fn askew(by_deg: f64) -> [String; 2] {
     let what = if by_deg > 150.0 {
-        word("its sign is wrong", "its sign is wrong")
+        word("its sign is wrong", "Vorzeichen falsch")
     } else {
-        word("its axes are wrong, or the push was", "its axes are wrong, or the push was")
+        word("its axes are wrong, or the push was", "Achsen oder Druckrichtung falsch")
     };
     with(
         told!(
             "The push was measured {by_deg:.0} degrees off: {what}",
-            "The push was measured {by_deg:.0} degrees off: {what}"
+            "Der Druck wurde {by_deg:.0} Grad daneben gemessen: {what}"
         ),
         word(
             "Repeat the push in the direction asked for; if it stays, calibrate the sensor's mount and gravity again",
-            "Repeat the push in the direction asked for; if it stays, calibrate the sensor's mount and gravity again",
+            "Druck in der verlangten Richtung wiederholen; bleibt es, Sensormontage und Schwerkraft neu kalibrieren",
         ),
     )
 }
@@ -316,18 +319,18 @@ fn beside(miss_m: f64) -> [String; 2] {
     let cause = if miss_m.is_finite() {
         told!(
             "The shaft passes the trocar at {:.0} mm; {:.0} mm would be in it",
-            "The shaft passes the trocar at {:.0} mm; {:.0} mm would be in it",
+            "Der Schaft geht {:.0} mm am Trokar vorbei; bei {:.0} mm wäre er darin",
             1e3 * miss_m,
             1e3 * START_MISS_M
         )
     } else {
-        word("The instrument is not through its trocar", "The instrument is not through its trocar").to_owned()
+        word("The instrument is not through its trocar", "Das Instrument geht nicht durch den Trokar").to_owned()
     };
     with(
         cause,
         word(
             "Put the instrument through its trocar; if it is, the trocar has moved: calibrate the trocar",
-            "Put the instrument through its trocar; if it is, the trocar has moved: calibrate the trocar",
+            "Instrument durch den Trokar führen; ist es darin, hat sich der Trokar bewegt: Trokar kalibrieren",
         ),
     )
 }

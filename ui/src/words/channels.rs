@@ -7,10 +7,10 @@ use crate::language::{told, word};
 /// A tracker's marker by the order of its tools.
 pub(crate) fn marker(tool: usize) -> String {
     match tool {
-        0 => word("right marker", "right marker").to_owned(),
-        1 => word("left marker", "left marker").to_owned(),
-        2 => word("third marker", "third marker").to_owned(),
-        _ => word("fourth marker", "fourth marker").to_owned(),
+        0 => word("right marker", "Marker rechts").to_owned(),
+        1 => word("left marker", "Marker links").to_owned(),
+        2 => word("third marker", "Marker 3").to_owned(),
+        _ => word("fourth marker", "Marker 4").to_owned(),
     }
 }
 
@@ -18,17 +18,17 @@ pub(crate) fn marker(tool: usize) -> String {
 pub(crate) fn channel_name(kind: PartKind, channel: usize) -> String {
     let axis = ["x", "y", "z"][channel % 3];
     match (kind, channel) {
-        (PartKind::Handle, 0..=2) => told!("position {axis}", "position {axis}"),
-        (PartKind::Handle, 3..=5) => told!("rotation {axis}", "rotation {axis}"),
-        (PartKind::Handle, 6) => word("gripper", "gripper").to_owned(),
-        (PartKind::Handle, _) => word("buttons", "buttons").to_owned(),
-        (PartKind::Arm, _) => told!("joint {}", "joint {}", channel + 1),
-        (PartKind::Servos, _) => told!("servo {}", "servo {}", channel + 1),
-        (PartKind::Sensor, 0..=2) => told!("force {axis}", "force {axis}"),
-        (PartKind::Sensor, 3..=5) => told!("torque {axis}", "torque {axis}"),
-        (PartKind::Sensor, _) => told!("acceleration {axis}", "acceleration {axis}"),
+        (PartKind::Handle, 0..=2) => told!("position {axis}", "Position {axis}"),
+        (PartKind::Handle, 3..=5) => told!("rotation {axis}", "Drehung {axis}"),
+        (PartKind::Handle, 6) => word("gripper", "Greifer").to_owned(),
+        (PartKind::Handle, _) => word("buttons", "Tasten").to_owned(),
+        (PartKind::Arm, _) => told!("joint {}", "Gelenk {}", channel + 1),
+        (PartKind::Servos, _) => told!("servo {}", "Servo {}", channel + 1),
+        (PartKind::Sensor, 0..=2) => told!("force {axis}", "Kraft {axis}"),
+        (PartKind::Sensor, 3..=5) => told!("torque {axis}", "Drehmoment {axis}"),
+        (PartKind::Sensor, _) => told!("acceleration {axis}", "Beschleunigung {axis}"),
         (PartKind::Tracker, _) => format!("{} {axis}", marker(channel / 3)),
-        (PartKind::Pedal, _) => word("switches", "switches").to_owned(),
+        (PartKind::Pedal, _) => word("switches", "Schalter").to_owned(),
     }
 }
 
@@ -36,18 +36,18 @@ pub(crate) fn channel_name(kind: PartKind, channel: usize) -> String {
 pub(crate) fn channel_group(kind: PartKind, channel: usize) -> Option<(&'static str, &'static str, f64)> {
     const DEGREES: f64 = 180.0 / std::f64::consts::PI;
     match (kind, channel) {
-        (PartKind::Handle, 0..=2) => Some((word("position", "position"), "mm", 1e3)),
-        (PartKind::Handle, 3..=5) => Some((word("rotation", "rotation"), "\u{b0}", DEGREES)),
-        (PartKind::Handle, 6) => Some((word("gripper", "gripper"), "\u{b0}", DEGREES)),
-        (PartKind::Arm, _) => Some((word("joints", "joints"), "\u{b0}", DEGREES)),
-        (PartKind::Servos, _) => Some((word("servos", "servos"), "\u{b0}", DEGREES)),
-        (PartKind::Sensor, 0..=2) => Some((word("force", "force"), "N", 1.0)),
-        (PartKind::Sensor, 3..=5) => Some((word("torque", "torque"), "mNm", 1e3)),
-        (PartKind::Sensor, _) => Some((word("acceleration", "acceleration"), "m/s\u{b2}", 1.0)),
-        (PartKind::Tracker, 0..=2) => Some((word("right marker", "right marker"), "mm", 1e3)),
-        (PartKind::Tracker, 3..=5) => Some((word("left marker", "left marker"), "mm", 1e3)),
-        (PartKind::Tracker, 6..=8) => Some((word("third marker", "third marker"), "mm", 1e3)),
-        (PartKind::Tracker, _) => Some((word("fourth marker", "fourth marker"), "mm", 1e3)),
+        (PartKind::Handle, 0..=2) => Some((word("position", "Position"), "mm", 1e3)),
+        (PartKind::Handle, 3..=5) => Some((word("rotation", "Drehung"), "\u{b0}", DEGREES)),
+        (PartKind::Handle, 6) => Some((word("gripper", "Greifer"), "\u{b0}", DEGREES)),
+        (PartKind::Arm, _) => Some((word("joints", "Gelenke"), "\u{b0}", DEGREES)),
+        (PartKind::Servos, _) => Some((word("servos", "Servos"), "\u{b0}", DEGREES)),
+        (PartKind::Sensor, 0..=2) => Some((word("force", "Kraft"), "N", 1.0)),
+        (PartKind::Sensor, 3..=5) => Some((word("torque", "Drehmoment"), "mNm", 1e3)),
+        (PartKind::Sensor, _) => Some((word("acceleration", "Beschleunigung"), "m/s\u{b2}", 1.0)),
+        (PartKind::Tracker, 0..=2) => Some((word("right marker", "Marker rechts"), "mm", 1e3)),
+        (PartKind::Tracker, 3..=5) => Some((word("left marker", "Marker links"), "mm", 1e3)),
+        (PartKind::Tracker, 6..=8) => Some((word("third marker", "Marker 3"), "mm", 1e3)),
+        (PartKind::Tracker, _) => Some((word("fourth marker", "Marker 4"), "mm", 1e3)),
         (PartKind::Handle | PartKind::Pedal, _) => None,
     }
 }

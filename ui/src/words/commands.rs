@@ -9,27 +9,28 @@ use nima_machine::{
 
 use super::events::device;
 use super::modes::mode_name;
+use super::side_word;
 use crate::language::{told, word};
 
 /// What was done to the loop; `devices` as for an [`event`](super::event).
 pub(crate) fn operation(operation: &Operation, devices: &[String]) -> String {
     match *operation {
-        Operation::Command { command: of, .. } => told!("command: {}", "command: {}", command(of)),
+        Operation::Command { command: of, .. } => told!("command: {}", "Befehl: {}", command(of)),
         Operation::Device(event) => device(&event, devices),
         Operation::Suspend(side) => told!(
             "{} arm: calibrations suspended, the sensor is not known",
-            "{} arm: calibrations suspended, the sensor is not known",
-            side.word()
+            "Arm {}: Kalibrierungen ausgesetzt, Sensor unbekannt",
+            side_word(side)
         ),
         Operation::Calibrations { side, number } => {
             told!(
                 "{} arm: calibrations number {number} handed to the loop",
-                "{} arm: calibrations number {number} handed to the loop",
-                side.word()
+                "Arm {}: Kalibrierungen Nr. {number} an die Regelung übergeben",
+                side_word(side)
             )
         }
         Operation::Stall { silent_s, .. } => {
-            told!("the loop was silent for {:.0} ms", "the loop was silent for {:.0} ms", silent_s * 1e3)
+            told!("the loop was silent for {:.0} ms", "die Regelung schwieg {:.0} ms lang", silent_s * 1e3)
         }
     }
 }
@@ -37,71 +38,73 @@ pub(crate) fn operation(operation: &Operation, devices: &[String]) -> String {
 /// What the operator asked for.
 pub(crate) fn command(command: Command) -> String {
     match command {
-        Command::SetMode(mode) => told!("mode {}", "mode {}", name_of(mode)),
+        Command::SetMode(mode) => told!("mode {}", "Modus {}", name_of(mode)),
         Command::Compare(true) => {
-            word("compute all modes to compare them", "compute all modes to compare them").to_owned()
+            word("compute all modes to compare them", "alle Modi zum Vergleich rechnen").to_owned()
         }
-        Command::Compare(false) => word("compute the mode in use only", "compute the mode in use only").to_owned(),
-        Command::SetGain(gain) => told!("gain {gain:.2}", "gain {gain:.2}"),
+        Command::Compare(false) => word("compute the mode in use only", "nur den benutzten Modus rechnen").to_owned(),
+        Command::SetGain(gain) => told!("gain {gain:.2}", "Verstärkung {gain:.2}"),
         Command::SetGainAboveOne(gain) => {
-            told!("gain {gain:.2}, confirmed above 1", "gain {gain:.2}, confirmed above 1")
+            told!("gain {gain:.2}, confirmed above 1", "Verstärkung {gain:.2}, über 1 bestätigt")
         }
-        Command::SetDelay(delay_s) => told!("delay of the link {:.0} ms", "delay of the link {:.0} ms", delay_s * 1e3),
-        Command::SetDeadBand(speed_m_s) => told!("dead band {:.1} mm/s", "dead band {:.1} mm/s", speed_m_s * 1e3),
-        Command::SetStaticHold(true) => word("keep the force at standstill", "keep the force at standstill").to_owned(),
+        Command::SetDelay(delay_s) => {
+            told!("delay of the link {:.0} ms", "Verzögerung der Verbindung {:.0} ms", delay_s * 1e3)
+        }
+        Command::SetDeadBand(speed_m_s) => told!("dead band {:.1} mm/s", "Totband {:.1} mm/s", speed_m_s * 1e3),
+        Command::SetStaticHold(true) => word("keep the force at standstill", "Kraft im Stillstand halten").to_owned(),
         Command::SetStaticHold(false) => {
-            word("fade the force out at standstill", "fade the force out at standstill").to_owned()
+            word("fade the force out at standstill", "Kraft im Stillstand ausblenden").to_owned()
         }
         Command::Prompt(side, _) => {
-            told!("instruction to the person at the {} arm", "instruction to the person at the {} arm", side.word())
+            told!("instruction to the person at the {} arm", "Anweisung an die Person am Arm {}", side_word(side))
         }
         Command::Guide(side, Some(at_m)) => {
             let [x, y, z] = [at_m.x, at_m.y, at_m.z].map(|m| m * 1e3);
             told!(
                 "lead the {} handle to {x:.0}, {y:.0}, {z:.0} mm",
-                "lead the {} handle to {x:.0}, {y:.0}, {z:.0} mm",
-                side.word()
+                "Handgerät {} nach {x:.0}, {y:.0}, {z:.0} mm führen",
+                side_word(side)
             )
         }
         Command::Guide(side, None) => {
-            told!("lead the {} handle no longer", "lead the {} handle no longer", side.word())
+            told!("lead the {} handle no longer", "Handgerät {} nicht mehr führen", side_word(side))
         }
         Command::Grip(side, Some(rad)) => {
             told!(
                 "hold the {} gripper open by {:.0} degrees",
-                "hold the {} gripper open by {:.0} degrees",
-                side.word(),
+                "Greifer {} um {:.0} Grad offen halten",
+                side_word(side),
                 rad.to_degrees()
             )
         }
         Command::Grip(side, None) => {
-            told!("leave the {} gripper to the hand", "leave the {} gripper to the hand", side.word())
+            told!("leave the {} gripper to the hand", "Greifer {} der Hand überlassen", side_word(side))
         }
-        Command::Task(_, Act::Begin) => word("begin the trial anew", "begin the trial anew").to_owned(),
+        Command::Task(_, Act::Begin) => word("begin the trial anew", "Versuch neu beginnen").to_owned(),
         Command::Task(side, Act::Mark) => {
-            told!("mark the place under the {} tip", "mark the place under the {} tip", side.word())
+            told!("mark the place under the {} tip", "Stelle unter der Spitze {} markieren", side_word(side))
         }
-        Command::Task(_, Act::End) => word("end the trial", "end the trial").to_owned(),
-        Command::LetGo(true) => word("the simulated hand lets go", "the simulated hand lets go").to_owned(),
-        Command::LetGo(false) => word("the simulated hand takes hold", "the simulated hand takes hold").to_owned(),
-        Command::SetGovernor(true) => word("governor on", "governor on").to_owned(),
-        Command::SetGovernor(false) => word("governor off", "governor off").to_owned(),
-        Command::SetScale(scale) => told!("scale of motion {scale:.2}", "scale of motion {scale:.2}"),
-        Command::Engage => word("engage", "engage").to_owned(),
-        Command::EngageOne(side) => told!("engage the {} arm", "engage the {} arm", side.word()),
-        Command::Rest => word("rest", "rest").to_owned(),
-        Command::Stop => word("stop", "stop").to_owned(),
-        Command::ReleaseStop => word("release the stop", "release the stop").to_owned(),
+        Command::Task(_, Act::End) => word("end the trial", "Versuch beenden").to_owned(),
+        Command::LetGo(true) => word("the simulated hand lets go", "die simulierte Hand lässt los").to_owned(),
+        Command::LetGo(false) => word("the simulated hand takes hold", "die simulierte Hand fasst an").to_owned(),
+        Command::SetGovernor(true) => word("governor on", "Wächter an").to_owned(),
+        Command::SetGovernor(false) => word("governor off", "Wächter aus").to_owned(),
+        Command::SetScale(scale) => told!("scale of motion {scale:.2}", "Bewegungsmaßstab {scale:.2}"),
+        Command::Engage => word("engage", "koppeln").to_owned(),
+        Command::EngageOne(side) => told!("engage the {} arm", "Arm {} koppeln", side_word(side)),
+        Command::Rest => word("rest", "in Leerlauf setzen").to_owned(),
+        Command::Stop => word("stop", "anhalten").to_owned(),
+        Command::ReleaseStop => word("release the stop", "Halt lösen").to_owned(),
         Command::TestWatchdog(watchdog) => {
-            told!("fire the watchdog of the {}", "fire the watchdog of the {}", watched(watchdog))
+            told!("fire the watchdog of the {}", "Watchdog auslösen: {}", watched(watchdog))
         }
         Command::Checked(true) => {
-            word("the ready check of today has passed", "the ready check of today has passed").to_owned()
+            word("the ready check of today has passed", "Startprüfung von heute bestanden").to_owned()
         }
         Command::Checked(false) => {
-            word("no ready check of today has passed", "no ready check of today has passed").to_owned()
+            word("no ready check of today has passed", "heute keine Startprüfung bestanden").to_owned()
         }
-        Command::Shutdown => word("end the loop", "end the loop").to_owned(),
+        Command::Shutdown => word("end the loop", "Regelung beenden").to_owned(),
     }
 }
 
@@ -111,9 +114,9 @@ fn name_of(mode: Mode) -> String {
 
 fn watched(watchdog: Watchdog) -> &'static str {
     match watchdog {
-        Watchdog::Loop => word("loop", "loop"),
-        Watchdog::Source => word("measurements", "measurements"),
-        Watchdog::Link => word("link", "link"),
+        Watchdog::Loop => word("loop", "Regelung"),
+        Watchdog::Source => word("measurements", "Messwerte"),
+        Watchdog::Link => word("link", "Verbindung"),
     }
 }
 

@@ -8,7 +8,7 @@ use crate::language::told;
 pub(crate) fn disk_full_in(time: Duration) -> String {
     let minutes = time.as_secs_f64() / 60.0;
     let lasts = if minutes < 120.0 { format!("{minutes:.0} min") } else { format!("{:.0} h", minutes / 60.0) };
-    told!("at this rate the disk will be full in {lasts}", "at this rate the disk will be full in {lasts}")
+    told!("at this rate the disk will be full in {lasts}", "bei dieser Rate ist der Datenträger in {lasts} voll")
 }
 
 #[cfg(test)]

@@ -6,34 +6,36 @@ use nima_machine::{
     rig::DeviceEvent,
 };
 
-use super::{Remedy as _, commands, refused_because};
+use super::{
+    Remedy as _, commands, device_name, loss_words, refused_because, scheduling_advice, side_word, state_name,
+};
 use crate::language::{told, word};
 
 /// What happened; `devices` are the names of the rig's devices, in the order of its roster.
 pub(crate) fn event(event: &Event, devices: &[String]) -> String {
     match *event {
         Event::StateChanged { side, from, to, .. } => {
-            told!("{} arm: from {} to {}", "{} arm: from {} to {}", side.word(), from.word(), to.word())
+            told!("{} arm: from {} to {}", "Arm {}: von {} zu {}", side_word(side), state_name(from), state_name(to))
         }
         Event::FaultRaised { side, fault, .. } => {
             let of = match fault {
-                Fault::DeviceLost { device, .. } => told!(" of the {}", " of the {}", name_of(device, devices)),
+                Fault::DeviceLost { device, .. } => told!(" of the {}", ", {}", name_of(device, devices)),
                 _ => String::new(),
             };
-            told!("{} arm: fault{of}: {}", "{} arm: fault{of}: {}", side.word(), fault.cause())
+            told!("{} arm: fault{of}: {}", "Arm {}: Störung{of}: {}", side_word(side), fault.cause())
         }
         Event::CommandRefused { side, command, why, .. } => {
             told!(
                 "{} arm: refused: {}: {}",
-                "{} arm: refused: {}: {}",
-                side.word(),
+                "Arm {}: abgelehnt: {}: {}",
+                side_word(side),
                 commands::command(command),
                 refused_because(why)
             )
         }
         Event::Device(event) => device(&event, devices),
-        Event::Scheduling(granted) => granted.advice().map_or_else(
-            || word("real-time scheduling granted", "real-time scheduling granted").to_owned(),
+        Event::Scheduling(granted) => scheduling_advice(granted).map_or_else(
+            || word("real-time scheduling granted", "Echtzeitpriorität gewährt").to_owned(),
             str::to_owned,
         ),
     }
@@ -42,17 +44,19 @@ pub(crate) fn event(event: &Event, devices: &[String]) -> String {
 /// What became of a device.
 pub(super) fn device(event: &DeviceEvent, devices: &[String]) -> String {
     let standing = match event.standing {
-        Standing::Closed => word("closed", "closed"),
-        Standing::Opening => word("is being opened", "is being opened"),
-        Standing::Connected => word("connected", "connected"),
-        Standing::Lost(loss) => loss.cause(),
+        Standing::Closed => word("closed", "geschlossen"),
+        Standing::Opening => word("is being opened", "wird geöffnet"),
+        Standing::Connected => word("connected", "verbunden"),
+        Standing::Lost(loss) => loss_words(loss),
     };
     format!("{}: {standing}", name_of(event.device, devices))
 }
 
 /// The name of a device by its place in the roster.
 fn name_of(device: u8, devices: &[String]) -> String {
-    devices.get(usize::from(device)).cloned().unwrap_or_else(|| told!("device {device}", "device {device}"))
+    devices
+        .get(usize::from(device))
+        .map_or_else(|| told!("device {device}", "Gerät {device}"), |name| device_name(name))
 }
 
 #[cfg(test)]

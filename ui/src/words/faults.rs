@@ -12,12 +12,11 @@ pub(crate) fn trouble_of(state: LoopState) -> String {
     match state {
         State::Faulted(fault) => format!("{}. {}", fault.cause(), fault.cure()),
         State::Stopped => {
-            word("Stopped. Release the stop, then engage again", "Stopped. Release the stop, then engage again")
-                .to_owned()
+            word("Stopped. Release the stop, then engage again", "Angehalten. Halt lösen, dann neu koppeln").to_owned()
         }
         State::Disconnected => word(
             "A device is missing or sends nothing. See Devices",
-            "A device is missing or sends nothing. See Devices",
+            "Ein Gerät fehlt oder sendet nichts. Siehe Geräte",
         )
         .to_owned(),
         State::Idle | State::Ready | State::Engaged | State::Clutched => String::new(),
@@ -27,45 +26,58 @@ pub(crate) fn trouble_of(state: LoopState) -> String {
 impl Remedy for Fault {
     fn cause(self) -> &'static str {
         match self {
-            Self::SourceSilent => word("The rig sent no valid data for 20 ms", "The rig sent no valid data for 20 ms"),
+            Self::SourceSilent => word(
+                "The rig sent no valid data for 20 ms",
+                "Der Aufbau sandte 20 ms lang keine \
+             gültigen Daten",
+            ),
             Self::LoopStalled { .. } => word(
                 "The control loop was blocked: drives and force were switched off",
-                "The control loop was blocked: drives and force were switched off",
+                "Die Regelung war blockiert: Antriebe und Kraft abgeschaltet",
             ),
             Self::ForceUnknown => word(
                 "The force at the tip is not known: the wrist sensor is not calibrated for this tool",
-                "The force at the tip is not known: the wrist sensor is not calibrated for this tool",
+                "Die Kraft an der Spitze ist unbekannt: Handgelenksensor nicht für dieses Instrument kalibriert",
             ),
             Self::DeviceLost { loss, .. } => match loss {
                 Loss::Disconnected => {
-                    word("A device was lost: its connection is gone", "A device was lost: its connection is gone")
+                    word("A device was lost: its connection is gone", "Ein Gerät ist ausgefallen: Verbindung getrennt")
                 }
-                Loss::Silent => word("A device was lost: it sends no data", "A device was lost: it sends no data"),
-                Loss::Corrupt => {
-                    word("A device was lost: its data are damaged", "A device was lost: its data are damaged")
-                }
+                Loss::Silent => word(
+                    "A device was lost: it sends no data",
+                    "Ein Gerät ist ausgefallen: es sendet \
+                 keine Daten",
+                ),
+                Loss::Corrupt => word(
+                    "A device was lost: its data are damaged",
+                    "Ein Gerät ist ausgefallen: seine Daten sind \
+                     beschädigt",
+                ),
                 Loss::Implausible => word(
                     "A device was lost: it sends impossible values",
-                    "A device was lost: it sends impossible values",
+                    "Ein Gerät ist ausgefallen: es sendet unmögliche Werte",
                 ),
                 Loss::Device { .. } => {
-                    word("A device was lost: it reports a fault", "A device was lost: it reports a fault")
+                    word("A device was lost: it reports a fault", "Ein Gerät ist ausgefallen: es meldet eine Störung")
                 }
             },
             Self::DrivesOff => word(
                 "The arm does not follow its commands, or the handle has switched its motors off",
-                "The arm does not follow its commands, or the handle has switched its motors off",
+                "Der Arm folgt seinen Befehlen nicht, oder das Handgerät hat seine Motoren abgeschaltet",
             ),
-            Self::OtherArm => word("The other arm has a fault", "The other arm has a fault"),
+            Self::OtherArm => word("The other arm has a fault", "Der andere Arm hat eine Störung"),
             Self::SamplesLost => word(
                 "Too many samples of the rig are lost or damaged",
-                "Too many samples of the rig are lost or damaged",
+                "Zu viele Messwerte des Aufbaus sind verloren oder beschädigt",
             ),
-            Self::LinkSilent => word("No data came over the link for 0.1 s", "No data came over the link for 0.1 s"),
-            Self::ClockJumped => word(
-                "The clock of the control loop jumped or stopped",
-                "The clock of the control loop jumped or stopped",
+            Self::LinkSilent => word(
+                "No data came over the link for 0.1 s",
+                "Über die Verbindung kamen 0.1 s lang \
+             keine Daten",
             ),
+            Self::ClockJumped => {
+                word("The clock of the control loop jumped or stopped", "Die Uhr der Regelung sprang oder blieb stehen")
+            }
             Self::Implausible { what } => what.cause(),
             Self::FarEnd { stop } => stop.cause(),
         }
@@ -75,39 +87,39 @@ impl Remedy for Fault {
         match self {
             Self::SourceSilent => word(
                 "Check the force sensor and the handle, then release the stop and engage again",
-                "Check the force sensor and the handle, then release the stop and engage again",
+                "Kraftsensor und Handgerät prüfen, dann Halt lösen und neu koppeln",
             ),
             Self::LoopStalled { .. } => word(
                 "Close other programs or grant real-time priority, then release the stop and engage again",
-                "Close other programs or grant real-time priority, then release the stop and engage again",
+                "Andere Programme schließen oder Echtzeitpriorität gewähren, dann Halt lösen und neu koppeln",
             ),
             Self::ForceUnknown => word(
                 "Calibrate gravity (Calibration panel), then release the stop and engage again",
-                "Calibrate gravity (Calibration panel), then release the stop and engage again",
+                "Schwerkraft kalibrieren (Panel Kalibrierung), dann Halt lösen und neu koppeln",
             ),
             Self::DeviceLost { .. } => word(
                 "See Devices: the device reconnects automatically; then release the stop and engage again",
-                "See Devices: the device reconnects automatically; then release the stop and engage again",
+                "Siehe Geräte: das Gerät verbindet sich selbst wieder; dann Halt lösen und neu koppeln",
             ),
             Self::DrivesOff => word(
                 "Check the lights and buttons on the arm and on the handle, then release the stop and engage again",
-                "Check the lights and buttons on the arm and on the handle, then release the stop and engage again",
+                "Lampen und Tasten an Arm und Handgerät prüfen, dann Halt lösen und neu koppeln",
             ),
             Self::OtherArm => word(
                 "Clear the other arm's fault, then release the stop and engage again",
-                "Clear the other arm's fault, then release the stop and engage again",
+                "Störung des anderen Arms beheben, dann Halt lösen und neu koppeln",
             ),
             Self::SamplesLost => word(
                 "Check the numbers of lost samples in Devices, and the cables; then release the stop and engage again",
-                "Check the numbers of lost samples in Devices, and the cables; then release the stop and engage again",
+                "Zahl verlorener Messwerte unter Geräte und Kabel prüfen; dann Halt lösen und neu koppeln",
             ),
             Self::LinkSilent => word(
                 "Check the link to the follower, then release the stop and engage again",
-                "Check the link to the follower, then release the stop and engage again",
+                "Verbindung zum Folgearm prüfen, dann Halt lösen und neu koppeln",
             ),
             Self::ClockJumped => word(
                 "Find out what changes this computer's clock, then release the stop and engage again",
-                "Find out what changes this computer's clock, then release the stop and engage again",
+                "Klären, was die Uhr dieses Rechners verstellt, dann Halt lösen und neu koppeln",
             ),
             Self::Implausible { what } => what.cure(),
             Self::FarEnd { stop } => stop.cure(),
@@ -118,45 +130,51 @@ impl Remedy for Fault {
 impl Remedy for FarStop {
     fn cause(self) -> &'static str {
         match self {
-            Self::Stopped => word("Somebody stopped the follower's machine", "Somebody stopped the follower's machine"),
+            Self::Stopped => word(
+                "Somebody stopped the follower's machine",
+                "Jemand hat am Rechner des Folgearms \
+             angehalten",
+            ),
             Self::SourceSilent => word(
                 "The follower's machine gets no data, from its devices or from here",
-                "The follower's machine gets no data, from its devices or from here",
+                "Der Rechner des Folgearms erhält keine Daten, von seinen Geräten oder von hier",
             ),
             Self::LoopStalled => word(
                 "The control loop of the follower's machine was blocked",
-                "The control loop of the follower's machine was blocked",
+                "Die Regelung am Rechner des Folgearms war blockiert",
             ),
             Self::ForceUnknown => word(
                 "The follower's machine does not know the force at the tip",
-                "The follower's machine does not know the force at the tip",
+                "Der Rechner des Folgearms kennt die Kraft an der Spitze nicht",
             ),
-            Self::DeviceLost => {
-                word("A device of the follower's machine was lost", "A device of the follower's machine was lost")
-            }
+            Self::DeviceLost => word(
+                "A device of the follower's machine was lost",
+                "Ein Gerät am Rechner des Folgearms ist \
+                 ausgefallen",
+            ),
             Self::DrivesOff => word(
                 "The arm at the follower's machine does not follow its commands",
-                "The arm at the follower's machine does not follow its commands",
+                "Der Arm am Rechner des Folgearms folgt seinen Befehlen nicht",
             ),
             Self::SamplesLost => word(
                 "The follower's machine loses too many samples of its devices, or of what is sent from here",
-                "The follower's machine loses too many samples of its devices, or of what is sent from here",
+                "Der Rechner des Folgearms verliert zu viele Messwerte seiner Geräte oder zu viele Daten von hier",
             ),
             Self::LinkSilent => word(
                 "No data came over a link within the follower's machine",
-                "No data came over a link within the follower's machine",
+                "Über eine Verbindung im Rechner des Folgearms kamen keine Daten",
             ),
             Self::ClockJumped => word(
                 "The clock of the follower's machine jumped or stopped",
-                "The clock of the follower's machine jumped or stopped",
+                "Die Uhr am Rechner des Folgearms sprang oder blieb stehen",
             ),
             Self::Implausible => word(
                 "A measurement at the follower's machine is not plausible",
-                "A measurement at the follower's machine is not plausible",
+                "Eine Messung am Rechner des Folgearms ist nicht plausibel",
             ),
             Self::Other => word(
                 "The other arm of the follower's machine has a fault",
-                "The other arm of the follower's machine has a fault",
+                "Der andere Arm am Rechner des Folgearms hat eine Störung",
             ),
         }
     }
@@ -165,13 +183,12 @@ impl Remedy for FarStop {
         match self {
             Self::Stopped => word(
                 "Ask there whether it is safe, then release the stop and engage again",
-                "Ask there whether it is safe, then release the stop and engage again",
+                "Dort fragen, ob es sicher ist, dann Halt lösen und neu koppeln",
             ),
             _ => word(
                 "See the screen or the output of the follower's machine for the cause; then release the stop and \
                  engage again",
-                "See the screen or the output of the follower's machine for the cause; then release the stop and \
-                 engage again",
+                "Bildschirm oder Ausgabe des Rechners am Folgearm nennt die Ursache; dann Halt lösen und neu koppeln",
             ),
         }
     }
@@ -182,33 +199,33 @@ impl Remedy for Implausible {
         match self {
             Self::ForceFrozen => word(
                 "The force sensor repeats one reading, or is at the end of its range",
-                "The force sensor repeats one reading, or is at the end of its range",
+                "Der Kraftsensor wiederholt einen Messwert oder ist am Ende seines Messbereichs",
             ),
             Self::ForceJumped => word(
                 "The measured force jumped by more than any contact can cause",
-                "The measured force jumped by more than any contact can cause",
+                "Die gemessene Kraft sprang stärker, als ein Kontakt bewirken kann",
             ),
             Self::ForceAlong => word(
                 "The measured force pulls the tip into the tissue: its sign or its frame is wrong",
-                "The measured force pulls the tip into the tissue: its sign or its frame is wrong",
+                "Die gemessene Kraft zieht die Spitze ins Gewebe: Vorzeichen oder Koordinaten falsch",
             ),
             Self::LinkFrozen => word(
                 "The link repeats one message with new time stamps",
-                "The link repeats one message with new time stamps",
+                "Die Verbindung wiederholt eine Nachricht mit neuen Zeitstempeln",
             ),
             Self::HandleJumped => word(
                 "The handle's position jumped by more than a hand can move it",
-                "The handle's position jumped by more than a hand can move it",
+                "Die Position des Handgeräts sprang weiter, als eine Hand es bewegen kann",
             ),
             Self::HandleFrozen => word(
                 "The handle's position does not change although its force does",
-                "The handle's position does not change although its force does",
+                "Die Position des Handgeräts ändert sich nicht, seine Kraft aber doch",
             ),
             Self::TipJumped => word(
                 "The arm's position jumped by more than the arm can move",
-                "The arm's position jumped by more than the arm can move",
+                "Die Position des Arms sprang weiter, als der Arm sich bewegen kann",
             ),
-            Self::ArmAstray => word("The arm does not follow its command", "The arm does not follow its command"),
+            Self::ArmAstray => word("The arm does not follow its command", "Der Arm folgt seinem Befehl nicht"),
         }
     }
 
@@ -216,37 +233,34 @@ impl Remedy for Implausible {
         match self {
             Self::ForceFrozen => word(
                 "Unload the force sensor, or switch it off and on again; then release the stop and engage again",
-                "Unload the force sensor, or switch it off and on again; then release the stop and engage again",
+                "Kraftsensor entlasten oder aus- und einschalten; dann Halt lösen und neu koppeln",
             ),
             Self::ForceJumped => word(
                 "Check whether something hit the instrument, and check the sensor's plug and zero; then release the \
                  stop and engage again",
-                "Check whether something hit the instrument, and check the sensor's plug and zero; then release the \
-                 stop and engage again",
+                "Prüfen: Stoß ans Instrument, Stecker und Nullpunkt des Sensors; dann Halt lösen und neu koppeln",
             ),
             Self::ForceAlong => word(
                 "Calibrate gravity and the correspondence of the force sensor again, then release the stop and engage \
                  again",
-                "Calibrate gravity and the correspondence of the force sensor again, then release the stop and engage \
-                 again",
+                "Schwerkraft und Korrespondenz des Kraftsensors neu kalibrieren, dann Halt lösen und neu koppeln",
             ),
             Self::LinkFrozen => word(
                 "Check the follower's computer and the link, then release the stop and engage again",
-                "Check the follower's computer and the link, then release the stop and engage again",
+                "Rechner des Folgearms und Verbindung prüfen, dann Halt lösen und neu koppeln",
             ),
             Self::HandleJumped | Self::HandleFrozen => word(
                 "Put the handle in its rest position and calibrate it (button on the device), then release the stop \
                  and engage again",
-                "Put the handle in its rest position and calibrate it (button on the device), then release the stop \
-                 and engage again",
+                "Handgerät in Ruhestellung bringen und kalibrieren (Taste am Gerät), dann Halt lösen und neu koppeln",
             ),
             Self::TipJumped => word(
                 "Check the arm's connection and its joint readings, then release the stop and engage again",
-                "Check the arm's connection and its joint readings, then release the stop and engage again",
+                "Anschluss und Gelenkwerte des Arms prüfen, dann Halt lösen und neu koppeln",
             ),
             Self::ArmAstray => word(
                 "Check what blocks the arm, its lights and its reach; then release the stop and engage again",
-                "Check what blocks the arm, its lights and its reach; then release the stop and engage again",
+                "Prüfen: was den Arm blockiert, seine Lampen, seine Reichweite; dann Halt lösen und neu koppeln",
             ),
         }
     }

@@ -38,18 +38,22 @@ pub(crate) fn finding_words(kind: PartKind, finding: &Finding) -> [String; 2] {
 }
 
 const SILENT: [Text; 2] = [
-    Text::of("It sent nothing", "It sent nothing"),
-    Text::of("Check cable and power; the line above tells more", "Check cable and power; the line above tells more"),
+    Text::of("It sent nothing", "Es hat nichts gesendet"),
+    Text::of(
+        "Check cable and power; the line above tells more",
+        "Kabel und Strom prüfen; mehr dazu in der Zeile \
+     darüber",
+    ),
 ];
 const REOPENED: [Text; 2] = [
-    Text::of("It was lost and opened again during the test", "It was lost and opened again during the test"),
-    Text::of("Check plug and cable, then test again", "Check plug and cable, then test again"),
+    Text::of("It was lost and opened again during the test", "Es fiel während des Tests aus und wurde neu geöffnet"),
+    Text::of("Check plug and cable, then test again", "Stecker und Kabel prüfen, dann neu testen"),
 ];
 const FROZEN: [Text; 2] = [
-    Text::of("It repeats the same numbers", "It repeats the same numbers"),
+    Text::of("It repeats the same numbers", "Es wiederholt dieselben Zahlen"),
     Text::of(
         "Switch it off and on; if that does not help, it is damaged",
-        "Switch it off and on; if that does not help, it is damaged",
+        "Aus- und einschalten; hilft das nicht, ist es defekt",
     ),
 ];
 
@@ -58,18 +62,18 @@ fn wrong_rate(hz: f64, nominal_hz: f64) -> [String; 2] {
     let cure = if hz < nominal_hz {
         word(
             "Check the rate that the device is set to, and what else uses its line or this computer",
-            "Check the rate that the device is set to, and what else uses its line or this computer",
+            "Eingestellte Rate des Geräts prüfen, und was sonst seine Leitung oder diesen Rechner nutzt",
         )
     } else {
         word(
             "The device is set to another rate than the rig file says: correct one of them",
-            "The device is set to another rate than the rig file says: correct one of them",
+            "Das Gerät ist auf eine andere Rate eingestellt als in der Aufbaudatei: eine davon berichtigen",
         )
     };
     [
         told!(
             "It sends {hz:.0} readings per second, not {nominal_hz:.0}",
-            "It sends {hz:.0} readings per second, not {nominal_hz:.0}"
+            "Es sendet {hz:.0} Messwerte pro Sekunde, nicht {nominal_hz:.0}"
         ),
         cure.to_owned(),
     ]
@@ -78,10 +82,10 @@ fn wrong_rate(hz: f64, nominal_hz: f64) -> [String; 2] {
 /// Missing readings.
 fn lost(count: u64) -> [String; 2] {
     [
-        told!("{count} readings never arrived", "{count} readings never arrived"),
+        told!("{count} readings never arrived", "{count} Messwerte kamen nie an"),
         word(
             "Check the cable; in a network, connect it without a switch; look at the load of this computer",
-            "Check the cable; in a network, connect it without a switch; look at the load of this computer",
+            "Kabel prüfen; im Netzwerk ohne Switch anschließen; Last dieses Rechners prüfen",
         )
         .to_owned(),
     ]
@@ -91,13 +95,13 @@ fn lost(count: u64) -> [String; 2] {
 fn damaged(count: u64) -> [String; 2] {
     [
         if count == 1 {
-            word("a frame was damaged", "a frame was damaged").to_owned()
+            word("a frame was damaged", "ein Datenrahmen war beschädigt").to_owned()
         } else {
-            told!("{count} frames were damaged", "{count} frames were damaged")
+            told!("{count} frames were damaged", "{count} Datenrahmen waren beschädigt")
         },
         word(
             "Check plug, shield and length of the cable, and keep it away from motors",
-            "Check plug, shield and length of the cable, and keep it away from motors",
+            "Stecker, Schirm und Länge des Kabels prüfen, von Motoren fernhalten",
         )
         .to_owned(),
     ]
@@ -108,11 +112,11 @@ fn refused(count: u64) -> [String; 2] {
     [
         told!(
             "{count} readings were refused: overload, or impossible numbers",
-            "{count} readings were refused: overload, or impossible numbers"
+            "{count} Messwerte abgelehnt: Überlast oder unmögliche Zahlen"
         ),
         word(
             "Take the load off; if that does not help, switch it off and on",
-            "Take the load off; if that does not help, switch it off and on",
+            "Entlasten; hilft das nicht, aus- und einschalten",
         )
         .to_owned(),
     ]
@@ -124,18 +128,18 @@ fn late(kind: PartKind, p99_s: f64, most_s: f64) -> [String; 2] {
         PartKind::Sensor | PartKind::Servos | PartKind::Tracker => word(
             "A serial adapter must hand on its bytes after 1 ms (latency_timer: nima devices --udev); else look at the \
              load of this computer (panel Timing)",
-            "A serial adapter must hand on its bytes after 1 ms (latency_timer: nima devices --udev); else look at the \
-             load of this computer (panel Timing)",
+            "Ein serieller Adapter muss Bytes nach 1 ms weitergeben (latency_timer: nima devices --udev); sonst Last \
+             dieses Rechners prüfen (Panel Timing)",
         ),
         PartKind::Handle | PartKind::Arm | PartKind::Pedal => word(
             "Look at the load of this computer (panel Timing), and connect the device without a hub or switch",
-            "Look at the load of this computer (panel Timing), and connect the device without a hub or switch",
+            "Last dieses Rechners prüfen (Panel Timing), Gerät ohne Hub oder Switch anschließen",
         ),
     };
     [
         told!(
             "One reading in a hundred was {:.0} ms old or older; {:.0} ms would be in order",
-            "One reading in a hundred was {:.0} ms old or older; {:.0} ms would be in order",
+            "Jeder hundertste Messwert war {:.0} ms alt oder älter; in Ordnung wären {:.0} ms",
             p99_s * 1e3,
             most_s * 1e3
         ),
@@ -148,10 +152,10 @@ fn moved(kind: PartKind, channel: usize) -> [String; 2] {
     [
         told!(
             "It did not rest ({}): noise and gravity cannot be judged",
-            "It did not rest ({}): noise and gravity cannot be judged",
+            "Es ruhte nicht ({}): Rauschen und Schwerkraft nicht beurteilbar",
             channel_name(kind, channel)
         ),
-        word("Leave it alone and test again", "Leave it alone and test again").to_owned(),
+        word("Leave it alone and test again", "In Ruhe lassen und neu testen").to_owned(),
     ]
 }
 
@@ -160,21 +164,21 @@ fn noisy(kind: PartKind, channel: usize, is: &str, most: &str) -> [String; 2] {
     let cure = match kind {
         PartKind::Sensor => word(
             "Look for vibration; check that its mount is tight and its cable shielded and earthed",
-            "Look for vibration; check that its mount is tight and its cable shielded and earthed",
+            "Vibration suchen; prüfen, ob Montage fest und Kabel geschirmt und geerdet ist",
         ),
         PartKind::Tracker => word(
             "Clean the markers, keep out reflections and sunlight, bring it nearer to the camera",
-            "Clean the markers, keep out reflections and sunlight, bring it nearer to the camera",
+            "Marker reinigen, Reflexe und Sonnenlicht fernhalten, näher an die Kamera bringen",
         ),
         _ => word(
             "Make sure that nothing touches it and that it stands firmly",
-            "Make sure that nothing touches it and that it stands firmly",
+            "Sicherstellen, dass nichts es berührt und es fest steht",
         ),
     };
     [
         told!(
             "Noise of {}: {is}; at most {most} is usual",
-            "Noise of {}: {is}; at most {most} is usual",
+            "Rauschen von {}: {is}; üblich höchstens {most}",
             channel_name(kind, channel)
         ),
         cure.to_owned(),
@@ -186,11 +190,11 @@ fn gravity(size_m_s2: f64) -> [String; 2] {
     [
         told!(
             "At rest its accelerometer measures {size_m_s2:.2} m/s\u{b2}, not 9.81",
-            "At rest its accelerometer measures {size_m_s2:.2} m/s\u{b2}, not 9.81"
+            "In Ruhe misst der Beschleunigungssensor {size_m_s2:.2} m/s\u{b2}, nicht 9.81"
         ),
         word(
             "Switch it off and on; if that does not help, calibrations by its accelerometer are not possible",
-            "Switch it off and on; if that does not help, calibrations by its accelerometer are not possible",
+            "Aus- und einschalten; hilft das nicht, sind Kalibrierungen mit dem Beschleunigungssensor unmöglich",
         )
         .to_owned(),
     ]
@@ -201,14 +205,14 @@ fn at_the_end(kind: PartKind, channel: usize, is: &str, range: &str) -> [String;
     let cure = match kind {
         PartKind::Servos => word(
             "Turn the instrument back, or correct the limits in the rig file",
-            "Turn the instrument back, or correct the limits in the rig file",
+            "Instrument zurückdrehen oder Grenzen in der Aufbaudatei berichtigen",
         ),
-        _ => word("Move it towards the middle before you engage", "Move it towards the middle before you engage"),
+        _ => word("Move it towards the middle before you engage", "Vor dem Koppeln zur Mitte bewegen"),
     };
     [
         told!(
             "{} is at {is}, close to the end of its range ({range})",
-            "{} is at {is}, close to the end of its range ({range})",
+            "{} ist bei {is}, nahe am Ende des Bereichs ({range})",
             capital(&channel_name(kind, channel))
         ),
         cure.to_owned(),
@@ -218,15 +222,15 @@ fn at_the_end(kind: PartKind, channel: usize, is: &str, range: &str) -> [String;
 /// A marker that is not seen.
 fn hidden(tool: usize, share: f64) -> [String; 2] {
     let seen = if share <= 0.0 {
-        word("never", "never").to_owned()
+        word("never", "nie").to_owned()
     } else {
-        told!("in {:.0} % of the frames", "in {:.0} % of the frames", 100.0 * share)
+        told!("in {:.0} % of the frames", "in {:.0} % der Bilder", 100.0 * share)
     };
     [
-        told!("The {} was seen {seen}", "The {} was seen {seen}", marker(tool)),
+        told!("The {} was seen {seen}", "{} wurde {seen} gesehen", marker(tool)),
         word(
             "Clear the view from the camera, turn the marker towards it, check its definition in the rig file",
-            "Clear the view from the camera, turn the marker towards it, check its definition in the rig file",
+            "Sicht der Kamera freimachen, Marker zu ihr drehen, seine Definition in der Aufbaudatei prüfen",
         )
         .to_owned(),
     ]

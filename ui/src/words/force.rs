@@ -12,36 +12,46 @@ use crate::language::word;
 impl Words for Reason {
     fn words(self) -> &'static str {
         match self {
-            Self::Open => word("open", "open"),
-            Self::NotPermitted => word("the loop is not engaged", "the loop is not engaged"),
+            Self::Open => word("open", "offen"),
+            Self::NotPermitted => word("the loop is not engaged", "die Regelung ist nicht gekoppelt"),
             Self::RunsAway => word(
                 "the handle runs away and nobody carries the force",
-                "the handle runs away and nobody carries the force",
+                "das Handgerät läuft weg, und niemand trägt die Kraft",
             ),
-            Self::HandGone => word("the hand has let go of the handle", "the hand has let go of the handle"),
-            Self::NothingAsked => word("the mode has no valid result", "the mode has no valid result"),
-            Self::NotFinite => word("the mode's result is not a number", "the mode's result is not a number"),
+            Self::HandGone => word("the hand has let go of the handle", "die Hand hat das Handgerät losgelassen"),
+            Self::NothingAsked => word("the mode has no valid result", "der Modus hat kein gültiges Ergebnis"),
+            Self::NotFinite => word("the mode's result is not a number", "das Ergebnis des Modus ist keine Zahl"),
             Self::Implausible => word(
                 "the mode asks for more force than any contact can give",
-                "the mode asks for more force than any contact can give",
+                "der Modus verlangt mehr Kraft, als ein Kontakt geben kann",
             ),
-            Self::Ageing => word("the data are late, so the force fades", "the data are late, so the force fades"),
-            Self::TooOld => word("the data are too old", "the data are too old"),
-            Self::HandSlow => word("the hand is slower than the dead band", "the hand is slower than the dead band"),
-            Self::SpeedUnknown => word("the speed of the hand is not known", "the speed of the hand is not known"),
-            Self::GainZero => word("the gain is zero", "the gain is zero"),
+            Self::Ageing => word(
+                "the data are late, so the force fades",
+                "die Daten sind verspätet, die Kraft wird \
+             ausgeblendet",
+            ),
+            Self::TooOld => word("the data are too old", "die Daten sind zu alt"),
+            Self::HandSlow => word("the hand is slower than the dead band", "die Hand ist langsamer als das Totband"),
+            Self::SpeedUnknown => word(
+                "the speed of the hand is not known",
+                "die Geschwindigkeit der Hand ist \
+             unbekannt",
+            ),
+            Self::GainZero => word("the gain is zero", "die Verstärkung ist null"),
             Self::GainRamping => {
-                word("the gain is still changing to the chosen value", "the gain is still changing to the chosen value")
+                word("the gain is still changing to the chosen value", "die Verstärkung läuft noch zum gewählten Wert")
             }
-            Self::ChangeTooFast => word("the force would change too fast", "the force would change too fast"),
+            Self::ChangeTooFast => word("the force would change too fast", "die Kraft würde sich zu schnell ändern"),
             Self::EnergySpent => word(
                 "the hand would get back more energy than it put in",
-                "the hand would get back more energy than it put in",
+                "die Hand bekäme mehr Energie zurück, als sie gab",
             ),
-            Self::AboveCeiling => word("the force is above the ceiling", "the force is above the ceiling"),
-            Self::AboveDeviceLimit => {
-                word("the force is above what the device can give", "the force is above what the device can give")
-            }
+            Self::AboveCeiling => word("the force is above the ceiling", "die Kraft liegt über der Höchstkraft"),
+            Self::AboveDeviceLimit => word(
+                "the force is above what the device can give",
+                "die Kraft liegt über dem, was das Gerät geben \
+                 kann",
+            ),
         }
     }
 }
@@ -49,41 +59,43 @@ impl Words for Reason {
 impl Words for ForceSource {
     fn words(self) -> &'static str {
         match self {
-            Self::AtTip => word("measured at the tip", "measured at the tip"),
+            Self::AtTip => word("measured at the tip", "an der Spitze gemessen"),
             Self::Wrist => word(
                 "wrist force without the tool's weight, but with trocar friction",
-                "wrist force without the tool's weight, but with trocar friction",
+                "Handgelenkkraft ohne Instrumentengewicht, aber mit Trokarreibung",
             ),
             Self::Network => word(
                 "wrist force without the tool's weight and without trocar friction (network)",
-                "wrist force without the tool's weight and without trocar friction (network)",
+                "Handgelenkkraft ohne Instrumentengewicht und ohne Trokarreibung (neuronales Netz)",
             ),
             Self::Extrapolated => word(
                 "wrist force without weight and friction, outside the network's training data: less exact",
-                "wrist force without weight and friction, outside the network's training data: less exact",
+                "Handgelenkkraft ohne Gewicht und Reibung, außerhalb der Trainingsdaten des Netzes: ungenauer",
             ),
             Self::InDoubt { fallback: Fallback::WristForce, .. } => word(
                 "network in doubt: wrist force with trocar friction is used",
-                "network in doubt: wrist force with trocar friction is used",
+                "Netz unsicher: Handgelenkkraft mit Trokarreibung wird benutzt",
             ),
             Self::InDoubt { unsure: Unsure::NotMoved, fallback: Fallback::HoldAndFade } => word(
                 "not known before the instrument has moved: no force",
-                "not known before the instrument has moved: no force",
+                "unbekannt, bis das Instrument sich bewegt hat: keine Kraft",
             ),
             Self::InDoubt { fallback: Fallback::HoldAndFade, .. } => word(
                 "network in doubt: the last reliable force fades out",
-                "network in doubt: the last reliable force fades out",
+                "Netz unsicher: die letzte zuverlässige Kraft wird ausgeblendet",
             ),
-            Self::Uncalibrated => {
-                word("unknown: the wrist sensor is not calibrated", "unknown: the wrist sensor is not calibrated")
-            }
+            Self::Uncalibrated => word(
+                "unknown: the wrist sensor is not calibrated",
+                "unbekannt: der Handgelenksensor ist nicht \
+                 kalibriert",
+            ),
             Self::NoOrientation => word(
                 "unknown: the orientation of the wrist is missing",
-                "unknown: the orientation of the wrist is missing",
+                "unbekannt: die Orientierung des Handgelenks fehlt",
             ),
             Self::Poisoned => word(
                 "unknown: the calibration or the network gives invalid numbers",
-                "unknown: the calibration or the network gives invalid numbers",
+                "unbekannt: Kalibrierung oder Netz liefert ungültige Zahlen",
             ),
         }
     }
@@ -92,16 +104,18 @@ impl Words for ForceSource {
 impl Words for Unsure {
     fn words(self) -> &'static str {
         match self {
-            Self::OutsideTraining => {
-                word("the sample is far outside the training data", "the sample is far outside the training data")
-            }
+            Self::OutsideTraining => word(
+                "the sample is far outside the training data",
+                "der Messwert liegt weit außerhalb der \
+                 Trainingsdaten",
+            ),
             Self::NotMoved => word(
                 "the direction of friction is not known yet; move the instrument in or out by 2 mm",
-                "the direction of friction is not known yet; move the instrument in or out by 2 mm",
+                "die Richtung der Reibung ist noch unbekannt; Instrument um 2 mm hinein- oder herausbewegen",
             ),
             Self::Missing => word(
                 "the orientation or the depth through the trocar is missing",
-                "the orientation or the depth through the trocar is missing",
+                "die Orientierung oder die Tiefe durch den Trokar fehlt",
             ),
         }
     }

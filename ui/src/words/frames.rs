@@ -9,18 +9,20 @@ impl Words for Source {
     fn words(self) -> &'static str {
         match self {
             Self::Flange => {
-                word("the arm sends no joint angles; connect it", "the arm sends no joint angles; connect it")
+                word("the arm sends no joint angles; connect it", "der Arm sendet keine Gelenkwinkel; anschließen")
             }
             Self::Marker => word(
                 "the tracker does not see the instrument's marker; connect the tracker and clear the line of sight",
-                "the tracker does not see the instrument's marker; connect the tracker and clear the line of sight",
+                "der Tracker sieht den Marker des Instruments nicht; Tracker anschließen und Sichtlinie freimachen",
             ),
             Self::Handle => {
-                word("the handle sends no position; connect it", "the handle sends no position; connect it")
+                word("the handle sends no position; connect it", "das Handgerät sendet keine Position; anschließen")
             }
-            Self::Wrench => {
-                word("the wrist sensor sends no data; connect it", "the wrist sensor sends no data; connect it")
-            }
+            Self::Wrench => word(
+                "the wrist sensor sends no data; connect it",
+                "der Handgelenksensor sendet keine Daten; \
+                 anschließen",
+            ),
         }
     }
 }
@@ -28,21 +30,29 @@ impl Words for Source {
 impl Words for Missing {
     fn words(self) -> &'static str {
         match self {
-            Self::Poses => word("more of them", "more of them"),
-            Self::Turns => word("larger turns: tilt further to all sides", "larger turns: tilt further to all sides"),
+            Self::Poses => word("more of them", "weitere"),
+            Self::Turns => word(
+                "larger turns: tilt further to all sides",
+                "größere Drehungen: nach allen Seiten \
+             weiter kippen",
+            ),
             Self::SecondAxis => word(
                 "turns about another axis: turn about the shaft too",
-                "turns about another axis: turn about the shaft too",
+                "Drehungen um eine andere Achse: auch um den Schaft drehen",
             ),
-            Self::Tilt => word("larger tilts: pivot further to all sides", "larger tilts: pivot further to all sides"),
-            Self::SecondTilt => word("tilts to the other sides", "tilts to the other sides"),
-            Self::Distance => word("points further apart", "points further apart"),
+            Self::Tilt => word(
+                "larger tilts: pivot further to all sides",
+                "stärkere Kippung: nach allen Seiten weiter \
+             schwenken",
+            ),
+            Self::SecondTilt => word("tilts to the other sides", "Kippung nach den anderen Seiten"),
+            Self::Distance => word("points further apart", "weiter auseinanderliegende Punkte"),
             Self::Beside => {
-                word("a point beside the line through the others", "a point beside the line through the others")
+                word("a point beside the line through the others", "ein Punkt neben der Linie durch die anderen")
             }
             Self::Directions => word(
                 "other directions: shaft level and up, to all sides",
-                "other directions: shaft level and up, to all sides",
+                "andere Richtungen: Schaft waagrecht und nach oben, nach allen Seiten",
             ),
             Self::Move(way) => way.words(),
         }
@@ -52,12 +62,12 @@ impl Words for Missing {
 impl Words for Move {
     fn words(self) -> &'static str {
         match self {
-            Self::Right => word("move to the right in the picture", "move to the right in the picture"),
-            Self::Up => word("move up in the picture", "move up in the picture"),
-            Self::Deeper => word("move into the picture", "move into the picture"),
-            Self::Left => word("move to the left in the picture", "move to the left in the picture"),
-            Self::Down => word("move down in the picture", "move down in the picture"),
-            Self::Back => word("move back, out of the picture", "move back, out of the picture"),
+            Self::Right => word("move to the right in the picture", "im Bild nach rechts bewegen"),
+            Self::Up => word("move up in the picture", "im Bild nach oben bewegen"),
+            Self::Deeper => word("move into the picture", "in das Bild hinein bewegen"),
+            Self::Left => word("move to the left in the picture", "im Bild nach links bewegen"),
+            Self::Down => word("move down in the picture", "im Bild nach unten bewegen"),
+            Self::Back => word("move back, out of the picture", "zurück, aus dem Bild heraus bewegen"),
         }
     }
 }
@@ -65,48 +75,51 @@ impl Words for Move {
 /// Why a result got its verdict, and what to do.
 pub(crate) fn cause(cause: &Cause) -> String {
     match cause {
-        Cause::Proven => word("accurate on held-out data", "accurate on held-out data").to_owned(),
+        Cause::Proven => word("accurate on held-out data", "genau auf Testdaten").to_owned(),
         Cause::TooFew { have, least } => told!(
             "{have} recorded, at least {least} are needed; record more",
-            "{have} recorded, at least {least} are needed; record more"
+            "{have} aufgezeichnet, mindestens {least} nötig; mehr aufzeichnen"
         ),
         Cause::SmallTurns { turn_deg, least_deg } => {
             told!(
                 "the turns are too small ({turn_deg:.1} of {least_deg:.0} deg); tilt further and record more",
-                "the turns are too small ({turn_deg:.1} of {least_deg:.0} deg); tilt further and record more"
+                "die Drehungen sind zu klein ({turn_deg:.1} von {least_deg:.0} deg); weiter kippen und mehr aufzeichnen"
             )
         }
         Cause::OneAxis { second_deg, least_deg } => told!(
             "it turned about one axis only ({second_deg:.1} of {least_deg:.0} deg about another); turn about another \
              axis too",
-            "it turned about one axis only ({second_deg:.1} of {least_deg:.0} deg about another); turn about another \
-             axis too"
+            "nur um eine Achse gedreht ({second_deg:.1} von {least_deg:.0} deg um eine andere); auch um eine andere \
+             Achse drehen"
         ),
         Cause::NearlyParallel { tilt_deg, least_deg } => {
             told!(
                 "the shaft's lines are nearly parallel ({tilt_deg:.1} of {least_deg:.0} deg); pivot further to all \
                  sides",
-                "the shaft's lines are nearly parallel ({tilt_deg:.1} of {least_deg:.0} deg); pivot further to all \
-                 sides"
+                "die Schaftlinien sind fast parallel ({tilt_deg:.1} von {least_deg:.0} deg); nach allen Seiten weiter \
+                 schwenken"
             )
         }
         Cause::Collinear { .. } => {
-            word("all lie on one line; add one beside it", "all lie on one line; add one beside it").to_owned()
-        }
-        Cause::OnePlane { .. } => {
-            word("all lie in one plane; add a direction out of it", "all lie in one plane; add a direction out of it")
+            word("all lie on one line; add one beside it", "alle liegen auf einer Linie; eine daneben hinzufügen")
                 .to_owned()
         }
+        Cause::OnePlane { .. } => word(
+            "all lie in one plane; add a direction out of it",
+            "alle liegen in einer Ebene; eine Richtung \
+             außerhalb hinzufügen",
+        )
+        .to_owned(),
         Cause::Weightless { weight_n, least_n } => told!(
             "the force does not follow gravity ({weight_n:.2} of {least_n:.1} N); check that the sensor reads and that \
              a tool hangs on it",
-            "the force does not follow gravity ({weight_n:.2} of {least_n:.1} N); check that the sensor reads and that \
-             a tool hangs on it"
+            "die Kraft folgt nicht der Schwerkraft ({weight_n:.2} von {least_n:.1} N); prüfen, ob der Sensor misst und \
+             ein Instrument daran hängt"
         ),
         Cause::UncertainPlace { by_m, most_m } => {
             told!(
                 "known to {:.1} mm only, {:.1} mm are allowed; record more",
-                "known to {:.1} mm only, {:.1} mm are allowed; record more",
+                "nur auf {:.1} mm bekannt, {:.1} mm erlaubt; mehr aufzeichnen",
                 by_m * 1e3,
                 most_m * 1e3
             )
@@ -114,27 +127,27 @@ pub(crate) fn cause(cause: &Cause) -> String {
         Cause::UncertainAngle { by_deg, most_deg } => {
             told!(
                 "known to {by_deg:.2} deg only, {most_deg:.2} deg are allowed; record more",
-                "known to {by_deg:.2} deg only, {most_deg:.2} deg are allowed; record more"
+                "nur auf {by_deg:.2} deg bekannt, {most_deg:.2} deg erlaubt; mehr aufzeichnen"
             )
         }
         Cause::PoorPlace { by_m, most_m } => told!(
             "the held-out error is {:.1} mm, {:.1} mm are allowed: something moved that should not (tip, marker, \
              tracker or base); fix it and start over",
-            "the held-out error is {:.1} mm, {:.1} mm are allowed: something moved that should not (tip, marker, \
-             tracker or base); fix it and start over",
+            "der Testfehler ist {:.1} mm, erlaubt sind {:.1} mm: etwas bewegte sich, das fest sein muss (Spitze, \
+             Marker, Tracker oder Basis); beheben und neu beginnen",
             by_m * 1e3,
             most_m * 1e3
         ),
         Cause::PoorAngle { by_deg, most_deg } => told!(
             "the held-out error is {by_deg:.1} deg, {most_deg:.1} deg are allowed: something moved that should not; \
              fix it and start over",
-            "the held-out error is {by_deg:.1} deg, {most_deg:.1} deg are allowed: something moved that should not; \
-             fix it and start over"
+            "der Testfehler ist {by_deg:.1} deg, erlaubt sind {most_deg:.1} deg: etwas bewegte sich, das fest sein \
+             muss; beheben und neu beginnen"
         ),
         Cause::Outliers { share, .. } => {
             told!(
                 "{:.0} % contradict the others; start over",
-                "{:.0} % contradict the others; start over",
+                "{:.0} % widersprechen den anderen; neu beginnen",
                 100.0 * share
             )
         }
@@ -146,27 +159,28 @@ fn mistake_words(mistake: Mistake) -> String {
     match mistake {
         Mistake::SwappedMarker => word(
             "the marker of the other instrument was seen; exchange the two tool definitions in the rig file",
-            "the marker of the other instrument was seen; exchange the two tool definitions in the rig file",
+            "der Marker des anderen Instruments wurde gesehen; die beiden Tool-Definitionen in der Aufbaudatei \
+             tauschen",
         )
         .to_owned(),
         Mistake::SwappedArm => word(
             "the poses are those of the other arm; exchange the two arms in the rig file",
-            "the poses are those of the other arm; exchange the two arms in the rig file",
+            "die Posen gehören zum anderen Arm; die beiden Arme in der Aufbaudatei tauschen",
         )
         .to_owned(),
         Mistake::InversePose => word(
             "the tracker's poses are inverse (camera seen from the marker); correct its driver",
-            "the tracker's poses are inverse (camera seen from the marker); correct its driver",
+            "die Tracker-Posen sind invers (Kamera vom Marker aus gesehen); Treiber berichtigen",
         )
         .to_owned(),
         Mistake::InverseRotation => word(
             "the rotations are inverse (a conjugated quaternion); correct the driver of tracker or arm",
-            "the rotations are inverse (a conjugated quaternion); correct the driver of tracker or arm",
+            "die Drehungen sind invers (konjugiertes Quaternion); Treiber von Tracker oder Arm berichtigen",
         )
         .to_owned(),
         Mistake::LeftHanded => word(
             "the tracker's frame is left-handed; correct its driver",
-            "the tracker's frame is left-handed; correct its driver",
+            "die Koordinaten des Trackers sind linkshändig; Treiber berichtigen",
         )
         .to_owned(),
         Mistake::WrongSign(axes) => {
@@ -174,20 +188,20 @@ fn mistake_words(mistake: Mistake) -> String {
                 ["x", "y", "z"].into_iter().zip(axes).filter(|(_, wrong)| *wrong).map(|(name, _)| name).collect();
             told!(
                 "the sign of {} of the positions is wrong; correct the driver",
-                "the sign of {} of the positions is wrong; correct the driver",
-                names.join(word(" and ", " and "))
+                "das Vorzeichen von {} der Positionen ist falsch; Treiber berichtigen",
+                names.join(word(" and ", " und "))
             )
         }
         Mistake::WrongAxes(axes) => {
             told!(
                 "the axes are exchanged or reversed: x, y, z are measured as {}; correct the mount",
-                "the axes are exchanged or reversed: x, y, z are measured as {}; correct the mount",
+                "die Achsen sind vertauscht oder umgekehrt: x, y, z werden als {} gemessen; Montage berichtigen",
                 axes_words(axes)
             )
         }
         Mistake::Mirrored => word(
             "the directions fit in a mirror only: two axes are exchanged or one is reversed; check the order",
-            "the directions fit in a mirror only: two axes are exchanged or one is reversed; check the order",
+            "die Richtungen passen nur gespiegelt: zwei Achsen vertauscht oder eine umgekehrt; Reihenfolge prüfen",
         )
         .to_owned(),
     }
@@ -210,20 +224,22 @@ pub(crate) fn axes_words(SignedAxes(axes): SignedAxes) -> String {
 pub(crate) fn phase(phase: &Phase) -> (f64, String) {
     match phase {
         Phase::Missing(Some(source)) => (0.0, source.words().to_owned()),
-        Phase::Missing(None) => (0.0, word("no new measurement", "no new measurement").to_owned()),
+        Phase::Missing(None) => (0.0, word("no new measurement", "keine neue Messung").to_owned()),
         Phase::Moving { by_m, by_rad } => (
             0.0,
             told!(
                 "moving ({:.1} mm, {:.2} deg): hold still",
-                "moving ({:.1} mm, {:.2} deg): hold still",
+                "bewegt sich ({:.1} mm, {:.2} deg): stillhalten",
                 by_m * 1e3,
                 by_rad.to_degrees()
             ),
         ),
-        Phase::TakenHere => (0.0, word("recorded here already: move on", "recorded here already: move on").to_owned()),
-        Phase::Recording { share } => (*share, word("hold still", "hold still").to_owned()),
-        Phase::Recorded { index } => (1.0, told!("{} recorded: move on", "{} recorded: move on", index + 1)),
-        Phase::Full => (1.0, word("the session is full: go on", "the session is full: go on").to_owned()),
+        Phase::TakenHere => {
+            (0.0, word("recorded here already: move on", "hier schon aufgezeichnet: weiterbewegen").to_owned())
+        }
+        Phase::Recording { share } => (*share, word("hold still", "stillhalten").to_owned()),
+        Phase::Recorded { index } => (1.0, told!("{} recorded: move on", "{} aufgezeichnet: weiterbewegen", index + 1)),
+        Phase::Full => (1.0, word("the session is full: go on", "die Sitzung ist voll: weiter").to_owned()),
     }
 }
 

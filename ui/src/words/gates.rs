@@ -8,70 +8,75 @@ use crate::language::word;
 pub(crate) fn gate_words(gate: Gate) -> [&'static str; 2] {
     match gate {
         Gate::Permission => [
-            word("Engaged", "Engaged"),
+            word("Engaged", "Gekoppelt"),
             word(
                 "Closed unless the loop is engaged. Stop closes it at once.",
-                "Closed unless the loop is engaged. Stop closes it at once.",
+                "Geschlossen, solange die Regelung nicht gekoppelt ist. Halt schließt sofort.",
             ),
         ],
         Gate::Validity => [
-            word("Valid", "Valid"),
+            word("Valid", "Gültig"),
             word(
                 "Closed when the mode has no result, when the result is not a finite number, or when it is above 1000 \
                  N",
-                "Closed when the mode has no result, when the result is not a finite number, or when it is above 1000 \
-                 N",
+                "Geschlossen, wenn der Modus kein Ergebnis hat, es keine endliche Zahl ist oder über 1000 N liegt",
             ),
         ],
         Gate::Age => [
-            word("Age", "Age"),
+            word("Age", "Alter"),
             word(
                 "Fades the force out when the data are older than the link's own delay, down to zero after this time",
-                "Fades the force out when the data are older than the link's own delay, down to zero after this time",
+                "Blendet die Kraft aus, wenn die Daten älter sind als die Verzögerung der Verbindung, bis auf null \
+                 nach dieser Zeit",
             ),
         ],
         Gate::DeadBand => [
-            word("Dead band", "Dead band"),
+            word("Dead band", "Totband"),
             word(
                 "Closed while the hand moves slower than this. At standstill an impedance cannot be distinguished \
     from a constant force.",
-                "Closed while the hand moves slower than this. At standstill an impedance cannot be distinguished \
-    from a constant force.",
+                "Geschlossen, solange die Hand langsamer ist als dieser Wert. Im Stillstand ist eine Impedanz nicht \
+                 von einer konstanten Kraft zu unterscheiden.",
             ),
         ],
-        Gate::Gain => {
-            [word("Gain", "Gain"), word("The operator's gain. Closed at zero.", "The operator's gain. Closed at zero.")]
-        }
+        Gate::Gain => [
+            word("Gain", "Verstärkung"),
+            word(
+                "The operator's gain. Closed at zero.",
+                "Vom Bediener eingestellt. Bei \
+             null geschlossen.",
+            ),
+        ],
         Gate::Slew => [
-            word("Slew", "Slew"),
+            word("Slew", "Anstieg"),
             word(
                 "Limits how fast the force may change, so that no step jerks the hand",
-                "Limits how fast the force may change, so that no step jerks the hand",
+                "Begrenzt, wie schnell sich die Kraft ändert, damit kein Sprung an der Hand ruckt",
             ),
         ],
         Gate::Energy => [
-            word("Energy", "Energy"),
+            word("Energy", "Energie"),
             word(
                 "Lets the hand get back the energy that it put in and a little more. When that is used up, it removes \
     the part of the force along the hand's motion.",
-                "Lets the hand get back the energy that it put in and a little more. When that is used up, it removes \
-    the part of the force along the hand's motion.",
+                "Gibt der Hand die Energie zurück, die sie gab, und etwas mehr. Ist das verbraucht, entfällt der \
+                 Kraftanteil entlang der Handbewegung.",
             ),
         ],
         Gate::Ceiling => [
-            word("Ceiling", "Ceiling"),
+            word("Ceiling", "Höchstkraft"),
             word(
                 "The largest force that can reach the hand, never above what the device can give",
-                "The largest force that can reach the hand, never above what the device can give",
+                "Größte Kraft, die die Hand erreichen kann, nie mehr, als das Gerät geben kann",
             ),
         ],
         Gate::Governor => [
-            word("Governor", "Governor"),
+            word("Governor", "Wächter"),
             word(
                 "Brakes a handle that runs away under the force while no hand holds it. The force returns when a hand \
                  takes hold; if none does, the loop goes to idle.",
-                "Brakes a handle that runs away under the force while no hand holds it. The force returns when a hand \
-                 takes hold; if none does, the loop goes to idle.",
+                "Bremst ein Handgerät, das unter der Kraft wegläuft, ohne dass eine Hand es hält. Die Kraft kehrt \
+                 zurück, wenn eine Hand zufasst; sonst geht die Regelung in den Leerlauf.",
             ),
         ],
     }

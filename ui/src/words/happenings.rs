@@ -1,6 +1,6 @@
 //! What happens to the objects of a scene, in words. People count rings and pegs from 1, data from 0.
 
-use nima_score::Event;
+use nima_score::{Event, Side};
 
 use crate::language::{told, word};
 
@@ -8,52 +8,64 @@ use crate::language::{told, word};
 pub(crate) fn happening(event: &Event) -> String {
     let number = |count: usize| count.saturating_add(1);
     match *event {
-        Event::Begun => word("the trial begins", "the trial begins").to_owned(),
-        Event::Ended => word("the task is done", "the task is done").to_owned(),
-        Event::Aborted => word("the trial was given up", "the trial was given up").to_owned(),
+        Event::Begun => word("the trial begins", "der Versuch beginnt").to_owned(),
+        Event::Ended => word("the task is done", "die Aufgabe ist erledigt").to_owned(),
+        Event::Aborted => word("the trial was given up", "der Versuch wurde abgebrochen").to_owned(),
         Event::RingGrasped { ring, side } => {
             told!(
                 "ring {} grasped by the {} instrument",
-                "ring {} grasped by the {} instrument",
+                "Ring {} mit Instrument {} gegriffen",
                 number(ring),
-                side.name()
+                instrument(side)
             )
         }
         Event::RingLifted { ring, side } => {
             told!(
                 "ring {} lifted off its peg by the {} instrument",
-                "ring {} lifted off its peg by the {} instrument",
+                "Ring {} mit Instrument {} vom Stift gehoben",
                 number(ring),
-                side.name()
+                instrument(side)
             )
         }
         Event::RingTransferred { ring, to } => {
-            told!("ring {} passed to the {} instrument", "ring {} passed to the {} instrument", number(ring), to.name())
+            told!(
+                "ring {} passed to the {} instrument",
+                "Ring {} an Instrument {} übergeben",
+                number(ring),
+                instrument(to)
+            )
         }
         Event::RingPlaced { ring, side, peg } => {
             told!(
                 "ring {} placed on peg {} by the {} instrument",
-                "ring {} placed on peg {} by the {} instrument",
+                "Ring {} auf Stift {} gesetzt, Instrument {}",
                 number(ring),
                 number(peg),
-                side.name()
+                instrument(side)
             )
         }
         Event::RingDropped { ring, side, in_view } => {
-            let out = if in_view { "" } else { word(", out of view", ", out of view") };
+            let out = if in_view { "" } else { word(", out of view", ", außer Sicht") };
             told!(
                 "ring {} dropped by the {} instrument{out}",
-                "ring {} dropped by the {} instrument{out}",
+                "Ring {} von Instrument {} fallen gelassen{out}",
                 number(ring),
-                side.name()
+                instrument(side)
             )
         }
         Event::RingKnockedOff { ring, side } => {
             let by = side
-                .map_or_else(String::new, |side| told!(" by the {} instrument", " by the {} instrument", side.name()));
-            told!("ring {} knocked off its peg{by}", "ring {} knocked off its peg{by}", number(ring))
+                .map_or_else(String::new, |side| told!(" by the {} instrument", ", Instrument {}", instrument(side)));
+            told!("ring {} knocked off its peg{by}", "Ring {} vom Stift gestoßen{by}", number(ring))
         }
         other => plain(&other),
+    }
+}
+
+fn instrument(side: Side) -> &'static str {
+    match side {
+        Side::Left => word("left", "links"),
+        Side::Right => word("right", "rechts"),
     }
 }
 
@@ -74,8 +86,6 @@ fn plain(event: &Event) -> String {
 
 #[cfg(test)]
 mod tests {
-    use nima_score::Side;
-
     use super::*;
 
     #[test]

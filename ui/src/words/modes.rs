@@ -18,44 +18,44 @@ pub(crate) fn mode_meaning(mode: Mode) -> &'static str {
 fn words(mode: Mode) -> [&'static str; 2] {
     match mode {
         Mode::Literal => [
-            word("Literal", "Literal"),
+            word("Literal", "Wörtlich"),
             word(
                 "Exactly as in the paper: renders M X from the hand's own motion, with the degree that has the \
     smallest error inside the window. Renders no force at standstill.",
-                "Exactly as in the paper: renders M X from the hand's own motion, with the degree that has the \
-    smallest error inside the window. Renders no force at standstill.",
+                "Genau wie im Artikel: stellt M X aus der Bewegung der Hand dar, mit dem Grad, der im Fenster den \
+                 kleinsten Fehler hat. Im Stillstand keine Kraft.",
             ),
         ],
         Mode::Linear => [
             word("Linear", "Linear"),
             word(
                 "The paper's linear predecessor: like Literal, but always with degree 1",
-                "The paper's linear predecessor: like Literal, but always with degree 1",
+                "Der lineare Vorgänger im Artikel: wie Wörtlich, aber immer mit Grad 1",
             ),
         ],
         Mode::Dfr => [
-            word("Direct (DFR)", "Direct (DFR)"),
+            word("Direct (DFR)", "Direkt (DFR)"),
             word(
                 "Direct force reflection: the measured force, delayed by the link",
-                "Direct force reflection: the measured force, delayed by the link",
+                "Direkte Kraftreflexion: die gemessene Kraft, durch die Verbindung verzögert",
             ),
         ],
         Mode::Anchored => [
-            word("Anchored", "Anchored"),
+            word("Anchored", "Verankert"),
             word(
                 "The last measured force, corrected by the identified impedance for the hand's motion since then. \
     Where a correction does not reduce the error, it is plain direct reflection.",
-                "The last measured force, corrected by the identified impedance for the hand's motion since then. \
-    Where a correction does not reduce the error, it is plain direct reflection.",
+                "Die letzte gemessene Kraft, mit der identifizierten Impedanz um die Handbewegung seither korrigiert. \
+                 Wo eine Korrektur den Fehler nicht senkt, reine direkte Reflexion.",
             ),
         ],
         Mode::Matched => [
-            word("Matched", "Matched"),
+            word("Matched", "Abgeglichen"),
             word(
                 "Only the tissue's parameters cross the link; the force is made from the hand's own motion, so no late \
                  force can kick",
-                "Only the tissue's parameters cross the link; the force is made from the hand's own motion, so no late \
-                 force can kick",
+                "Nur die Parameter des Gewebes gehen über die Verbindung; die Kraft entsteht aus der Bewegung der \
+                 Hand, so kann keine verspätete Kraft stoßen",
             ),
         ],
         Mode::Nima => [
@@ -63,56 +63,65 @@ fn words(mode: Mode) -> [&'static str; 2] {
             word(
                 "The paper's polynomials under the rules of Matched: a constant, a kept origin, a ridge, and degrees \
                  judged at the horizon",
-                "The paper's polynomials under the rules of Matched: a constant, a kept origin, a ridge, and degrees \
-                 judged at the horizon",
+                "Die Polynome des Artikels nach den Regeln von Abgeglichen: Konstante, beibehaltener Ursprung, \
+                 Ridge-Term, Grade am Horizont beurteilt",
             ),
         ],
         Mode::Best => [
-            word("Best of both", "Best of both"),
+            word("Best of both", "Bestes aus beiden"),
             word(
                 "Anchored and Matched, mixed on each axis by how wrong each was at the leader during the last second; \
                  the default",
-                "Anchored and Matched, mixed on each axis by how wrong each was at the leader during the last second; \
-                 the default",
+                "Verankert und Abgeglichen, je Achse danach gemischt, wie falsch jedes in der letzten Sekunde am \
+                 Führungsgerät war; Vorgabe",
             ),
         ],
-        Mode::Baseline(Baseline::ModelMediated) => [
-            word("Model-mediated", "Model-mediated"),
+        Mode::Baseline(baseline) => of_baseline(baseline),
+    }
+}
+
+/// The same of a method of others.
+fn of_baseline(baseline: Baseline) -> [&'static str; 2] {
+    match baseline {
+        Baseline::ModelMediated => [
+            word("Model-mediated", "Modellvermittelt"),
             word(
                 "For comparison: a Hunt-Crossley contact is identified at the tissue; \
     its parameters cross the link and the force is made from the hand's own motion",
-                "For comparison: a Hunt-Crossley contact is identified at the tissue; \
-    its parameters cross the link and the force is made from the hand's own motion",
+                "Zum Vergleich: am Gewebe wird ein Hunt-Crossley-Kontakt identifiziert; seine Parameter gehen über die \
+                 Verbindung, die Kraft entsteht aus der Bewegung der Hand",
             ),
         ],
-        Mode::Baseline(Baseline::Waves) => [
-            word("Wave variables", "Wave variables"),
+        Baseline::Waves => [
+            word("Wave variables", "Wellenvariablen"),
             word(
                 "For comparison: force and velocity come back as a wave and are decoded with the hand's own velocity",
-                "For comparison: force and velocity come back as a wave and are decoded with the hand's own velocity",
+                "Zum Vergleich: Kraft und Geschwindigkeit kommen als Welle zurück und werden mit der Geschwindigkeit \
+                 der Hand dekodiert",
             ),
         ],
-        Mode::Baseline(Baseline::Passivity) => [
-            word("Time-domain passivity", "Time-domain passivity"),
+        Baseline::Passivity => [
+            word("Time-domain passivity", "Zeitbereichs-Passivität"),
             word(
                 "For comparison: direct reflection with damping whenever the hand would get more \
     energy than the tissue has returned",
-                "For comparison: direct reflection with damping whenever the hand would get more \
-    energy than the tissue has returned",
+                "Zum Vergleich: direkte Reflexion mit Dämpfung, wann immer die Hand mehr Energie bekäme, als das \
+                 Gewebe zurückgab",
             ),
         ],
-        Mode::Baseline(Baseline::Kalman) => [
+        Baseline::Kalman => [
             word("Kalman", "Kalman"),
             word(
                 "For comparison: a Kalman filter of the force and its rate, extrapolated over the delay",
-                "For comparison: a Kalman filter of the force and its rate, extrapolated over the delay",
+                "Zum Vergleich: Kalman-Filter der Kraft und ihrer Änderungsrate, über die Verzögerung extrapoliert",
             ),
         ],
-        Mode::Baseline(Baseline::Autoregressive) => [
-            word("Autoregressive", "Autoregressive"),
+        Baseline::Autoregressive => [
+            word("Autoregressive", "Autoregressiv"),
             word(
                 "For comparison: the force foretold from its own past by an autoregressive model",
-                "For comparison: the force foretold from its own past by an autoregressive model",
+                "Zum Vergleich: die Kraft, aus ihrer eigenen Vergangenheit mit einem autoregressiven Modell \
+                 vorhergesagt",
             ),
         ],
     }

@@ -5,7 +5,7 @@ use crate::language::word;
 /// A number with about three digits; large ones in powers of ten.
 pub(crate) fn three_digits(value: f64) -> String {
     match value.abs() {
-        x if !x.is_finite() => word("not finite", "not finite").to_owned(),
+        x if !x.is_finite() => word("not finite", "nicht endlich").to_owned(),
         x if x >= 1e5 => format!("{value:.1e}"),
         x if x >= 100.0 => format!("{value:.0}"),
         x if x >= 10.0 => format!("{value:.1}"),

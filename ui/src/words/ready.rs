@@ -6,28 +6,28 @@ use nima_machine::{
     rig::Side,
 };
 
-use super::Words as _;
+use super::{Words as _, side_word};
 use crate::language::{told, word};
 
 /// Name of a point.
 pub(crate) fn check_name(check: Check) -> String {
-    let of_arm = |side: Side, words: &str| told!("{} arm: {words}", "{} arm: {words}", capital(side.word()));
+    let of_arm = |side: Side, words: &str| told!("{} arm: {words}", "{}: {words}", capital(side_word(side)));
     match check {
-        Check::Devices => word("Devices present and steady", "Devices present and steady").to_owned(),
-        Check::Rates => word("Rates and losses of the devices", "Rates and losses of the devices").to_owned(),
-        Check::Clocks => word("Clocks and deadlines", "Clocks and deadlines").to_owned(),
-        Check::Own(side) => of_arm(side, word("arm and marker are its own", "arm and marker are its own")),
-        Check::Bias(side) => of_arm(side, word("drift of the bias", "drift of the bias")),
-        Check::Push(side) => of_arm(side, word("direction of the force", "direction of the force")),
-        Check::Handle(side) => of_arm(side, word("handle free", "handle free")),
-        Check::Trocar(side) => of_arm(side, word("trocar where it was", "trocar where it was")),
-        Check::Ceiling => word("Largest force as in the rig file", "Largest force as in the rig file").to_owned(),
-        Check::Stop => word("Stop", "Stop").to_owned(),
-        Check::Watchdog(Watchdog::Loop) => word("Watchdog over the loop", "Watchdog over the loop").to_owned(),
+        Check::Devices => word("Devices present and steady", "Geräte vorhanden und stabil").to_owned(),
+        Check::Rates => word("Rates and losses of the devices", "Raten und Verluste der Geräte").to_owned(),
+        Check::Clocks => word("Clocks and deadlines", "Uhren und Fristen").to_owned(),
+        Check::Own(side) => of_arm(side, word("arm and marker are its own", "eigener Arm und Marker")),
+        Check::Bias(side) => of_arm(side, word("drift of the bias", "Drift des Nullpunkts")),
+        Check::Push(side) => of_arm(side, word("direction of the force", "Richtung der Kraft")),
+        Check::Handle(side) => of_arm(side, word("handle free", "Handgerät frei")),
+        Check::Trocar(side) => of_arm(side, word("trocar where it was", "Trokar am alten Ort")),
+        Check::Ceiling => word("Largest force as in the rig file", "Höchstkraft wie in der Aufbaudatei").to_owned(),
+        Check::Stop => word("Stop", "Halt").to_owned(),
+        Check::Watchdog(Watchdog::Loop) => word("Watchdog over the loop", "Watchdog der Regelung").to_owned(),
         Check::Watchdog(Watchdog::Source) => {
-            word("Watchdog over the measurements", "Watchdog over the measurements").to_owned()
+            word("Watchdog over the measurements", "Watchdog der Messwerte").to_owned()
         }
-        Check::Watchdog(Watchdog::Link) => word("Watchdog over the link", "Watchdog over the link").to_owned(),
+        Check::Watchdog(Watchdog::Link) => word("Watchdog over the link", "Watchdog der Verbindung").to_owned(),
     }
 }
 
@@ -43,41 +43,46 @@ pub(crate) fn ask_words(ask: &Ask) -> String {
         Ask::Move(side) => {
             told!(
                 "Take the {} instrument out of its trocar; if it is out, move it by 10 cm",
-                "Take the {} instrument out of its trocar; if it is out, move it by 10 cm",
-                side.word()
+                "Instrument {} aus dem Trokar nehmen; ist es draußen, um 10 cm bewegen",
+                side_word(*side)
             )
         }
         Ask::TakeOut(side) => {
             told!(
                 "Take the {} instrument out of its trocar, so that nothing touches it",
-                "Take the {} instrument out of its trocar, so that nothing touches it",
-                side.word()
+                "Instrument {} aus dem Trokar nehmen, sodass nichts es berührt",
+                side_word(*side)
             )
         }
         Ask::LeaveAlone(side) => told!(
             "Do not touch the {} arm and its instrument",
-            "Do not touch the {} arm and its instrument",
-            side.word()
+            "Arm {} und sein Instrument nicht berühren",
+            side_word(*side)
         ),
         Ask::Push(side, direction) => {
             told!(
                 "Push the tip of the {} instrument {}, for half a second",
-                "Push the tip of the {} instrument {}, for half a second",
-                side.word(),
+                "Instrument {}: Spitze {} drücken, eine halbe Sekunde lang",
+                side_word(*side),
                 way(&direction.into_inner())
             )
         }
-        Ask::LetGo(side) => told!("Let the {} handle go", "Let the {} handle go", side.word()),
+        Ask::LetGo(side) => told!("Let the {} handle go", "Handgerät {} loslassen", side_word(*side)),
         Ask::MoveHandle(side, way) => {
-            told!("Take the {} handle and {}, by 2 cm", "Take the {} handle and {}, by 2 cm", side.word(), way.words())
+            told!(
+                "Take the {} handle and {}, by 2 cm",
+                "Handgerät {} fassen und {}, um 2 cm",
+                side_word(*side),
+                way.words()
+            )
         }
         Ask::PutBack(side) => told!(
             "Put the {} instrument through its trocar and leave it there",
-            "Put the {} instrument through its trocar and leave it there",
-            side.word()
+            "Instrument {} durch den Trokar führen und dort lassen",
+            side_word(*side)
         ),
-        Ask::PressStop => word("Press the stop", "Press the stop").to_owned(),
-        Ask::Release => word("Press Release stop", "Press Release stop").to_owned(),
+        Ask::PressStop => word("Press the stop", "Halt auslösen").to_owned(),
+        Ask::Release => word("Press Release stop", "Halt lösen drücken").to_owned(),
     }
 }
 
@@ -85,12 +90,12 @@ pub(crate) fn ask_words(ask: &Ask) -> String {
 fn way(direction: &nalgebra::Vector3<f64>) -> &'static str {
     let axis = direction.iamax();
     match (axis, direction[axis] < 0.0) {
-        (0, false) => word("to the right", "to the right"),
-        (0, true) => word("to the left", "to the left"),
-        (1, false) => word("away from you", "away from you"),
-        (1, true) => word("towards you", "towards you"),
-        (_, false) => word("up", "up"),
-        (_, true) => word("down", "down"),
+        (0, false) => word("to the right", "nach rechts"),
+        (0, true) => word("to the left", "nach links"),
+        (1, false) => word("away from you", "von sich weg"),
+        (1, true) => word("towards you", "zu sich hin"),
+        (_, false) => word("up", "nach oben"),
+        (_, true) => word("down", "nach unten"),
     }
 }
 
@@ -100,7 +105,7 @@ pub(crate) fn unit(unit: Unit) -> &'static str {
         Unit::Count => "",
         Unit::Newton => "N",
         Unit::Millimetre => "mm",
-        Unit::Degree => word("degrees", "degrees"),
+        Unit::Degree => word("degrees", "Grad"),
         Unit::Percent => "%",
         Unit::Second => "s",
     }
@@ -110,23 +115,27 @@ pub(crate) fn unit(unit: Unit) -> &'static str {
 pub(crate) fn figure_words(figure: &Figure) -> String {
     let Figure { value, limit, unit: of } = figure;
     match of {
-        Unit::Count => told!("{value:.0} of {limit:.0}", "{value:.0} of {limit:.0}"),
+        Unit::Count => told!("{value:.0} of {limit:.0}", "{value:.0} von {limit:.0}"),
         Unit::Newton | Unit::Millimetre | Unit::Percent => {
-            told!("{value:.2} {}, limit {limit:.2}", "{value:.2} {}, limit {limit:.2}", unit(*of))
+            told!("{value:.2} {}, limit {limit:.2}", "{value:.2} {}, Grenze {limit:.2}", unit(*of))
         }
-        Unit::Degree => told!("{value:.0} {}, limit {limit:.0}", "{value:.0} {}, limit {limit:.0}", unit(*of)),
-        Unit::Second => told!("{value:.3} {}, limit {limit:.2}", "{value:.3} {}, limit {limit:.2}", unit(*of)),
+        Unit::Degree => told!("{value:.0} {}, limit {limit:.0}", "{value:.0} {}, Grenze {limit:.0}", unit(*of)),
+        Unit::Second => told!("{value:.3} {}, limit {limit:.2}", "{value:.3} {}, Grenze {limit:.2}", unit(*of)),
     }
 }
 
 /// Why a point is left out.
 pub(crate) fn lacks_words(lacks: Lacks) -> &'static str {
     match lacks {
-        Lacks::Devices => word("this rig is simulated and has no devices", "this rig is simulated and has no devices"),
-        Lacks::WristSensor => word("the force is measured at the tip", "the force is measured at the tip"),
-        Lacks::OtherArm => word("there is one arm only", "there is one arm only"),
+        Lacks::Devices => word(
+            "this rig is simulated and has no devices",
+            "dieser Aufbau ist simuliert und hat keine \
+         Geräte",
+        ),
+        Lacks::WristSensor => word("the force is measured at the tip", "die Kraft wird an der Spitze gemessen"),
+        Lacks::OtherArm => word("there is one arm only", "es gibt nur einen Arm"),
         Lacks::Person => {
-            word("nobody is at the simulated arm in this scene", "nobody is at the simulated arm in this scene")
+            word("nobody is at the simulated arm in this scene", "in dieser Szene ist niemand am simulierten Arm")
         }
     }
 }

@@ -5,7 +5,7 @@ use nima_machine::{
     rig::Obstacle,
 };
 
-use super::Remedy as _;
+use super::{Remedy as _, exchange_words, obstacle_words};
 use crate::language::{told, word};
 
 /// The reason, a clause without a full stop.
@@ -14,115 +14,122 @@ pub(crate) fn refused_because(why: Refusal) -> String {
         Refusal::State(state) => in_state(state).to_owned(),
         Refusal::StillPresent(fault) => told!(
             "the cause of a fault is still present: {}",
-            "the cause of a fault is still present: {}",
+            "die Ursache einer Störung besteht noch: {}",
             lower(fault.cause())
         ),
         Refusal::ForceUnknown => {
-            word("the force at the tip is not known", "the force at the tip is not known").to_owned()
+            word("the force at the tip is not known", "die Kraft an der Spitze ist unbekannt").to_owned()
         }
         Refusal::Implausible(what) => {
-            told!("a measurement is not plausible: {}", "a measurement is not plausible: {}", lower(what.cause()))
+            told!("a measurement is not plausible: {}", "eine Messung ist nicht plausibel: {}", lower(what.cause()))
         }
-        Refusal::Obstacle(waiting @ Obstacle::Waiting(_)) => waiting.to_string(),
-        Refusal::Obstacle(obstacle @ Obstacle::FarEnd) => obstacle.to_string(),
-        Refusal::Obstacle(Obstacle::Exchanged(exchange)) => exchange.words().to_owned(),
+        Refusal::Obstacle(waiting @ Obstacle::Waiting(_)) => obstacle_words(&waiting),
+        Refusal::Obstacle(obstacle @ Obstacle::FarEnd) => obstacle_words(&obstacle),
+        Refusal::Obstacle(Obstacle::Exchanged(exchange)) => exchange_words(exchange).to_owned(),
         Refusal::Obstacle(obstacle) => told!(
             "the arm cannot start from where it is: {obstacle}",
-            "the arm cannot start from where it is: {obstacle}"
+            "der Arm kann von hier nicht starten: {obstacle}"
         ),
         Refusal::EndoscopeUnseen => {
-            word("the tracker does not see the endoscope", "the tracker does not see the endoscope").to_owned()
+            word("the tracker does not see the endoscope", "der Tracker sieht das Endoskop nicht").to_owned()
         }
-        Refusal::DrivesOff => word("the drives did not obey in time", "the drives did not obey in time").to_owned(),
-        Refusal::Moving => word("the arm was not at rest", "the arm was not at rest").to_owned(),
-        Refusal::HandAbsent => word("nobody holds the handle", "nobody holds the handle").to_owned(),
-        Refusal::ClutchPressed => word("the clutch is pressed", "the clutch is pressed").to_owned(),
+        Refusal::DrivesOff => {
+            word("the drives did not obey in time", "die Antriebe gehorchten nicht rechtzeitig").to_owned()
+        }
+        Refusal::Moving => word("the arm was not at rest", "der Arm war nicht in Ruhe").to_owned(),
+        Refusal::HandAbsent => word("nobody holds the handle", "niemand hält das Handgerät").to_owned(),
+        Refusal::ClutchPressed => word("the clutch is pressed", "die Kupplung ist gedrückt").to_owned(),
         Refusal::NotChecked => word(
             "this rig requires a ready check, and none of the last 12 hours has passed",
-            "this rig requires a ready check, and none of the last 12 hours has passed",
+            "dieser Aufbau verlangt eine Startprüfung, und in den letzten 12 Stunden wurde keine bestanden",
         )
         .to_owned(),
-        Refusal::OutOfRange => word("the value is outside its range", "the value is outside its range").to_owned(),
+        Refusal::OutOfRange => {
+            word("the value is outside its range", "der Wert liegt außerhalb seines Bereichs").to_owned()
+        }
         Refusal::DelayIsMeasured => word(
             "the delay is that of the network, which is measured and not set",
-            "the delay is that of the network, which is measured and not set",
+            "die Verzögerung ist die des Netzwerks, gemessen und nicht einstellbar",
         )
         .to_owned(),
         Refusal::SimulatedOnly => {
-            word("a person may hold the handle of this rig", "a person may hold the handle of this rig").to_owned()
+            word("a person may hold the handle of this rig", "an diesem Aufbau kann ein Mensch das Handgerät halten")
+                .to_owned()
         }
-        Refusal::NoSuchArm => word("this rig has no arm on that side", "this rig has no arm on that side").to_owned(),
+        Refusal::NoSuchArm => {
+            word("this rig has no arm on that side", "dieser Aufbau hat auf dieser Seite keinen Arm").to_owned()
+        }
     }
 }
 
 /// What the operator can do, a clause without a full stop.
 pub(crate) fn cure_of_refusal(why: Refusal) -> &'static str {
     match why {
-        Refusal::State(LoopState::Stopped) => word("release the stop first", "release the stop first"),
+        Refusal::State(LoopState::Stopped) => word("release the stop first", "erst Halt lösen"),
         Refusal::State(LoopState::Faulted(_)) => {
-            word("remove its cause, then release the stop", "remove its cause, then release the stop")
+            word("remove its cause, then release the stop", "ihre Ursache beseitigen, dann Halt lösen")
         }
         Refusal::State(LoopState::Disconnected) => {
-            word("see the devices for what is missing and why", "see the devices for what is missing and why")
+            word("see the devices for what is missing and why", "siehe Geräte: was fehlt und warum")
         }
-        Refusal::State(_) => word("see the state of the loop", "see the state of the loop"),
+        Refusal::State(_) => word("see the state of the loop", "siehe Zustand der Regelung"),
         Refusal::StillPresent(Fault::FarEnd { .. }) => word(
             "remove its cause there, then press Stop and Release stop here: that releases both machines",
-            "remove its cause there, then press Stop and Release stop here: that releases both machines",
+            "Ursache dort beseitigen, dann hier Halt und Halt lösen drücken: das gibt beide Rechner frei",
         ),
-        Refusal::StillPresent(_) => word("remove the cause first", "remove the cause first"),
-        Refusal::ForceUnknown => {
-            word("calibrate gravity for this sensor and tool", "calibrate gravity for this sensor and tool")
-        }
-        Refusal::Implausible(_) => word("see the sensor and its cable", "see the sensor and its cable"),
+        Refusal::StillPresent(_) => word("remove the cause first", "erst die Ursache beseitigen"),
+        Refusal::ForceUnknown => word(
+            "calibrate gravity for this sensor and tool",
+            "Schwerkraft für diesen Sensor und dieses Instrument \
+             kalibrieren",
+        ),
+        Refusal::Implausible(_) => word("see the sensor and its cable", "Sensor und sein Kabel prüfen"),
         Refusal::Obstacle(Obstacle::Exchanged(_)) => word(
             "put what is exchanged back, in the room or in the rig file; the ready check tells which it is",
-            "put what is exchanged back, in the room or in the rig file; the ready check tells which it is",
+            "Vertauschtes zurücktauschen, im Raum oder in der Aufbaudatei; die Startprüfung nennt es",
         ),
         Refusal::Obstacle(Obstacle::Waiting(_)) => word(
             "wait a moment, clear the tracker's view, then engage again",
-            "wait a moment, clear the tracker's view, then engage again",
+            "kurz warten, Sicht des Trackers freimachen, dann neu koppeln",
         ),
         Refusal::Obstacle(Obstacle::FarEnd) => word(
             "remove the reason at the follower's machine, then engage again",
-            "remove the reason at the follower's machine, then engage again",
+            "Grund am Rechner des Folgearms beseitigen, dann neu koppeln",
         ),
-        Refusal::Obstacle(_) => word("move the arm, then engage again", "move the arm, then engage again"),
+        Refusal::Obstacle(_) => word("move the arm, then engage again", "Arm bewegen, dann neu koppeln"),
         Refusal::EndoscopeUnseen => word(
             "clear the tracker's view of the endoscope and of the arm, then engage again",
-            "clear the tracker's view of the endoscope and of the arm, then engage again",
+            "Sicht des Trackers auf Endoskop und Arm freimachen, dann neu koppeln",
         ),
         Refusal::DrivesOff => word(
             "look at the arm's and the handle's own lamps and buttons, then engage again",
-            "look at the arm's and the handle's own lamps and buttons, then engage again",
+            "Lampen und Tasten an Arm und Handgerät ansehen, dann neu koppeln",
         ),
         Refusal::Moving => {
-            word("let the arm come to rest, then engage again", "let the arm come to rest, then engage again")
+            word("let the arm come to rest, then engage again", "Arm zur Ruhe kommen lassen, dann neu koppeln")
         }
-        Refusal::HandAbsent => word("hold the handle, then engage again", "hold the handle, then engage again"),
-        Refusal::ClutchPressed => {
-            word("release the clutch, then engage again", "release the clutch, then engage again")
-        }
+        Refusal::HandAbsent => word("hold the handle, then engage again", "Handgerät halten, dann neu koppeln"),
+        Refusal::ClutchPressed => word("release the clutch, then engage again", "Kupplung loslassen, dann neu koppeln"),
         Refusal::NotChecked => {
-            word("press Ready check in the panel Calibration", "press Ready check in the panel Calibration")
+            word("press Ready check in the panel Calibration", "im Panel Kalibrierung Startprüfung drücken")
         }
-        Refusal::OutOfRange => word("choose a value within the range", "choose a value within the range"),
+        Refusal::OutOfRange => word("choose a value within the range", "einen Wert im Bereich wählen"),
         Refusal::DelayIsMeasured => {
-            word("see the link for what the network takes", "see the link for what the network takes")
+            word("see the link for what the network takes", "unter Verbindung steht, was das Netzwerk braucht")
         }
-        Refusal::SimulatedOnly => word("choose a simulated rig", "choose a simulated rig"),
-        Refusal::NoSuchArm => word("choose another arm", "choose another arm"),
+        Refusal::SimulatedOnly => word("choose a simulated rig", "einen simulierten Aufbau wählen"),
+        Refusal::NoSuchArm => word("choose another arm", "einen anderen Arm wählen"),
     }
 }
 
 fn in_state(state: LoopState) -> &'static str {
     match state {
-        LoopState::Disconnected => word("a device is missing", "a device is missing"),
-        LoopState::Idle => word("nothing is engaged or stopped", "nothing is engaged or stopped"),
-        LoopState::Ready => word("an engagement has already begun", "an engagement has already begun"),
-        LoopState::Engaged | LoopState::Clutched => word("it is already engaged", "it is already engaged"),
-        LoopState::Stopped => word("the stop is latched", "the stop is latched"),
-        LoopState::Faulted(_) => word("a fault is latched", "a fault is latched"),
+        LoopState::Disconnected => word("a device is missing", "ein Gerät fehlt"),
+        LoopState::Idle => word("nothing is engaged or stopped", "nichts ist gekoppelt oder angehalten"),
+        LoopState::Ready => word("an engagement has already begun", "eine Kopplung hat schon begonnen"),
+        LoopState::Engaged | LoopState::Clutched => word("it is already engaged", "es ist schon gekoppelt"),
+        LoopState::Stopped => word("the stop is latched", "der Halt ist verriegelt"),
+        LoopState::Faulted(_) => word("a fault is latched", "eine Störung ist verriegelt"),
     }
 }
 

@@ -6,7 +6,34 @@ use std::path::{Path, PathBuf};
 use crate::words::{has_words, literals, sources};
 
 /// Texts that are the same in both languages: names, abbreviations, terms that German engineers use as they are.
-const SAME: [&str; 0] = [];
+const SAME: [&str; 26] = [
+    "Alarm",
+    "Ctrl ",
+    "Ctrl Shift ",
+    "Ctrl Tab",
+    "Demo",
+    "Ensemble",
+    "Enter",
+    "Gamma",
+    "Jitter",
+    "Kalman",
+    "Linear",
+    "Name",
+    "Offset",
+    "Panel: {name}",
+    "Panels",
+    "Pause",
+    "Pose",
+    "Rate",
+    "Rec",
+    "Sensor",
+    "Sensor {sensor}, {tool}",
+    "Servos",
+    "Shift ",
+    "Tab, Shift Tab",
+    "Timing",
+    "Training",
+];
 
 /// What begins a pair of literals.
 const BEGINNINGS: [&str; 3] = ["Text::of(", "word(", "told!("];

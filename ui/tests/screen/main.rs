@@ -13,6 +13,7 @@ mod drift;
 mod eyes;
 mod identity;
 mod instruments;
+mod language;
 mod monitor;
 mod palette;
 mod past;

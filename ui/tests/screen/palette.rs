@@ -6,14 +6,17 @@ use std::path::Path;
 use eframe::App as _;
 use egui::{Key, Modifiers, accesskit::Role as Kind};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use nima_console::console::{
-    ConsoleApp, Options,
-    commands::{Action, Entry, SIZES_PERCENT, table},
-    desk::{Layout, Panel},
-    roles::Role,
-    scene3d::extras::{Extras, SHOW, Switch},
-    settings::{Kept, PictureSettings, Settings},
-    wizards::Which,
+use nima_console::{
+    console::{
+        ConsoleApp, Options,
+        commands::{Action, Entry, SIZES_PERCENT, table},
+        desk::{Layout, Panel},
+        roles::Role,
+        scene3d::extras::{Extras, SHOW, Switch},
+        settings::{Kept, PictureSettings, Settings},
+        wizards::Which,
+    },
+    language::Language,
 };
 use nima_core::impedance::Mode;
 use nima_machine::{
@@ -142,9 +145,11 @@ fn of_menu(kind: Kind, label: &str) -> impl Fn(&mut Console) {
         press(console, "View");
         console.get_by_role_and_label(kind, label).click_accesskit();
         console.run_steps(3);
-        if shows(console, "Text and control size") {
-            press(console, "View");
-            console.run_steps(2);
+        for (words, menu) in [("Text and control size", "View"), ("Gr\u{f6}\u{df}e von Text und", "Ansicht")] {
+            if shows(console, words) {
+                press(console, menu);
+                console.run_steps(2);
+            }
         }
     }
 }
@@ -164,6 +169,10 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
         let reset = set(|settings| settings.light = !light);
         done.push(alike(&mut console, Action::Light(light), reset, of_menu(Kind::Button, name), settings));
     }
+    // The way back is tried where German labels are known.
+    let speak = Action::Speak(Language::German);
+    let reset = set(|settings| settings.language = Language::English);
+    done.push(alike(&mut console, speak, reset, of_menu(Kind::Button, Language::German.name()), settings));
     for action in [Action::Larger, Action::Smaller] {
         let reset = set(|settings| settings.scale_percent = 150);
         done.push(alike(&mut console, action, reset, |c| by_key(c, action), settings));
@@ -195,10 +204,10 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
     console.run_steps(3);
     for switch in Switch::ALL {
         let other = |console: &mut Console| {
-            press(console, SHOW);
+            press(console, SHOW.get());
             console.get_by_role_and_label(Kind::CheckBox, switch.name()).click_accesskit();
             console.run_steps(2);
-            press(console, SHOW);
+            press(console, SHOW.get());
         };
         // It is switched twice to be as before.
         let extras = |console: &mut Console| format!("{:?}", console.state().extras());
@@ -216,6 +225,7 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
             action,
             Action::View(_)
                 | Action::Light(_)
+                | Action::Speak(Language::German)
                 | Action::Larger
                 | Action::Smaller
                 | Action::Size(_)
@@ -584,6 +594,7 @@ fn every_command_of_the_table_is_tried() {
     let tried_in = |action: Action| match action {
         Action::View(_)
         | Action::Light(_)
+        | Action::Speak(_)
         | Action::Larger
         | Action::Smaller
         | Action::Size(_)

@@ -42,9 +42,9 @@ fn the_way_along_the_wire_is_told_and_the_looks_are_switched() {
     let mut harness = console_of("wire", SIZE, |app| app);
     read(&mut harness, "Way to the goal: ");
     assert_eq!(harness.state().extras(), Extras::default());
-    press(&mut harness, SHOW);
+    press(&mut harness, SHOW.get());
     for switch in [SHADOWS, DEPTH, ROUND] {
-        harness.get_by_label(switch).click();
+        harness.get_by_label(switch.get()).click();
         harness.run_steps(2);
     }
     let off = Extras { shadows: false, depth: false, round: false, ..Extras::default() };

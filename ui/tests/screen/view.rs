@@ -48,9 +48,9 @@ fn ceiling_and_frames_are_drawn_on_request() {
     let mut harness = console_of("bimanual", SIZE, |app| app);
     until(&mut harness, "any tick", |_| true);
     assert_eq!(harness.state().extras(), Extras::default());
-    press(&mut harness, SHOW);
+    press(&mut harness, SHOW.get());
     for switch in [CEILING, FRAMES] {
-        harness.get_by_label(switch).click();
+        harness.get_by_label(switch.get()).click();
         harness.run_steps(2);
     }
     assert_eq!(harness.state().extras(), Extras { ceiling: true, frames: true, ..Extras::default() });

@@ -9,12 +9,15 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::console::{
-    ConsoleApp, Options,
-    desk::{Layout, Panel},
-    roles::Role,
-    settings::Kept,
-    wizards::Which,
+use nima_console::{
+    console::{
+        ConsoleApp, Options,
+        desk::{Layout, Panel},
+        roles::Role,
+        settings::Kept,
+        wizards::Which,
+    },
+    language::{Language, pseudo},
 };
 use nima_machine::messages::LoopState;
 
@@ -39,14 +42,15 @@ pub(crate) const VIEWS: [(Role, &[Panel]); 7] = [
 const SLACK: f32 = 1.5;
 
 /// A text on the screen: its words, its place, and where it is allowed to be seen.
-struct Text {
+pub(crate) struct Text {
     words: String,
     place: Rect,
     clip: Rect,
     cut: bool,
 }
 
-fn texts(harness: &Harness<'_, ConsoleApp>) -> Vec<Text> {
+/// All texts in what was drawn last.
+pub(crate) fn texts<A>(harness: &Harness<'_, A>) -> Vec<Text> {
     fn add(shape: &Shape, clip: Rect, texts: &mut Vec<Text>) {
         match shape {
             Shape::Vec(shapes) => shapes.iter().for_each(|shape| add(shape, clip, texts)),
@@ -67,7 +71,13 @@ fn texts(harness: &Harness<'_, ConsoleApp>) -> Vec<Text> {
 }
 
 /// What is wrong with the texts of this picture; `field` is the operating field, where labels ride on moving things.
-fn faults_of_texts(texts: &[Text], window: Rect, field: Option<Rect>, scrolls: bool, overlaid: bool) -> Vec<String> {
+pub(crate) fn faults_of_texts(
+    texts: &[Text],
+    window: Rect,
+    field: Option<Rect>,
+    scrolls: bool,
+    overlaid: bool,
+) -> Vec<String> {
     let mut faults = Vec::new();
     let seen = |text: &Text| text.place.intersect(text.clip).intersect(window).is_positive();
     let on_field = |text: &Text| {
@@ -97,7 +107,7 @@ fn faults_of_texts(texts: &[Text], window: Rect, field: Option<Rect>, scrolls: b
 }
 
 /// Controls that overlap, or that leave the window sideways. A control that is scrolled away is known by its words.
-fn faults_of_controls(harness: &Harness<'_, ConsoleApp>, texts: &[Text], window: Rect) -> Vec<String> {
+pub(crate) fn faults_of_controls<A>(harness: &Harness<'_, A>, texts: &[Text], window: Rect) -> Vec<String> {
     let seen = |name: &str, place: Rect| {
         let words = texts.iter().find(|text| text.words.trim() == name && place.contains(text.place.center()));
         words.map_or(place, |words| place.intersect(words.clip))
@@ -127,7 +137,7 @@ fn faults_of_controls(harness: &Harness<'_, ConsoleApp>, texts: &[Text], window:
 }
 
 /// Everything that is wrong on the screen now.
-fn faults(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2], scrolls: bool) -> Vec<String> {
+pub(crate) fn faults(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2], scrolls: bool) -> Vec<String> {
     let (texts, window, field) = seen(harness, size);
     let mut faults = faults_of_texts(&texts, window, field, scrolls, false);
     faults.extend(faults_of_controls(harness, &texts, window));
@@ -135,21 +145,26 @@ fn faults(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2], scrolls: bool) 
 }
 
 /// The same where something lies over the rest on purpose.
-fn faults_overlaid(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> Vec<String> {
+pub(crate) fn faults_overlaid(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> Vec<String> {
     let (texts, window, field) = seen(harness, size);
     faults_of_texts(&texts, window, field, true, true)
 }
 
 /// What is seen in a window of this size: its texts, the window, the operating field.
-fn seen(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> (Vec<Text>, Rect, Option<Rect>) {
+pub(crate) fn seen(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> (Vec<Text>, Rect, Option<Rect>) {
     harness.set_size(size.into());
     // Sizes settle within some frames.
     harness.run_steps(4);
     harness.check_accessibility();
     let window = Rect::from_min_size(Pos2::ZERO, size.into());
-    let stop = harness.get_by_role_and_label(accesskit::Role::Button, "Stop").rect();
+    let [stop, field] = match harness.state_mut().settings_mut().language {
+        Language::English => ["Stop", "Operating field"].map(str::to_owned),
+        Language::German => ["Halt", "OP-Feld"].map(str::to_owned),
+        Language::Pseudo => ["Stop", "Operating field"].map(pseudo),
+    };
+    let stop = harness.get_by_role_and_label(accesskit::Role::Button, &stop).rect();
     assert!(stop.width() >= 48.0 && stop.height() >= 48.0 && window.contains_rect(stop), "{stop:?}");
-    let field = harness.query_by_label("Operating field").map(|field| field.rect());
+    let field = harness.query_by_label(&field).map(|field| field.rect());
     (texts(harness), window, field)
 }
 

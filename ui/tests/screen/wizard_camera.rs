@@ -19,7 +19,10 @@ use nima_world::{
     scene::Scene,
 };
 
-use crate::bench::{Console, can_press, pick, read, shown, shows, until, wait};
+use crate::{
+    bench::{Console, can_press, pick, read, shown, shows, until, wait},
+    language,
+};
 
 /// A small picture, so that a busy machine keeps up.
 const SIZE_PX: [usize; 2] = [640, 360];
@@ -90,10 +93,12 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
         read(&mut console, &format!("{} taken;", number + 1));
     }
     read(&mut console, "All views are taken");
+    language::fits(&mut console, "views");
     pick(&mut console, "Remove the last view");
     read(&mut console, "18 taken;");
     pick(&mut console, "Next");
     read(&mut console, "Accepted: it predicts views that were left out");
+    language::fits(&mut console, "lens");
     pick(&mut console, "Next");
     // The board lies still, but the tip stays where it is: that is no place.
     for touched in 0..4 {
@@ -102,11 +107,13 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
         read(&mut console, &format!("{} corners touched", touched + 1));
     }
     read(&mut console, "beside the board");
+    language::fits(&mut console, "place");
     assert!(!can_press(&console, "Next"));
     pick(&mut console, "Lay it anew");
     read(&mut console, "0 corners touched");
     pick(&mut console, "Next");
     read(&mut console, "the place is not known");
+    language::fits(&mut console, "save");
     assert!(
         RigConfig::load(&rig).unwrap().endoscope.unwrap().camera.is_none(),
         "nothing is changed before it is saved"

@@ -22,7 +22,10 @@ use nima_world::{
     scene::{Flaw, Scene},
 };
 
-use crate::bench::{Console, WIZARD_SPEED, can_press, pick, read, shown_at, write_into};
+use crate::{
+    bench::{Console, WIZARD_SPEED, can_press, pick, read, shown_at, write_into},
+    language,
+};
 
 fn console(scene: Scene, store: &Path, calibrations: Calibrations) -> Console {
     let rig = RigConfig::load("simulated").unwrap();
@@ -51,11 +54,14 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
     read(&mut harness, "Pushes: 1 recorded of 9");
     assert!(!can_press(&harness, "Next"), "one push is no calibration");
     read(&mut harness, "Pushes: 9 recorded of 9");
+    language::fits(&mut harness, "pushes");
     pick(&mut harness, "Next");
     read(&mut harness, "Euler cross-check");
     read(&mut harness, "held out: MAE");
     harness.check_accessibility();
+    language::fits(&mut harness, "result");
     pick(&mut harness, "Next");
+    language::fits(&mut harness, "save");
     assert!(saved(&store).is_none(), "nothing is kept without being asked");
     pick(&mut harness, "Save and use");
     read(&mut harness, "Saved and in use");

@@ -13,7 +13,10 @@ use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{elsewhere, started};
 use nima_world::{Plan, emulated::EmulatedRig, scene::Scene, start};
 
-use crate::bench::{Console, TIMEOUT, can_press, comes, console_of, pick, shows, texts};
+use crate::{
+    bench::{Console, TIMEOUT, can_press, comes, console_of, pick, shows, texts},
+    language,
+};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
@@ -102,11 +105,14 @@ fn a_technician_finds_the_tip_sees_the_change_saves_it_and_undoes_it() {
         press(&mut console, "Next");
         until(&mut console, "some poses", |c| shows(c, "4 poses; still needed: "));
         until(&mut console, "all poses", |c| shows(c, "20 poses; complete"));
+        language::fits(&mut console, "poses");
         press(&mut console, "Next");
         until(&mut console, "the verdict", |c| shows(c, "Accurate on held-out data"));
+        language::fits(&mut console, "result");
         assert!(shows(&console, "devices.right.mount.shaft_m") && shows(&console, "dashed: now   solid: new"));
         assert_eq!(shaft_m(&rig).to_bits(), wrong_m.to_bits(), "nothing is changed before it is saved");
         press(&mut console, "Next");
+        language::fits(&mut console, "save");
         press(&mut console, "Save and use");
         until(&mut console, "saved", |c| shows(c, "Saved: "));
         let found_m = shaft_m(&rig);

@@ -13,7 +13,10 @@ use nima_world::{
     scene::{Flaw, Scene},
 };
 
-use crate::bench::{Console, TIMEOUT, WIZARD_SPEED, can_press, pick, shown_at, shows, texts, wait, write_into};
+use crate::{
+    bench::{Console, TIMEOUT, WIZARD_SPEED, can_press, pick, shown_at, shows, texts, wait, write_into},
+    language,
+};
 
 fn console(scene: Scene, store: &Path) -> Console {
     let rig = RigConfig::load("simulated").unwrap();
@@ -55,8 +58,10 @@ fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
     pick(&mut console, "Calibrate gravity…");
     wait(&mut console, "the first step", |c| shows(c, "let go of it: nothing may touch the tool"));
     assert!(!can_press(&console, "Engage"), "nobody engages an arm that is being guided by hand");
+    language::fits(&mut console, "checks before the poses");
     leave_the_checks(&mut console);
     wait(&mut console, "some poses", |c| shows(c, "4 of 12 recorded"));
+    language::fits(&mut console, "poses");
     // Back and closing lose nothing that was good.
     pick(&mut console, "Back");
     pick(&mut console, "Back to the monitor");
@@ -69,9 +74,12 @@ fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
     pick(&mut console, "Next");
     wait(&mut console, "a verdict", |c| shows(c, "Accepted"));
     assert!(shows(&console, "Paper") && shows(&console, "Physical"), "the models side by side");
+    language::fits(&mut console, "result");
     pick(&mut console, "Next");
     wait(&mut console, "the proof", |c| shows(c, "Passed: free motion reads near zero"));
+    language::fits(&mut console, "free motion");
     pick(&mut console, "Next");
+    language::fits(&mut console, "save");
     pick(&mut console, "Save and use");
     wait(&mut console, "saved", |c| shows(c, "Saved and in use"));
     assert_eq!(files(folder.path()), 1);

@@ -17,7 +17,10 @@ use serde::Serialize;
 use super::{DepartmentCommand, MonitorArguments, RecordArguments, RigsArguments, Which};
 use crate::{
     command::output,
-    console::monitor::{self, Heard, Options, Teller},
+    console::{
+        monitor::{self, Heard, Options, Teller},
+        settings::Kept,
+    },
     leaving::Leave,
     telling::tell,
 };
@@ -161,6 +164,7 @@ fn watch(arguments: &MonitorArguments) -> anyhow::Result<()> {
     let rig = Rig::open(&own, &address)?;
     let options = Options {
         role: arguments.role,
+        language: arguments.language.unwrap_or_else(|| Kept::of_user().now.language),
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),
     };

@@ -12,6 +12,7 @@ use nima_machine::messages::{Fault, LoopState, Scheduling};
 use nima_network::endpoint::Control;
 
 use super::theme;
+use crate::words::scheduling_advice;
 use crate::{console::text, words::Remedy as _};
 
 /// Urgency by IEC 60601-1-8.
@@ -196,7 +197,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             cure: text::alarms::BIAS_MOVED_CURE.get().to_owned(),
         });
     }
-    if let Some(advice) = signs.scheduling.and_then(|scheduling| scheduling.advice()) {
+    if let Some(advice) = signs.scheduling.and_then(scheduling_advice) {
         let (cause, cure) = advice.split_once(": ").or_else(|| advice.split_once("; ")).unwrap_or((advice, ""));
         alarms.push(Alarm {
             kind: Kind::Scheduling,

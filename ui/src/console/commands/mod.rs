@@ -207,6 +207,8 @@ pub struct Entry {
     pub action: Action,
     /// Its name.
     pub title: String,
+    /// Its name in English, by which it is found in every language: the documents have it.
+    pub english: String,
     /// Its meaning.
     pub does: &'static str,
     /// Its keys.

@@ -9,6 +9,7 @@ use crate::console::{
     desk::Panel, roles::Role, scene3d::extras::Switch, text, text::commands as names, wizards::Which,
 };
 use crate::language::{self, Language};
+use crate::words::within;
 
 type Keys = &'static [Stroke];
 
@@ -32,13 +33,14 @@ pub fn table() -> &'static [Entry] {
 }
 
 fn made(language: Language) -> Vec<Entry> {
-    language::with(language, || {
-        [views(), pages(), screen(), calibration(), traces_and_field(), past(), machine()].concat()
-    })
+    let all = || [views(), pages(), screen(), calibration(), traces_and_field(), past(), machine()].concat();
+    let english = language::with(Language::English, all);
+    let named = language::with(language, all).into_iter().zip(english);
+    named.map(|(entry, english)| Entry { english: english.title, ..entry }).collect()
 }
 
 fn entry(action: Action, title: impl Into<String>, does: &'static str, keys: Keys, place: Place) -> Entry {
-    Entry { action, title: title.into(), does, keys, place }
+    Entry { action, title: title.into(), english: String::new(), does, keys, place }
 }
 
 fn views() -> Vec<Entry> {
@@ -111,7 +113,7 @@ fn calibration() -> Vec<Entry> {
         entry(Action::Calibrations, text::overview::OPEN.get(), text::overview::MEANING.get(), &[], at),
     ];
     entries.extend(Which::ALL.map(|which| {
-        let title = text::calibrations::calibrate(&which.name().to_lowercase());
+        let title = text::calibrations::calibrate(&within(which.name()));
         entry(Action::Calibrate(which), title, which.meaning(), &[], at)
     }));
     entries.push(entry(Action::CloseWizard, back, back_does, &[], at));
@@ -181,6 +183,14 @@ pub fn as_markdown() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_two_commands_share_a_name_in_german() {
+        let titles = language::with(Language::German, || table().iter().map(|entry| entry.title.clone()));
+        let mut titles: Vec<_> = titles.collect();
+        titles.sort();
+        assert!(titles.windows(2).all(|pair| pair[0] != pair[1]), "{titles:?}");
+    }
 
     #[test]
     fn no_two_commands_share_a_name_an_action_or_a_key() {

@@ -9,6 +9,7 @@ use crate::console::{
     widgets::{Sign, next_button, sign_ui, small},
     wizards::{GoOn, Wanted},
 };
+use crate::words::within;
 
 /// Widths of the columns of words.
 const WIDTHS: [f32; 3] = [150.0, 260.0, 260.0];
@@ -90,7 +91,7 @@ fn line_ui(ui: &mut Ui, line: &Line, arm: &str, closed: Option<&str>) -> bool {
     let verb = if line.kept == Ok(None) { text::overview::MAKE.get() } else { text::overview::REDO.get() };
     let free = closed.is_none();
     let button = ui.add_enabled(free, Button::new(verb).min_size(vec2(84.0, 24.0)));
-    let name = text::overview::button(verb, arm, &line.wanted.name().to_lowercase());
+    let name = text::overview::button(verb, arm, &within(line.wanted.name()));
     button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, name.clone()));
     button.on_disabled_hover_text(closed.unwrap_or_default()).clicked()
 }

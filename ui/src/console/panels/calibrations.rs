@@ -7,6 +7,7 @@ use nima_machine::{
     rig::Side,
 };
 
+use crate::words::within;
 use crate::{
     console::{
         alarms::sentence,
@@ -66,7 +67,7 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
         _ => has_arm || which.scene().is_some(),
     };
     for which in Which::ALL.into_iter().filter(offered) {
-        let text = text::calibrations::calibrate(&which.name().to_lowercase());
+        let text = text::calibrations::calibrate(&within(which.name()));
         let is_open = open == Some(Page::Wizard(which));
         let button =
             Button::selectable(is_open, text).frame_when_inactive(true).min_size(vec2(ui.available_width(), 28.0));

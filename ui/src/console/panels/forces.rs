@@ -18,6 +18,7 @@ use crate::console::{
     text, theme,
     widgets::{at_the_right, describe, force_sign, small, still},
 };
+use crate::words::side_word;
 
 const DEFAULT_VIEW_S: (f64, f64) = (-10.0, 0.0);
 const SHORTEST_S: f64 = 0.2;
@@ -164,7 +165,7 @@ pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[
         state.ranges_n[axis] = range_n(history.extent(&[axis, axis + 3], (from_s, to_s)), state.ranges_n[axis]);
         let height = if last { height + TIME_AXIS } else { height };
         let response = plot_ui(ui, live, state, (axis, last, axes.len() == 1), height, cursor_s);
-        describe(ui, &response.response, &text::forces::plot(AXES[axis], state.side.word()), || {
+        describe(ui, &response.response, &text::forces::plot(AXES[axis], side_word(state.side)), || {
             summary(history, axis, (from_s, to_s))
         });
         if last {
@@ -247,7 +248,7 @@ fn switches_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
         ui.add_space(6.0);
         for side in [Side::Left, Side::Right] {
             let button = Button::selectable(state.side == side, side_name(side)).frame_when_inactive(true);
-            let meaning = text::forces::forces_of(side.word());
+            let meaning = text::forces::forces_of(side_word(side));
             if ui.add(button.min_size(vec2(52.0, 26.0))).on_hover_text(meaning).clicked() {
                 state.side = side;
             }

@@ -7,6 +7,7 @@ use nima_machine::{
     rig::Side,
 };
 
+use crate::words::{side_word, state_name, within};
 use crate::{
     console::{
         live::Live,
@@ -39,7 +40,7 @@ pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
             for side in [Side::Left, Side::Right] {
                 let name = text::common::hand(side_name(side));
                 let button = Button::selectable(state.side == side, name).frame_when_inactive(true);
-                let meaning = text::gates::gates_of(side.word());
+                let meaning = text::gates::gates_of(side_word(side));
                 if ui.add(button.min_size(vec2(104.0, 26.0))).on_hover_text(meaning).clicked() {
                     state.side = side;
                 }
@@ -137,7 +138,7 @@ pub(super) fn gates(live: &Live, side: Side) -> [Gate; GATES] {
 fn note(live: &Live, side: Side, which: Which) -> String {
     let (gates, chain) = (&live.gates[side.index()], &live.rig.gates);
     match which {
-        Which::Permission => live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state).word().to_lowercase(),
+        Which::Permission => within(state_name(live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state))),
         Which::Validity => String::new(),
         Which::Age => text::gates::zero_after(chain.zero_after_s * 1e3),
         Which::DeadBand if live.gate_settings().static_hold => text::gates::DEAD_BAND_OFF.get().to_owned(),

@@ -14,6 +14,7 @@ use crate::console::{
     widgets::{Sign, sign},
 };
 use crate::language::Text;
+use crate::words::{side_word, state_name, within};
 
 const NODE: egui::Vec2 = vec2(82.0, 28.0);
 const DIAGRAM_HEIGHT: f32 = 118.0;
@@ -45,7 +46,7 @@ pub fn safety_ui(ui: &mut Ui, live: &Live) {
 
 /// Addition to a text for the side, if there are two arms.
 fn of_side(live: &Live, side: Side) -> String {
-    if live.is_bimanual() { text::safety::of_hand(side.word()) } else { String::new() }
+    if live.is_bimanual() { text::safety::of_hand(side_word(side)) } else { String::new() }
 }
 
 /// States and their positions, relative to the diagram's size.
@@ -94,7 +95,7 @@ fn interlock_ui(ui: &mut Ui, live: &Live, side: Side) {
         || text::safety::SINCE_START.get().to_owned(),
         |Change { t_s, why, .. }| text::safety::since(t_s, why_words(why)),
     );
-    let title = text::safety::interlock(&of_side(live, side), &state.word().to_lowercase());
+    let title = text::safety::interlock(&of_side(live, side), &within(state_name(state)));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{title}, {since}")));
     response.on_hover_text(text::safety::INTERLOCK_HOVER.get());
     let painter = ui.painter_at(rect);

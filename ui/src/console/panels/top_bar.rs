@@ -7,6 +7,7 @@ use nima_machine::{
     rig::Side,
 };
 
+use crate::words::{side_word, state_name};
 use crate::{
     console::{
         alarms::{Missing, strip::Alarms},
@@ -178,9 +179,13 @@ fn state_lines(live: &Live, state: LoopState) -> Vec<String> {
     let states: Vec<(Side, LoopState)> =
         live.sides().filter_map(|side| Some((side, live.tick_of(side)?.state))).collect();
     if states.iter().all(|(_, of_side)| of_side.word() == state.word()) {
-        return vec![state.word().to_owned()];
+        return vec![state_name(state).to_owned()];
     }
-    states.into_iter().rev().map(|(side, state)| text::top_bar::state_of_side(side_name(side), state.word())).collect()
+    states
+        .into_iter()
+        .rev()
+        .map(|(side, state)| text::top_bar::state_of_side(side_name(side), state_name(state)))
+        .collect()
 }
 
 /// Always in the same place, above every window, menu and tooltip, and always enabled: pressing it twice does no harm.
@@ -261,7 +266,7 @@ fn refusal_ui(ui: &mut Ui, live: &Live) {
         Command::ReleaseStop => text::top_bar::NOT_RELEASED.get(),
         _ => text::top_bar::NOT_SET.get(),
     };
-    let arm = if live.is_bimanual() { side.word() } else { "" };
+    let arm = if live.is_bimanual() { side_word(side) } else { "" };
     // Why an arm has no device is known from the list of devices.
     let missing = live.missing().next().filter(|_| why == Refusal::State(LoopState::Disconnected));
     let words = match missing {

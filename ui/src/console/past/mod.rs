@@ -25,6 +25,7 @@ use self::{
     worker::{Answer, Extent, Opened, Worker},
 };
 use super::{in_force::InForce, live::Live, outbox::Outbox, roles::Panels, scene3d::SceneView, text};
+use crate::words::side_word;
 
 pub(crate) use bar::{FRAME, bar_ui, head_ui};
 pub(crate) use beside::both_ui;
@@ -168,9 +169,9 @@ impl Past {
         let t_s = self.shown_s();
         let line = |side: Side| {
             let later = self.overview.calibrations(side, t_s);
-            let name = later.map_or_else(|| side.word().to_owned(), |(_, number)| number.to_string());
+            let name = later.map_or_else(|| side_word(side).to_owned(), |(_, number)| number.to_string());
             let table = self.calibrations.get(&name)?;
-            Some(text::past::calibrations(side.word(), table, later.map(|(since_s, _)| since_s)))
+            Some(text::past::calibrations(side_word(side), table, later.map(|(since_s, _)| since_s)))
         };
         self.in_force = InForce::of_past(Side::ALL.into_iter().filter_map(line).collect());
         if let Some(live) = &mut self.live {

@@ -10,11 +10,12 @@ use nalgebra::Vector3;
 use nima_world::scene::Scene;
 
 use super::{
-    Camera, label, side_name,
+    Camera, label,
     stage::{self, Arm},
 };
 use crate::console::{text, theme};
 use crate::language::Text;
+use crate::words::side_word;
 
 /// Length of a frame's axes, m.
 const AXIS_M: f32 = 0.016;
@@ -201,7 +202,7 @@ fn frames(scene: &Scene, arms: &[Arm]) -> Vec<Axes> {
         },
     ];
     for arm in arms {
-        let side = if arms.len() > 1 { format!(" {}", side_name(arm.side).to_lowercase()) } else { String::new() };
+        let side = if arms.len() > 1 { format!(" {}", side_word(arm.side)) } else { String::new() };
         frames.push(Axes { name: text::field::TROCAR.get().to_owned() + &side, origin_m: arm.trocar_m, ways: base });
         let Some(z) = (arm.trocar_m - arm.pose.tip_m).try_normalize(1e-4) else { continue };
         // The direction of x closest to the base's x.

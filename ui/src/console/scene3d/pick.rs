@@ -5,10 +5,11 @@ use nalgebra::Vector3;
 use nima_world::scene::Scene;
 
 use super::{
-    Camera, side_name,
+    Camera,
     stage::{self, Arm},
 };
 use crate::console::text;
+use crate::words::side_word;
 
 /// Distance from the pointer within which an object is hit, points.
 const REACH: f32 = 12.0;
@@ -25,7 +26,7 @@ fn of_arm(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arm: &Arm, 
     let at = |point_m: &Vector3<f32>| camera.project(point_m, rect);
     let near = |point_m: &Vector3<f32>| at(point_m).is_some_and(|at| at.distance(pointer) < REACH);
     let Arm { side, trocar_m, pose, targets_m, .. } = arm;
-    let whose = if both { text::field::of_hand(&side_name(*side).to_lowercase()) } else { String::new() };
+    let whose = if both { text::field::of_hand(side_word(*side)) } else { String::new() };
     let [measured, rendered] = stage::arrow_bases_m(pose, trocar_m, &camera.right());
     for (name, base_m, force_n) in [
         (text::field::ARROW_MEASURED.get(), measured, pose.measured_n),

@@ -6,55 +6,62 @@ use nima_recording::store::WristId;
 use crate::language::{Text, told, word};
 
 pub(in crate::console) const NOT_OF_A_SENSOR: Text =
-    Text::of("these numbers belong into the rig file", "these numbers belong into the rig file");
-pub(in crate::console) const SETS_IDLE: Text =
-    Text::of("The check and the wizards set the loop to idle", "The check and the wizards set the loop to idle");
-pub(in crate::console) const IS_OPEN: Text = Text::of("Already open", "Already open");
-pub(in crate::console) const CLOSE_WIZARD: Text = Text::of("Back to the monitor", "Back to the monitor");
+    Text::of("these numbers belong into the rig file", "diese Werte gehören in die Aufbaudatei");
+pub(in crate::console) const SETS_IDLE: Text = Text::of(
+    "The check and the wizards set the loop to idle",
+    "Prüfung und Assistenten setzen die Regelung in den \
+     Leerlauf",
+);
+pub(in crate::console) const IS_OPEN: Text = Text::of("Already open", "Schon offen");
+pub(in crate::console) const CLOSE_WIZARD: Text = Text::of("Back to the monitor", "Zurück zum Monitor");
 pub(in crate::console) const CLOSE_WIZARD_HOVER: Text = Text::of(
     "The data recorded so far are kept until the wizard is opened again",
-    "The data recorded so far are kept until the wizard is opened again",
+    "Bisher aufgezeichnete Daten bleiben bis zum nächsten Öffnen erhalten",
 );
-pub(in crate::console) const GRAVITY: Text = Text::of("Gravity", "Gravity");
-pub(in crate::console) const CORRESPONDENCE: Text = Text::of("Correspondence", "Correspondence");
-pub(in crate::console) const TIP_FORCE: Text = Text::of("Tip force", "Tip force");
+pub(in crate::console) const GRAVITY: Text = Text::of("Gravity", "Schwerkraft");
+pub(in crate::console) const CORRESPONDENCE: Text = Text::of("Correspondence", "Korrespondenz");
+pub(in crate::console) const TIP_FORCE: Text = Text::of("Tip force", "Kraft an der Spitze");
 pub(in crate::console) const NO_FOLDER: Text = Text::of(
     "no folder for calibration files was found; set NIMA_DATA_DIR",
-    "no folder for calibration files was found; set NIMA_DATA_DIR",
+    "kein Ordner für Kalibrierdateien gefunden; NIMA_DATA_DIR setzen",
 );
 pub(in crate::console) const NOT_NEEDED: Text = Text::of(
     "This scene measures the force at the tip, so it needs no calibration",
-    "This scene measures the force at the tip, so it needs no calibration",
+    "Diese Szene misst die Kraft an der Spitze, Kalibrierung unnötig",
 );
-pub(in crate::console) const GRAVITY_NONE: Text = Text::of("Gravity: not calibrated", "Gravity: not calibrated");
+pub(in crate::console) const GRAVITY_NONE: Text = Text::of("Gravity: not calibrated", "Schwerkraft: nicht kalibriert");
 pub(in crate::console) const CORRESPONDENCE_NONE: Text =
-    Text::of("Correspondence: not calibrated", "Correspondence: not calibrated");
-pub(in crate::console) const TIP_FORCE_NONE: Text = Text::of("Tip force: not calibrated", "Tip force: not calibrated");
+    Text::of("Correspondence: not calibrated", "Korrespondenz: nicht kalibriert");
+pub(in crate::console) const TIP_FORCE_NONE: Text = Text::of(
+    "Tip force: not calibrated",
+    "Kraft an der Spitze: nicht \
+ kalibriert",
+);
 pub(in crate::console) const TIP_FORCE_UNCHECKED: Text =
-    Text::of("Tip force: trained but not checked", "Tip force: trained but not checked");
+    Text::of("Tip force: trained but not checked", "Kraft an der Spitze: trainiert, nicht geprüft");
 pub(in crate::console) const REMARK_FUTURE_DATE: Text = Text::of(
     "; dated in the future, check this computer's clock",
-    "; dated in the future, check this computer's clock",
+    "; Datum in der Zukunft, Uhr dieses Rechners prüfen",
 );
 pub(in crate::console) const SENSOR_NOT_CONNECTED: Text = Text::of(
     "The wrist sensor is not connected: its serial number decides which calibrations are in force",
-    "The wrist sensor is not connected: its serial number decides which calibrations are in force",
+    "Handgelenksensor nicht verbunden: seine Seriennummer bestimmt, welche Kalibrierungen gelten",
 );
 pub(in crate::console) const SENSOR_WITHOUT_SERIAL: Text = Text::of(
     "The wrist sensor gave no serial number, so no calibration can belong to it: connect it again",
-    "The wrist sensor gave no serial number, so no calibration can belong to it: connect it again",
+    "Der Handgelenksensor nennt keine Seriennummer, ihm ist keine Kalibrierung zuzuordnen: neu verbinden",
 );
 pub(in crate::console) const RIG_WITHOUT_SENSOR: Text = Text::of(
     "The rig file names no wrist sensor for this arm: add serial_number and tool to its [simulated] part",
-    "The rig file names no wrist sensor for this arm: add serial_number and tool to its [simulated] part",
+    "Die Aufbaudatei nennt keinen Handgelenksensor für diesen Arm: serial_number und tool in [simulated] ergänzen",
 );
 pub(in crate::console) const NO_SENSOR_TO_SAVE_FOR: Text = Text::of(
     "the serial number of the wrist sensor is not known; save again once the sensor is connected",
-    "the serial number of the wrist sensor is not known; save again once the sensor is connected",
+    "Seriennummer des Handgelenksensors unbekannt; Sensor verbinden, dann erneut speichern",
 );
 pub(in crate::console) const ARM_TO_CALIBRATE: Text = Text::of(
     "The wizards calibrate the wrist sensor of this arm",
-    "The wizards calibrate the wrist sensor of this arm",
+    "Die Assistenten kalibrieren den Handgelenksensor dieses Arms",
 );
 
 /// Why nothing that sets the loop to idle can be opened in this state, and what to do; `None` where it can.
@@ -62,38 +69,40 @@ pub(in crate::console) fn closed(state: LoopState) -> Option<&'static str> {
     match state {
         LoopState::Idle | LoopState::Engaged => None,
         LoopState::Stopped | LoopState::Faulted(_) => {
-            Some(word("The loop is stopped: press Release stop", "The loop is stopped: press Release stop"))
+            Some(word("The loop is stopped: press Release stop", "Die Regelung ist angehalten: Halt lösen drücken"))
         }
         LoopState::Disconnected => {
-            Some(word("A device is missing: see the panel Devices", "A device is missing: see the panel Devices"))
+            Some(word("A device is missing: see the panel Devices", "Ein Gerät fehlt: siehe Panel Geräte"))
         }
-        LoopState::Ready => {
-            Some(word("About to engage: align hand and tip, or Stop", "About to engage: align hand and tip, or Stop"))
-        }
+        LoopState::Ready => Some(word(
+            "About to engage: align hand and tip, or Stop",
+            "Vor dem Koppeln: Hand und Spitze ausrichten, \
+             oder Halt",
+        )),
         LoopState::Clutched => {
-            Some(word("The clutch is pressed: let the pedal go", "The clutch is pressed: let the pedal go"))
+            Some(word("The clutch is pressed: let the pedal go", "Kupplung gedrückt: Pedal loslassen"))
         }
     }
 }
 
 /// Button that opens a wizard; the wizard's name is in lower case.
 pub(in crate::console) fn calibrate(wizard: &str) -> String {
-    told!("Calibrate {wizard}…", "Calibrate {wizard}…")
+    told!("Calibrate {wizard}…", "{wizard} kalibrieren…")
 }
 
 /// Hover text of that button.
 pub(in crate::console) fn opens(meaning: &str) -> String {
-    told!("{meaning}\nThe loop is set to idle", "{meaning}\nThe loop is set to idle")
+    told!("{meaning}\nThe loop is set to idle", "{meaning}\nDie Regelung geht in den Leerlauf")
 }
 
 /// Source of the force at the tip.
 pub(in crate::console) fn source(words: &str) -> String {
-    told!("Tip force: {words}", "Tip force: {words}")
+    told!("Tip force: {words}", "Kraft an der Spitze: {words}")
 }
 
 /// Name of an arm.
 pub(in crate::console) fn arm(side: &str) -> String {
-    told!("{side} arm", "{side} arm")
+    told!("{side} arm", "Arm {side}")
 }
 
 /// Sensor and tool of the calibrations.
@@ -106,8 +115,8 @@ pub(in crate::console) fn other_sensors_are_calibrated(sensor: &str, tool: &str,
     told!(
         "Sensor {sensor} has no gravity calibration with {tool}; sensor {others} has one: connect that sensor, or \
          calibrate this one.",
-        "Sensor {sensor} has no gravity calibration with {tool}; sensor {others} has one: connect that sensor, or \
-         calibrate this one."
+        "Sensor {sensor} hat keine Schwerkraft-Kalibrierung mit {tool}, Sensor {others} hat eine: jenen verbinden oder \
+         diesen kalibrieren."
     )
 }
 
@@ -116,8 +125,8 @@ pub(in crate::console) fn sensors_are_exchanged(right: &WristId, left: &WristId)
     told!(
         "The right and the left sensor, or their tools in the rig file, are exchanged: {} is calibrated with {}, and \
          {} with {}: exchange the cables, or press Exchange Sensors in the panel Devices.",
-        "The right and the left sensor, or their tools in the rig file, are exchanged: {} is calibrated with {}, and \
-         {} with {}: exchange the cables, or press Exchange Sensors in the panel Devices.",
+        "Rechter und linker Sensor oder ihre Instrumente in der Aufbaudatei sind vertauscht: {} ist mit {} kalibriert \
+         und {} mit {}: Kabel tauschen, oder im Panel Geräte Sensoren tauschen.",
         right.serial_number,
         left.tool,
         left.serial_number,
@@ -127,30 +136,34 @@ pub(in crate::console) fn sensors_are_exchanged(right: &WristId, left: &WristId)
 
 /// A file that cannot be used.
 pub(in crate::console) fn not_in_force(what: &str, why: &str) -> String {
-    told!("{what}: the saved calibration is not used: {why}", "{what}: the saved calibration is not used: {why}")
+    told!(
+        "{what}: the saved calibration is not used: {why}",
+        "{what}: gespeicherte Kalibrierung nicht verwendet: \
+     {why}"
+    )
 }
 
 /// A calibration was saved to this file.
 pub(in crate::console) fn saved(path: &std::path::Path) -> String {
-    told!("Saved and in use: {}", "Saved and in use: {}", path.display())
+    told!("Saved and in use: {}", "Gespeichert, aktiv: {}", path.display())
 }
 
 /// The gravity calibration in one line.
 pub(in crate::console) fn gravity(day: &str, poses: usize, error_n: f64, remarks: &str) -> String {
     told!(
         "Gravity: {day}, {poses} poses, held-out error {error_n:.3} N{remarks}",
-        "Gravity: {day}, {poses} poses, held-out error {error_n:.3} N{remarks}"
+        "Schwerkraft: {day}, {poses} Posen, Testfehler {error_n:.3} N{remarks}"
     )
 }
 
 /// Result of the check of the bias.
 pub(in crate::console) fn bias_checked(found_at: &str, words: &str) -> String {
-    told!("Bias, checked at {found_at} UTC: {words}", "Bias, checked at {found_at} UTC: {words}")
+    told!("Bias, checked at {found_at} UTC: {words}", "Nullpunkt, geprüft um {found_at} UTC: {words}")
 }
 
 /// State of the bias before its check has finished.
 pub(in crate::console) fn bias(words: &str) -> String {
-    told!("Bias: {words}", "Bias: {words}")
+    told!("Bias: {words}", "Nullpunkt: {words}")
 }
 
 /// The correspondence in one line.
@@ -164,7 +177,7 @@ pub(in crate::console) fn correspondence(
     told!(
         "Correspondence: {day}, {pairs} pushes, held-out error {error_n:.3} N, uncertainty {known_to_deg:.2} \
          deg{remarks}",
-        "Correspondence: {day}, {pairs} pushes, held-out error {error_n:.3} N, uncertainty {known_to_deg:.2} \
+        "Korrespondenz: {day}, {pairs}-mal gedrückt, Testfehler {error_n:.3} N, Unsicherheit {known_to_deg:.2} \
          deg{remarks}"
     )
 }
@@ -173,44 +186,41 @@ pub(in crate::console) fn correspondence(
 pub(in crate::console) fn tip_force(day: &str, rows: usize, error_n: f64, remarks: &str) -> String {
     told!(
         "Tip force: {day}, {rows} rows, error on new data {error_n:.3} N{remarks}",
-        "Tip force: {day}, {rows} rows, error on new data {error_n:.3} N{remarks}"
+        "Kraft an der Spitze: {day}, {rows} Zeilen, Fehler auf neuen Daten {error_n:.3} N{remarks}"
     )
 }
 
 /// Remark: the calibration is old.
 pub(in crate::console) fn days_old(days: u64) -> String {
-    told!("; {days} days old, calibrate again", "; {days} days old, calibrate again")
+    told!("; {days} days old, calibrate again", "; {days} Tage alt, neu kalibrieren")
 }
 
 /// Remark: its verdict was overridden by this person.
 pub(in crate::console) fn not_proven(name: &str) -> String {
-    told!("; NOT PROVEN, kept by {name}", "; NOT PROVEN, kept by {name}")
+    told!("; NOT PROVEN, kept by {name}", "; NICHT BELEGT, übernommen von {name}")
 }
 
 /// A wizard could not be opened.
 pub(in crate::console) fn not_opened(reason: &str) -> String {
-    told!("Not opened: {reason}", "Not opened: {reason}")
+    told!("Not opened: {reason}", "Nicht geöffnet: {reason}")
 }
 
 /// The previous scene could not be restored after a wizard.
 pub(in crate::console) fn still_in_the_experiment(reason: &str) -> String {
-    told!("Could not return to the monitor: {reason}", "Could not return to the monitor: {reason}")
+    told!("Could not return to the monitor: {reason}", "Rückkehr zum Monitor nicht möglich: {reason}")
 }
 
 /// Saved, but the running loop does not use it yet.
 pub(in crate::console) fn in_force_with_next_start(saved: &str, reason: &str) -> String {
-    told!(
-        "{saved}. It is used from the next start on: {reason}",
-        "{saved}. It is used from the next start on: {reason}"
-    )
+    told!("{saved}. It is used from the next start on: {reason}", "{saved}. Gilt ab dem nächsten Start: {reason}")
 }
 
 /// Could not be saved.
 pub(in crate::console) fn not_saved(reason: &str) -> String {
-    told!("Not saved: {reason}", "Not saved: {reason}")
+    told!("Not saved: {reason}", "Nicht gespeichert: {reason}")
 }
 
 /// The loop has ended and could not be restarted.
 pub(in crate::console) fn not_started_again(error: &impl std::fmt::Display) -> String {
-    told!("the control loop could not be restarted: {error}", "the control loop could not be restarted: {error}")
+    told!("the control loop could not be restarted: {error}", "die Regelung ließ sich nicht neu starten: {error}")
 }

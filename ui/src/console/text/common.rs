@@ -2,12 +2,12 @@
 
 use crate::language::{Text, told};
 
-pub(in crate::console) const RIGHT: Text = Text::of("Right", "Right");
-pub(in crate::console) const LEFT: Text = Text::of("Left", "Left");
-pub(in crate::console) const MEASURED: Text = Text::of("Measured", "Measured");
-pub(in crate::console) const RENDERED: Text = Text::of("Rendered", "Rendered");
+pub(in crate::console) const RIGHT: Text = Text::of("Right", "Rechts");
+pub(in crate::console) const LEFT: Text = Text::of("Left", "Links");
+pub(in crate::console) const MEASURED: Text = Text::of("Measured", "Gemessen");
+pub(in crate::console) const RENDERED: Text = Text::of("Rendered", "Dargestellt");
 
 /// Name of a hand, as in "Right hand".
 pub(in crate::console) fn hand(side: &str) -> String {
-    told!("{side} hand", "{side} hand")
+    told!("{side} hand", "Hand {side}")
 }

@@ -4,191 +4,192 @@ use crate::language::{Text, told};
 
 pub(in crate::console) const STEP_CHECK_HOVER: Text = Text::of(
     "Checks that all sensors send data and read zero without contact",
-    "Checks that all sensors send data and read zero without contact",
+    "Prüft, ob alle Sensoren Daten senden und ohne Kontakt null anzeigen",
 );
-pub(in crate::console) const STEP_PUSHES: Text = Text::of("Pushes", "Pushes");
+pub(in crate::console) const STEP_PUSHES: Text = Text::of("Pushes", "Drücken");
 pub(in crate::console) const STEP_PUSHES_HOVER: Text = Text::of(
     "Push the tissue with the tool in many directions, so that both sensors measure the same force",
-    "Push the tissue with the tool in many directions, so that both sensors measure the same force",
+    "Mit dem Instrument in viele Richtungen auf das Gewebe drücken, sodass beide Sensoren dieselbe Kraft messen",
 );
 pub(in crate::console) const STEP_RESULT_HOVER: Text = Text::of(
     "The rotation between the sensors, tested on pushes that were not used to fit it",
-    "The rotation between the sensors, tested on pushes that were not used to fit it",
+    "Die Drehung zwischen den Sensoren, getestet an Drücken, die nicht in den Fit eingingen",
 );
 pub(in crate::console) const NEEDS_WRIST_SENSOR: Text =
-    Text::of("The wrist sensor sends no data: connect it", "The wrist sensor sends no data: connect it");
+    Text::of("The wrist sensor sends no data: connect it", "Der Handgelenksensor sendet keine Daten: verbinden");
 pub(in crate::console) const NEEDS_GRAVITY: Text =
-    Text::of("Gravity is not calibrated: calibrate it first", "Gravity is not calibrated: calibrate it first");
+    Text::of("Gravity is not calibrated: calibrate it first", "Schwerkraft nicht kalibriert: zuerst kalibrieren");
 pub(in crate::console) const NEEDS_REST: Text =
-    Text::of("Both sensors must rest without contact first", "Both sensors must rest without contact first");
+    Text::of("Both sensors must rest without contact first", "Beide Sensoren müssen zuerst kontaktfrei ruhen");
 pub(in crate::console) const NEEDS_PUSHES: Text =
-    Text::of("At least six pushes are needed", "At least six pushes are needed");
+    Text::of("At least six pushes are needed", "Mindestens sechsmal drücken");
 pub(in crate::console) const NEEDS_ROTATION: Text = Text::of(
     "There is no result to save: go back and record more pushes",
-    "There is no result to save: go back and record more pushes",
+    "Kein Ergebnis zum Speichern: zurückgehen und öfter drücken",
 );
-pub(in crate::console) const CHECKS_TITLE: Text = Text::of("Before the first push", "Before the first push");
+pub(in crate::console) const CHECKS_TITLE: Text = Text::of("Before the first push", "Vor dem ersten Druck");
 pub(in crate::console) const CHECKS_HOVER: Text = Text::of(
     "All four checks must pass before pushes are recorded",
-    "All four checks must pass before pushes are recorded",
+    "Erst wenn alle vier Prüfungen bestanden sind, wird aufgezeichnet",
 );
 pub(in crate::console) const CHECKS_TASK: Text = Text::of(
     "Put the tissue on its sensor, without the body wall. Nothing may touch the tool or the tissue yet.",
-    "Put the tissue on its sensor, without the body wall. Nothing may touch the tool or the tissue yet.",
+    "Gewebe ohne Bauchdecke auf seinen Sensor legen. Noch darf nichts Instrument oder Gewebe berühren.",
 );
-pub(in crate::console) const CHECK_WRIST: Text = Text::of("Force at the wrist", "Force at the wrist");
-pub(in crate::console) const CHECK_TISSUE: Text = Text::of("Force under the tissue", "Force under the tissue");
-pub(in crate::console) const CHECK_TRACKER: Text = Text::of("Arm and tracker", "Arm and tracker");
+pub(in crate::console) const CHECK_WRIST: Text = Text::of("Force at the wrist", "Kraft am Handgelenk");
+pub(in crate::console) const CHECK_TISSUE: Text = Text::of("Force under the tissue", "Kraft unter dem Gewebe");
+pub(in crate::console) const CHECK_TRACKER: Text = Text::of("Arm and tracker", "Arm und Tracker");
 pub(in crate::console) const CHECK_TRACKER_UNUSED: Text =
-    Text::of("Arm and tracker (not used)", "Arm and tracker (not used)");
-pub(in crate::console) const CHECK_REST: Text = Text::of("No contact", "No contact");
+    Text::of("Arm and tracker (not used)", "Arm und Tracker (nicht verwendet)");
+pub(in crate::console) const CHECK_REST: Text = Text::of("No contact", "Kein Kontakt");
 pub(in crate::console) const OPTION_FLIP: Text = Text::of(
     "The sensor under the tissue reports the force on the tissue, not the force on the tool",
-    "The sensor under the tissue reports the force on the tissue, not the force on the tool",
+    "Der Sensor unter dem Gewebe meldet die Kraft auf das Gewebe, nicht die auf das Instrument",
 );
 pub(in crate::console) const OPTION_FLIP_HOVER: Text = Text::of(
     "A scale does this: the two sensors then report opposite forces. Pushes already recorded are kept.",
-    "A scale does this: the two sensors then report opposite forces. Pushes already recorded are kept.",
+    "So eine Waage: die Sensoren melden dann entgegengesetzte Kräfte. Aufgezeichnetes bleibt erhalten.",
 );
 pub(in crate::console) const OPTION_NO_TRACKER: Text = Text::of(
     "No tracker: the wrist keeps its orientation during all pushes",
-    "No tracker: the wrist keeps its orientation during all pushes",
+    "Kein Tracker: das Handgelenk behält beim Drücken stets seine Orientierung",
 );
 pub(in crate::console) const OPTION_NO_TRACKER_HOVER: Text = Text::of(
     "The result is then valid for this orientation of the wrist only",
-    "The result is then valid for this orientation of the wrist only",
+    "Das Ergebnis gilt dann nur für diese Orientierung des Handgelenks",
 );
-pub(in crate::console) const PUSH_TITLE: Text = Text::of("Push in this direction", "Push in this direction");
+pub(in crate::console) const PUSH_TITLE: Text = Text::of("Push in this direction", "In diese Richtung drücken");
 pub(in crate::console) const PUSH_HOVER: Text = Text::of(
     "Push the tissue, hold for half a second, then let go. The push is recorded when you let go.",
-    "Push the tissue, hold for half a second, then let go. The push is recorded when you let go.",
+    "Auf das Gewebe drücken, eine halbe Sekunde halten, dann loslassen. Beim Loslassen wird aufgezeichnet.",
 );
 pub(in crate::console) const PHASE_WRIST_SILENT: Text =
-    Text::of("the wrist sensor sends no data; connect it", "the wrist sensor sends no data; connect it");
-pub(in crate::console) const PUSH_PROGRESS: Text = Text::of("Push", "Push");
-pub(in crate::console) const DIRECTIONS_PICTURE: Text = Text::of("Push directions", "Push directions");
+    Text::of("the wrist sensor sends no data; connect it", "der Handgelenksensor sendet keine Daten; verbinden");
+pub(in crate::console) const PUSH_PROGRESS: Text = Text::of("Push", "Druck");
+pub(in crate::console) const DIRECTIONS_PICTURE: Text = Text::of("Push directions", "Druckrichtungen");
 pub(in crate::console) const SO_FAR_HOVER: Text = Text::of(
     "The result is updated after each push, from the sixth push on",
-    "The result is updated after each push, from the sixth push on",
+    "Das Ergebnis wird ab dem sechsten Druck nach jedem Druck erneuert",
 );
-pub(in crate::console) const RECORDED: Text = Text::of("Recorded", "Recorded");
-pub(in crate::console) const RECORDED_HOVER: Text = Text::of("Pushes recorded so far", "Pushes recorded so far");
+pub(in crate::console) const RECORDED: Text = Text::of("Recorded", "Aufgezeichnet");
+pub(in crate::console) const RECORDED_HOVER: Text = Text::of("Pushes recorded so far", "Bisher aufgezeichnete Drücke");
 pub(in crate::console) const SO_FAR_EMPTY: Text =
-    Text::of("The first result appears after the sixth push", "The first result appears after the sixth push");
-pub(in crate::console) const REMOVE_LAST: Text = Text::of("Remove the last push", "Remove the last push");
+    Text::of("The first result appears after the sixth push", "Das erste Ergebnis erscheint nach dem sechsten Druck");
+pub(in crate::console) const REMOVE_LAST: Text = Text::of("Remove the last push", "Letzten Druck entfernen");
 pub(in crate::console) const NO_RESULT_HOVER: Text =
-    Text::of("No rotation could be fitted to the pushes", "No rotation could be fitted to the pushes");
+    Text::of("No rotation could be fitted to the pushes", "Keine Drehung ließ sich anpassen");
 pub(in crate::console) const TOO_FEW: Text =
-    Text::of("There are too few pushes: go back and record more", "There are too few pushes: go back and record more");
+    Text::of("There are too few pushes: go back and record more", "Zu wenige: zurückgehen und öfter drücken");
 pub(in crate::console) const PROOF: Text =
-    Text::of("Accepted on pushes that were held out", "Accepted on pushes that were held out");
-pub(in crate::console) const PHASE_READY: Text = Text::of("ready; push now", "ready; push now");
+    Text::of("Accepted on pushes that were held out", "Auf Testdaten angenommen");
+pub(in crate::console) const PHASE_READY: Text = Text::of("ready; push now", "bereit; jetzt drücken");
 pub(in crate::console) const VERDICT_HOVER: Text = Text::of(
     "Tested on pushes that were not used to fit the rotation",
-    "Tested on pushes that were not used to fit the rotation",
+    "Getestet an Drücken, die nicht in den Fit eingingen",
 );
 pub(in crate::console) const PUSHES_HOVER: Text = Text::of(
     "Number of pushes recorded, and how many of them were not used",
-    "Number of pushes recorded, and how many of them were not used",
+    "Zahl der aufgezeichneten Drücke, davon nicht verwendet",
 );
-pub(in crate::console) const SPREAD: Text = Text::of("Spread", "Spread");
+pub(in crate::console) const SPREAD: Text = Text::of("Spread", "Streuung");
 pub(in crate::console) const SPREAD_HOVER: Text = Text::of(
     "How evenly the pushes point in all directions: second and third axis relative to the first. 1 is \
     even, 0 means that an axis is missing.",
-    "How evenly the pushes point in all directions: second and third axis relative to the first. 1 is \
-    even, 0 means that an axis is missing.",
+    "Wie gleichmäßig die Druckrichtungen verteilt sind: zweite und dritte Achse relativ zur ersten. 1 ist gleichmäßig, \
+     bei 0 fehlt eine Achse.",
 );
 pub(in crate::console) const ROTATION_HOVER: Text =
-    Text::of("Roll, pitch and yaw in degrees (Rz Ry Rx)", "Roll, pitch and yaw in degrees (Rz Ry Rx)");
-pub(in crate::console) const UNCERTAINTY: Text = Text::of("Uncertainty", "Uncertainty");
+    Text::of("Roll, pitch and yaw in degrees (Rz Ry Rx)", "Roll-, Nick- und Gierwinkel in Grad (Rz Ry Rx)");
+pub(in crate::console) const UNCERTAINTY: Text = Text::of("Uncertainty", "Unsicherheit");
 pub(in crate::console) const UNCERTAINTY_HOVER: Text =
-    Text::of("Expected error of the rotation, as an angle", "Expected error of the rotation, as an angle");
-pub(in crate::console) const CROSS_CHECK: Text = Text::of("Euler cross-check", "Euler cross-check");
+    Text::of("Expected error of the rotation, as an angle", "Erwarteter Fehler der Drehung, als Winkel");
+pub(in crate::console) const CROSS_CHECK: Text = Text::of("Euler cross-check", "Euler-Gegenprobe");
 pub(in crate::console) const CROSS_CHECK_HOVER: Text = Text::of(
     "Angle between this rotation and the one that the paper's search over Euler angles finds",
-    "Angle between this rotation and the one that the paper's search over Euler angles finds",
+    "Winkel zwischen dieser Drehung und der aus der Euler-Winkel-Suche des Artikels",
 );
-pub(in crate::console) const GAIN: Text = Text::of("Gain", "Gain");
+pub(in crate::console) const GAIN: Text = Text::of("Gain", "Verstärkung");
 pub(in crate::console) const GAIN_HOVER: Text = Text::of(
     "Ratio of the wrist sensor's force to the tissue sensor's force; it should be 1",
-    "Ratio of the wrist sensor's force to the tissue sensor's force; it should be 1",
+    "Verhältnis der Kraft am Handgelenksensor zu der am Gewebesensor; Soll 1",
 );
 pub(in crate::console) const OFFSET: Text = Text::of("Offset", "Offset");
 pub(in crate::console) const OFFSET_HOVER: Text = Text::of(
     "Constant difference between the two sensors' forces",
-    "Constant difference between the two sensors' forces",
+    "Konstante Differenz zwischen den Kräften beider Sensoren",
 );
-pub(in crate::console) const OFFSET_OF_WRIST: Text = Text::of("of the wrist sensor", "of the wrist sensor");
-pub(in crate::console) const OFFSET_OF_TISSUE: Text = Text::of("of the tissue sensor", "of the tissue sensor");
-pub(in crate::console) const OFFSET_OF_EITHER: Text = Text::of("of either sensor", "of either sensor");
+pub(in crate::console) const OFFSET_OF_WRIST: Text = Text::of("of the wrist sensor", "des Handgelenksensors");
+pub(in crate::console) const OFFSET_OF_TISSUE: Text = Text::of("of the tissue sensor", "des Gewebesensors");
+pub(in crate::console) const OFFSET_OF_EITHER: Text = Text::of("of either sensor", "eines der Sensoren");
 pub(in crate::console) const AGREEMENT_HOVER: Text = Text::of(
     "Errors in N along the axes of the wrist sensor. Held out: on pushes that were not used for the fit. \
     MAE: mean absolute error. SD: standard deviation.",
-    "Errors in N along the axes of the wrist sensor. Held out: on pushes that were not used for the fit. \
-    MAE: mean absolute error. SD: standard deviation.",
+    "Fehler in N längs der Achsen des Handgelenksensors. Test: an Drücken, die nicht in den Fit eingingen. MAE: \
+     mittlerer absoluter Fehler. SD: Standardabweichung.",
 );
-pub(in crate::console) const AGREEMENT_TITLE: Text = Text::of("Agreement per axis", "Agreement per axis");
-pub(in crate::console) const AXIS: Text = Text::of("Axis", "Axis");
-pub(in crate::console) const FITTED_MAE: Text = Text::of("fitted: MAE", "fitted: MAE");
-pub(in crate::console) const HELD_OUT_MAE: Text = Text::of("held out: MAE", "held out: MAE");
-pub(in crate::console) const R2_OVERALL: Text = Text::of("R2 of all axes", "R2 of all axes");
+pub(in crate::console) const AGREEMENT_TITLE: Text = Text::of("Agreement per axis", "Übereinstimmung je Achse");
+pub(in crate::console) const AXIS: Text = Text::of("Axis", "Achse");
+pub(in crate::console) const FITTED_MAE: Text = Text::of("fitted: MAE", "Fit: MAE");
+pub(in crate::console) const HELD_OUT_MAE: Text = Text::of("held out: MAE", "Test: MAE");
+pub(in crate::console) const R2_OVERALL: Text = Text::of("R2 of all axes", "R2 aller Achsen");
 pub(in crate::console) const R2_OVERALL_HOVER: Text = Text::of(
     "Share of the variance that the fit explains; the paper reports 0.95",
-    "Share of the variance that the fit explains; the paper reports 0.95",
+    "Vom Fit erklärter Anteil der Varianz; der Artikel nennt 0.95",
 );
 
 /// Number of recorded pushes.
 pub(in crate::console) fn taken_of(count: usize, asked: usize) -> String {
-    told!("{count} recorded of {asked} or more", "{count} recorded of {asked} or more")
+    told!("{count} recorded of {asked} or more", "{count} aufgezeichnet von {asked} oder mehr")
 }
 
 /// Number of recorded pushes, as a figure.
 pub(in crate::console) fn pushes(count: usize) -> String {
-    told!("{count} pushes", "{count} pushes")
+    told!("{count} pushes", "{count}-mal gedrückt")
 }
 
 /// Readings of the sensors at rest.
 pub(in crate::console) fn at_rest(wrist_n: f64, tissue_n: f64) -> String {
     told!(
         "wrist {wrist_n:.2} N, tissue {tissue_n:.2} N; touch nothing; if a sensor stays above 0.3 N, set it to zero",
-        "wrist {wrist_n:.2} N, tissue {tissue_n:.2} N; touch nothing; if a sensor stays above 0.3 N, set it to zero"
+        "Handgelenk {wrist_n:.2} N, Gewebe {tissue_n:.2} N; nichts berühren; bleibt ein Sensor über 0.3 N, ihn auf \
+         null setzen"
     )
 }
 
 /// During a push: keep holding.
 pub(in crate::console) fn hold(force_n: f64) -> String {
-    told!("{force_n:.1} N; hold still", "{force_n:.1} N; hold still")
+    told!("{force_n:.1} N; hold still", "{force_n:.1} N; stillhalten")
 }
 
 /// During a push: it may end now.
 pub(in crate::console) fn let_go(force_n: f64) -> String {
-    told!("{force_n:.1} N; enough, let go", "{force_n:.1} N; enough, let go")
+    told!("{force_n:.1} N; enough, let go", "{force_n:.1} N; genug, loslassen")
 }
 
 /// A push was recorded.
 pub(in crate::console) fn push_taken(number: usize) -> String {
-    told!("push {number} recorded", "push {number} recorded")
+    told!("push {number} recorded", "Druck {number} aufgezeichnet")
 }
 
 /// A push was not recorded.
 pub(in crate::console) fn not_taken(why: &str) -> String {
-    told!("not recorded: {why}", "not recorded: {why}")
+    told!("not recorded: {why}", "nicht aufgezeichnet: {why}")
 }
 
 /// Number of pushes used in the fit, and of those left out.
 pub(in crate::console) fn used(pairs: usize, left_out: usize, weak: usize) -> String {
     told!(
         "{pairs}; not used: {left_out} contradictory, {weak} too weak",
-        "{pairs}; not used: {left_out} contradictory, {weak} too weak"
+        "{pairs}; nicht verwendet: {left_out} widersprüchlich, {weak} zu schwach"
     )
 }
 
 /// Names of the two frames.
 pub(in crate::console) fn rotation(name: &str) -> String {
-    told!("Rotation {name}", "Rotation {name}")
+    told!("Rotation {name}", "Drehung {name}")
 }
 
 /// Coefficient of determination over all axes.
 pub(in crate::console) fn agreement(fitted: f64, held_out: f64) -> String {
-    told!("{fitted:.3} fitted, {held_out:.3} held out", "{fitted:.3} fitted, {held_out:.3} held out")
+    told!("{fitted:.3} fitted, {held_out:.3} held out", "Fit {fitted:.3}, Test {held_out:.3}")
 }

@@ -5,110 +5,111 @@ use nima_machine::rig::{Part, PartKind};
 use crate::words::{channel_name, marker};
 
 use crate::language::{Text, told, word};
+use crate::words::{part_name, within};
 
 pub(in crate::console) const NONE: Text =
-    Text::of("This rig is simulated: it has no devices", "This rig is simulated: it has no devices");
+    Text::of("This rig is simulated: it has no devices", "Dieser Aufbau ist simuliert: er hat keine Geräte");
 pub(in crate::console) const NONE_TO_CONNECT: Text = Text::of(
     "To connect devices, press Rig (F6), make a copy of the paper rig and start it",
-    "To connect devices, press Rig (F6), make a copy of the paper rig and start it",
+    "Um Geräte zu verbinden: Aufbau (F6) drücken, Kopie des Aufbaus paper anlegen und starten",
 );
-pub(in crate::console) const DISCONNECT: Text = Text::of("Disconnect", "Disconnect");
-pub(in crate::console) const CONNECT: Text = Text::of("Connect", "Connect");
+pub(in crate::console) const DISCONNECT: Text = Text::of("Disconnect", "Trennen");
+pub(in crate::console) const CONNECT: Text = Text::of("Connect", "Verbinden");
 pub(in crate::console) const CONNECT_HOVER: Text = Text::of(
     "A lost device is reconnected automatically until you press Disconnect",
-    "A lost device is reconnected automatically until you press Disconnect",
+    "Ein ausgefallenes Gerät wird automatisch neu verbunden, bis Trennen gedrückt wird",
 );
-pub(in crate::console) const CLEAR_FAULTS: Text = Text::of("Clear faults", "Clear faults");
+pub(in crate::console) const CLEAR_FAULTS: Text = Text::of("Clear faults", "Störungen zurücksetzen");
 pub(in crate::console) const CLEAR_FAULTS_HOVER: Text = Text::of(
     "Make sure that nobody is near the arm and the cause is gone: afterwards the arm may move again",
-    "Make sure that nobody is near the arm and the cause is gone: afterwards the arm may move again",
+    "Sicherstellen, dass niemand am Arm und die Ursache behoben ist: danach kann sich der Arm wieder bewegen",
 );
-pub(in crate::console) const OPENING: Text = Text::of("connecting", "connecting");
-pub(in crate::console) const DISCONNECTED: Text = Text::of("disconnected", "disconnected");
+pub(in crate::console) const OPENING: Text = Text::of("connecting", "wird verbunden");
+pub(in crate::console) const DISCONNECTED: Text = Text::of("disconnected", "getrennt");
 
-pub(in crate::console) const TEST: Text = Text::of("Test", "Test");
+pub(in crate::console) const TEST: Text = Text::of("Test", "Testen");
 pub(in crate::console) const TEST_HOVER: Text = Text::of(
     "Measures for two seconds: rate, noise, range, age of the readings, losses. Let the device rest meanwhile.",
-    "Measures for two seconds: rate, noise, range, age of the readings, losses. Let the device rest meanwhile.",
+    "Misst zwei Sekunden lang: Rate, Rauschen, Bereich, Alter der Messwerte, Verluste. Das Gerät dabei ruhen lassen.",
 );
-pub(in crate::console) const TEST_ALL: Text = Text::of("Test all", "Test all");
-pub(in crate::console) const TESTING: Text = Text::of("testing: let it rest", "testing: let it rest");
+pub(in crate::console) const TEST_ALL: Text = Text::of("Test all", "Alle testen");
+pub(in crate::console) const TESTING: Text = Text::of("testing: let it rest", "Test läuft: ruhen lassen");
 pub(in crate::console) const TEST_BROKEN_OFF: Text =
-    Text::of("The test got no data: the loop does not run", "The test got no data: the loop does not run");
-pub(in crate::console) const FINE: Text = Text::of("Tested: fine", "Tested: fine");
-pub(in crate::console) const LOOK_AT: Text = Text::of("Tested: look at", "Tested: look at");
-pub(in crate::console) const CHOOSE: Text = Text::of("Choose", "Choose");
+    Text::of("The test got no data: the loop does not run", "Test ohne Daten: die Regelung läuft nicht");
+pub(in crate::console) const FINE: Text = Text::of("Tested: fine", "Getestet: OK");
+pub(in crate::console) const LOOK_AT: Text = Text::of("Tested: look at", "Getestet: prüfen");
+pub(in crate::console) const CHOOSE: Text = Text::of("Choose", "Wählen");
 pub(in crate::console) const CHOOSE_HOVER: Text = Text::of(
     "Use another device here, told apart by its serial number",
-    "Use another device here, told apart by its serial number",
+    "Hier ein anderes Gerät verwenden, anhand der Seriennummer",
 );
-pub(in crate::console) const LOOK: Text = Text::of("Look for others", "Look for others");
+pub(in crate::console) const LOOK: Text = Text::of("Look for others", "Andere suchen");
 pub(in crate::console) const LOOK_HOVER: Text = Text::of(
     "Asks every free port and USB device of this kind who it is; takes about a second",
-    "Asks every free port and USB device of this kind who it is; takes about a second",
+    "Fragt jeden freien Port und jedes USB-Gerät dieser Art nach seiner Kennung; dauert etwa eine Sekunde",
 );
-pub(in crate::console) const LOOKING: Text = Text::of("looking", "looking");
-pub(in crate::console) const PLACE: Text = Text::of("Address or port", "Address or port");
+pub(in crate::console) const LOOKING: Text = Text::of("looking", "sucht");
+pub(in crate::console) const PLACE: Text = Text::of("Address or port", "Adresse oder Port");
 pub(in crate::console) const PLACE_HOVER: Text = Text::of(
     "Where to look besides USB: an address in the network such as 192.168.1.10, or a port such as /dev/ttyUSB3. May be \
      empty.",
-    "Where to look besides USB: an address in the network such as 192.168.1.10, or a port such as /dev/ttyUSB3. May be \
-     empty.",
+    "Wo außer an USB zu suchen ist: eine Netzwerkadresse wie 192.168.1.10 oder ein Port wie /dev/ttyUSB3. Darf leer \
+     sein.",
 );
 pub(in crate::console) const NOTHING_FOUND: Text =
-    Text::of("No other device of this kind was found", "No other device of this kind was found");
+    Text::of("No other device of this kind was found", "Kein anderes Gerät dieser Art gefunden");
 pub(in crate::console) const NO_OTHER: Text = Text::of(
     "No other part of this rig has a device of this kind",
-    "No other part of this rig has a device of this kind",
+    "Kein anderer Teil dieses Aufbaus hat ein Gerät dieser Art",
 );
 pub(in crate::console) const EMULATED: Text = Text::of(
     "Emulated devices stand where the rig file puts them: only exchanges are possible",
-    "Emulated devices stand where the rig file puts them: only exchanges are possible",
+    "Emulierte Geräte stehen, wo die Aufbaudatei sie vorsieht: nur Tauschen ist möglich",
 );
-pub(in crate::console) const EXCHANGE: Text = Text::of("Exchange right and left", "Exchange right and left");
+pub(in crate::console) const EXCHANGE: Text = Text::of("Exchange right and left", "Rechts und links tauschen");
 pub(in crate::console) const EXCHANGE_HOVER: Text = Text::of(
     "The rig file is changed and the machine starts again, idle; press once more to take it back",
-    "The rig file is changed and the machine starts again, idle; press once more to take it back",
+    "Ändert die Aufbaudatei und startet die Maschine neu, im Leerlauf; nochmals drücken macht es rückgängig",
 );
 pub(in crate::console) const WHICH: Text = Text::of(
     "Which one is it? Move a handle, press a sensor, move a marker, press the pedal: its light goes on",
-    "Which one is it? Move a handle, press a sensor, move a marker, press the pedal: its light goes on",
+    "Welches ist es? Handgerät bewegen, Sensor drücken, Marker bewegen, Pedal treten: seine Lampe leuchtet",
 );
 pub(in crate::console) const LIGHT_HOVER: Text = Text::of(
     "Lights up while the readings change by more than their own noise, and for half a second after",
-    "Lights up while the readings change by more than their own noise, and for half a second after",
+    "Leuchtet, solange sich die Messwerte um mehr als ihr Rauschen ändern, und eine halbe Sekunde danach",
 );
 
 pub(in crate::console) const ENGAGED: Text =
-    Text::of("Rest or stop first: the drives are on", "Rest or stop first: the drives are on");
-pub(in crate::console) const STOPPED: Text = Text::of("Release the stop first", "Release the stop first");
-pub(in crate::console) const STARTING: Text = Text::of("The machine is starting", "The machine is starting");
+    Text::of("Rest or stop first: the drives are on", "Zuerst Leerlauf oder Halt: die Antriebe sind ein");
+pub(in crate::console) const STOPPED: Text = Text::of("Release the stop first", "Zuerst Halt lösen");
+pub(in crate::console) const STARTING: Text = Text::of("The machine is starting", "Die Maschine startet");
 
 /// Why nothing can be exchanged or chosen now.
 pub(in crate::console) fn not_changeable(reason: &str) -> String {
     told!(
         "Devices cannot be exchanged or chosen now. {reason}.",
-        "Devices cannot be exchanged or chosen now. {reason}."
+        "Geräte lassen sich jetzt nicht tauschen oder wählen. {reason}."
     )
 }
 
 /// Why an arm cannot be engaged.
 pub(in crate::console) fn not_to_be_engaged(side: &str, obstacle: &impl std::fmt::Display) -> String {
-    told!("The {side} arm cannot be engaged: {obstacle}", "The {side} arm cannot be engaged: {obstacle}")
+    told!("The {side} arm cannot be engaged: {obstacle}", "Arm {side} lässt sich nicht koppeln: {obstacle}")
 }
 
 /// Identity of a device.
 pub(in crate::console) fn identity(product: &str, serial: &str, firmware: &str) -> String {
     let serial =
-        if serial.is_empty() { String::new() } else { told!(", serial number {serial}", ", serial number {serial}") };
+        if serial.is_empty() { String::new() } else { told!(", serial number {serial}", ", Seriennummer {serial}") };
     let firmware =
-        if firmware.is_empty() { String::new() } else { told!(", firmware {firmware}", ", firmware {firmware}") };
+        if firmware.is_empty() { String::new() } else { told!(", firmware {firmware}", ", Firmware {firmware}") };
     format!("{product}{serial}{firmware}")
 }
 
 /// Accessible name of the button that clears a device's faults.
 pub(in crate::console) fn clear_faults_of(name: &str) -> String {
-    told!("Clear faults of the {name}", "Clear faults of the {name}")
+    told!("Clear faults of the {name}", "Störungen zurücksetzen: {name}")
 }
 
 /// Rate and losses of a device.
@@ -116,27 +117,27 @@ pub(in crate::console) fn delivery(rate_hz: f64, lost: u64, damaged: u64, refuse
     if lost + damaged + refused == 0 {
         return told!(
             "{rate_hz:.0} readings per second, none lost or damaged",
-            "{rate_hz:.0} readings per second, none lost or damaged"
+            "{rate_hz:.0} Messwerte/s, keiner verloren oder beschädigt"
         );
     }
     told!(
         "{rate_hz:.0} readings per second; lost {lost}, damaged {damaged}, refused {refused}",
-        "{rate_hz:.0} readings per second; lost {lost}, damaged {damaged}, refused {refused}"
+        "{rate_hz:.0} Messwerte/s; verloren {lost}, beschädigt {damaged}, abgelehnt {refused}"
     )
 }
 
 /// Number and longest duration of the outages.
 pub(in crate::console) fn outages(count: u64, longest_s: f64) -> String {
-    let times = if count == 1 { word("once", "once").to_owned() } else { told!("{count} times", "{count} times") };
+    let times = if count == 1 { word("once", "einmal").to_owned() } else { told!("{count} times", "{count}-mal") };
     told!(
         "; gone {times} since the start, at longest for {longest_s:.1} s",
-        "; gone {times} since the start, at longest for {longest_s:.1} s"
+        "; seit dem Start {times} weg, längstens {longest_s:.1} s"
     )
 }
 
 /// A device that was lost.
 pub(in crate::console) fn lost(cause: &str, delivery: &str) -> String {
-    told!("lost: {cause}; {delivery}", "lost: {cause}; {delivery}")
+    told!("lost: {cause}; {delivery}", "ausgefallen: {cause}; {delivery}")
 }
 
 /// Accessible name of a button of one device.
@@ -147,48 +148,48 @@ pub(in crate::console) fn of(what: &str, name: &str) -> String {
 /// Heading of a column.
 pub(in crate::console) fn column(side: Option<nima_machine::rig::Side>) -> &'static str {
     match side {
-        Some(nima_machine::rig::Side::Left) => word("Left", "Left"),
-        Some(nima_machine::rig::Side::Right) => word("Right", "Right"),
-        None => word("Both sides", "Both sides"),
+        Some(nima_machine::rig::Side::Left) => word("Left", "Links"),
+        Some(nima_machine::rig::Side::Right) => word("Right", "Rechts"),
+        None => word("Both sides", "Beide Seiten"),
     }
 }
 
 /// A kind of part, on the button that exchanges them.
 pub(in crate::console) fn kind(kind: PartKind) -> &'static str {
     match kind {
-        PartKind::Handle => word("Handles", "Handles"),
-        PartKind::Arm => word("Arms", "Arms"),
-        PartKind::Sensor => word("Sensors", "Sensors"),
+        PartKind::Handle => word("Handles", "Handgeräte"),
+        PartKind::Arm => word("Arms", "Arme"),
+        PartKind::Sensor => word("Sensors", "Sensoren"),
         PartKind::Servos => word("Servos", "Servos"),
-        PartKind::Tracker => word("Trackers", "Trackers"),
-        PartKind::Pedal => word("Pedals", "Pedals"),
+        PartKind::Tracker => word("Trackers", "Tracker"),
+        PartKind::Pedal => word("Pedals", "Pedale"),
     }
 }
 
 /// Accessible name of that button.
 pub(in crate::console) fn exchange(of: PartKind) -> String {
-    told!("Exchange {}", "Exchange {}", kind(of).to_lowercase())
+    told!("Exchange {}", "{} tauschen", within(kind(of)))
 }
 
 /// The name of the light beside a device.
 pub(in crate::console) fn light(name: &str, motion: Option<&str>) -> String {
     match motion {
-        Some(motion) => told!("Light of the {name}: {motion}", "Light of the {name}: {motion}"),
-        None => told!("Light of the {name}: at rest", "Light of the {name}: at rest"),
+        Some(motion) => told!("Light of the {name}: {motion}", "Lampe {name}: {motion}"),
+        None => told!("Light of the {name}: at rest", "Lampe {name}: in Ruhe"),
     }
 }
 
 /// What a person does with a device whose number of this channel changes.
 pub(in crate::console) fn motion(kind: PartKind, channel: usize) -> String {
     match (kind, channel) {
-        (PartKind::Handle, 0..=2) => word("moved", "moved").to_owned(),
-        (PartKind::Handle, 3..=5) => word("turned", "turned").to_owned(),
-        (PartKind::Handle, 6) => word("gripper", "gripper").to_owned(),
-        (PartKind::Handle, _) => word("button", "button").to_owned(),
-        (PartKind::Sensor, 0..=5) | (PartKind::Pedal, _) => word("pressed", "pressed").to_owned(),
-        (PartKind::Sensor, _) => word("moved", "moved").to_owned(),
-        (PartKind::Tracker, _) => told!("{} moved", "{} moved", marker(channel / 3)),
-        (PartKind::Arm | PartKind::Servos, _) => told!("{} moved", "{} moved", channel_name(kind, channel)),
+        (PartKind::Handle, 0..=2) => word("moved", "bewegt").to_owned(),
+        (PartKind::Handle, 3..=5) => word("turned", "gedreht").to_owned(),
+        (PartKind::Handle, 6) => word("gripper", "Greifer").to_owned(),
+        (PartKind::Handle, _) => word("button", "Taste").to_owned(),
+        (PartKind::Sensor, 0..=5) | (PartKind::Pedal, _) => word("pressed", "gedrückt").to_owned(),
+        (PartKind::Sensor, _) => word("moved", "bewegt").to_owned(),
+        (PartKind::Tracker, _) => told!("{} moved", "{} bewegt", marker(channel / 3)),
+        (PartKind::Arm | PartKind::Servos, _) => told!("{} moved", "{} bewegt", channel_name(kind, channel)),
     }
 }
 
@@ -196,17 +197,17 @@ pub(in crate::console) fn motion(kind: PartKind, channel: usize) -> String {
 pub(in crate::console) fn candidate(identity: &str, other: Part) -> String {
     told!(
         "{identity}: now the {}; the two are exchanged",
-        "{identity}: now the {}; the two are exchanged",
-        other.name()
+        "{identity}: derzeit {}; beide werden getauscht",
+        part_name(other)
     )
 }
 
 /// A device that tells no identity yet.
-pub(in crate::console) const UNKNOWN_IDENTITY: Text = Text::of("Not connected", "Not connected");
+pub(in crate::console) const UNKNOWN_IDENTITY: Text = Text::of("Not connected", "Nicht verbunden");
 
 /// A candidate that was found.
 pub(in crate::console) fn found(identity: &str, place: &str) -> String {
-    told!("{identity} at {place}", "{identity} at {place}")
+    told!("{identity} at {place}", "{identity} an {place}")
 }
 
 /// A place where no device of this kind answers.
@@ -218,7 +219,7 @@ pub(in crate::console) fn not_there(place: &str, cause: &str) -> String {
 pub(in crate::console) fn saved(path: &std::path::Path) -> String {
     told!(
         "Saved in the rig file {}. The machine has started again, idle.",
-        "Saved in the rig file {}. The machine has started again, idle.",
+        "In der Aufbaudatei {} gespeichert. Die Maschine ist neu gestartet, im Leerlauf.",
         path.display()
     )
 }
@@ -228,13 +229,13 @@ pub(in crate::console) fn saved_as(name: &str, path: &std::path::Path) -> String
     told!(
         "A built-in rig cannot be changed: saved as the new rig \"{name}\" in {}, which is in use now. The machine has \
          started again, idle.",
-        "A built-in rig cannot be changed: saved as the new rig \"{name}\" in {}, which is in use now. The machine has \
-         started again, idle.",
+        "Ein eingebauter Aufbau ist nicht änderbar: als neuer Aufbau „{name}“ in {} gespeichert und jetzt aktiv. Die \
+         Maschine ist neu gestartet, im Leerlauf.",
         path.display()
     )
 }
 
 /// The change was not made.
 pub(in crate::console) fn not_changed(cause: &str) -> String {
-    told!("Not changed: {cause}", "Not changed: {cause}")
+    told!("Not changed: {cause}", "Nicht geändert: {cause}")
 }

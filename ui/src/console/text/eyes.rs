@@ -5,57 +5,58 @@ use std::time::Duration;
 use crate::language::{Text, told, word};
 
 pub(in crate::console) const WAITING: Text =
-    Text::of("Waiting for the endoscope's picture", "Waiting for the endoscope's picture");
-pub(in crate::console) const ENDOSCOPE: Text = Text::of("Endoscope", "Endoscope");
-pub(in crate::console) const STILL: Text =
-    Text::of("One picture, which does not move", "One picture, which does not move");
-pub(in crate::console) const BLACK: Text = Text::of("Picture is black", "Picture is black");
+    Text::of("Waiting for the endoscope's picture", "Wartet auf das Endoskopbild");
+pub(in crate::console) const ENDOSCOPE: Text = Text::of("Endoscope", "Endoskop");
+pub(in crate::console) const STILL: Text = Text::of("One picture, which does not move", "Einzelbild, unbewegt");
+pub(in crate::console) const BLACK: Text = Text::of("Picture is black", "Bild ist schwarz");
 pub(in crate::console) const BLACK_CURE: Text = Text::of(
     "Switch the light source on, and take the cap off the lens",
-    "Switch the light source on, and take the cap off the lens",
+    "Lichtquelle einschalten und Kappe vom Objektiv nehmen",
 );
 pub(in crate::console) const FROZEN_CURE: Text = Text::of(
     "What you see is the past. Check the camera and its cable.",
-    "What you see is the past. Check the camera and its cable.",
+    "Gezeigt wird die Vergangenheit. Kamera und Kabel prüfen.",
 );
 pub(in crate::console) const LATE_CURE: Text = Text::of(
     "Move slowly. Give the camera a line of its own, or a smaller picture.",
-    "Move slowly. Give the camera a line of its own, or a smaller picture.",
+    "Langsam bewegen. Der Kamera eine eigene Leitung oder ein kleineres Bild geben.",
 );
 pub(in crate::console) const DAMAGED_CURE: Text = Text::of(
     "The last whole picture is shown. Check the cable to the camera.",
-    "The last whole picture is shown. Check the cable to the camera.",
+    "Gezeigt wird das letzte ganze Bild. Kabel zur Kamera prüfen.",
 );
 pub(in crate::console) const SIZE_CURE: Text = Text::of(
     "Set the camera to the size that the rig file has. Until then no forces are drawn.",
-    "Set the camera to the size that the rig file has. Until then no forces are drawn.",
+    "Kamera auf die Größe der Aufbaudatei stellen. Bis dahin erscheinen keine Kräfte.",
 );
 pub(in crate::console) const FORCES_DRAWN: Text =
-    Text::of("Forces are drawn at the tips; O hides them", "Forces are drawn at the tips; O hides them");
-pub(in crate::console) const FORCES_AHEAD: Text =
-    Text::of("Forces of now, ahead of the picture; O hides them", "Forces of now, ahead of the picture; O hides them");
+    Text::of("Forces are drawn at the tips; O hides them", "Kräfte an den Spitzen; O blendet sie aus");
+pub(in crate::console) const FORCES_AHEAD: Text = Text::of(
+    "Forces of now, ahead of the picture; O hides them",
+    "Aktuelle Kräfte, dem Bild voraus; O blendet sie aus",
+);
 pub(in crate::console) const FORCES_HIDDEN: Text =
-    Text::of("O draws the forces at the tips", "O draws the forces at the tips");
+    Text::of("O draws the forces at the tips", "O zeigt die Kräfte an den Spitzen");
 pub(in crate::console) const BASE_MISSING: Text = Text::of(
     "the picture that it builds upon is not in the session",
-    "the picture that it builds upon is not in the session",
+    "das Bild, auf dem es aufbaut, fehlt in der Sitzung",
 );
 pub(in crate::console) const NOT_RECORDED: Text = Text::of(
     "Not in the session: only JPEGs and H.264 are recorded",
-    "Not in the session: only JPEGs and H.264 are recorded",
+    "Nicht in der Sitzung: nur JPEG und H.264 werden aufgezeichnet",
 );
 pub(in crate::console) const LEFT_HALF: Text =
-    Text::of("Left half; V shows the right one", "Left half; V shows the right one");
-pub(in crate::console) const RIGHT_HALF: Text = Text::of("Right half; V shows both", "Right half; V shows both");
+    Text::of("Left half; V shows the right one", "Linke Hälfte; V zeigt die rechte");
+pub(in crate::console) const RIGHT_HALF: Text = Text::of("Right half; V shows both", "Rechte Hälfte; V zeigt beide");
 pub(in crate::console) const RIGHT_WITHOUT_FORCES: Text = Text::of(
     "Right half without forces: the rig file has no endoscope.baseline_m; V shows both",
-    "Right half without forces: the rig file has no endoscope.baseline_m; V shows both",
+    "Rechte Hälfte ohne Kräfte: endoscope.baseline_m fehlt in der Aufbaudatei; V zeigt beide",
 );
 pub(in crate::console) const BOTH_HALVES: Text =
-    Text::of("Both halves; V shows the left one", "Both halves; V shows the left one");
+    Text::of("Both halves; V shows the left one", "Beide Hälften; V zeigt die linke");
 pub(in crate::console) const NO_CAMERA: Text = Text::of(
     "No forces are drawn: the rig file has no [endoscope.camera]",
-    "No forces are drawn: the rig file has no [endoscope.camera]",
+    "Keine Kräfte im Bild: [endoscope.camera] fehlt in der Aufbaudatei",
 );
 
 pub(in crate::console) const NO_MARKER: Text = Text::of(
@@ -64,70 +65,66 @@ pub(in crate::console) const NO_MARKER: Text = Text::of(
 );
 pub(in crate::console) const NO_PLACE: Text = Text::of(
     "No forces are drawn: the camera's place is not known; calibrate the camera",
-    "No forces are drawn: the camera's place is not known; calibrate the camera",
+    "Keine Kräfte im Bild: Lage der Kamera unbekannt; Kamera kalibrieren",
 );
 
 /// The check of the camera was too bad.
 pub(in crate::console) fn forces_off(off_px: f64) -> String {
     told!(
         "Forces are drawn {off_px:.0} px beside the tips or more: calibrate the camera; O hides them",
-        "Forces are drawn {off_px:.0} px beside the tips or more: calibrate the camera; O hides them"
+        "Kräfte liegen {off_px:.0} px oder mehr neben den Spitzen: Kamera kalibrieren; O blendet sie aus"
     )
 }
 
 /// No new picture for so long.
 pub(in crate::console) fn frozen(stood: Duration) -> String {
-    told!(
-        "Picture is frozen: nothing new for {:.1} s",
-        "Picture is frozen: nothing new for {:.1} s",
-        stood.as_secs_f64()
-    )
+    told!("Picture is frozen: nothing new for {:.1} s", "Bild steht: seit {:.1} s nichts Neues", stood.as_secs_f64())
 }
 
 /// How old a late picture is.
 pub(in crate::console) fn late(late: Duration) -> String {
-    told!("Picture is {} ms old", "Picture is {} ms old", 10 * (late.as_millis() / 10))
+    told!("Picture is {} ms old", "Bild ist {} ms alt", 10 * (late.as_millis() / 10))
 }
 
 /// A picture that cannot be shown.
 pub(in crate::console) fn damaged(why: &str) -> String {
-    told!("Picture is damaged: {why}", "Picture is damaged: {why}")
+    told!("Picture is damaged: {why}", "Bild ist beschädigt: {why}")
 }
 
 /// A picture of another size, px.
 pub(in crate::console) fn size([width, height]: [usize; 2], [wanted_width, wanted_height]: [usize; 2]) -> String {
     told!(
         "Picture is {width} x {height} pixels, not {wanted_width} x {wanted_height}",
-        "Picture is {width} x {height} pixels, not {wanted_width} x {wanted_height}"
+        "Bild hat {width} x {height} Pixel, nicht {wanted_width} x {wanted_height}"
     )
 }
 
 /// There is no picture.
 pub(in crate::console) fn lost(why: &str) -> String {
-    told!("Picture is lost: {why}", "Picture is lost: {why}")
+    told!("Picture is lost: {why}", "Bild verloren: {why}")
 }
 
 /// The address cannot be used.
 pub(in crate::console) fn refused(why: &str) -> String {
-    told!("No picture: {why}", "No picture: {why}")
+    told!("No picture: {why}", "Kein Bild: {why}")
 }
 
 /// What to do about an address that cannot be used.
 pub(in crate::console) const REFUSED_CURE: Text =
-    Text::of("Correct endoscope.url in the rig file", "Correct endoscope.url in the rig file");
+    Text::of("Correct endoscope.url in the rig file", "endoscope.url in der Aufbaudatei korrigieren");
 
 /// Age and rate of the picture.
 pub(in crate::console) fn figures(age: Duration, rate_hz: f64) -> String {
-    told!("{} ms old, {rate_hz:.0} pictures a second", "{} ms old, {rate_hz:.0} pictures a second", age.as_millis())
+    told!("{} ms old, {rate_hz:.0} pictures a second", "{} ms alt, {rate_hz:.0} Bilder/s", age.as_millis())
 }
 
 /// Age of a recorded picture.
 pub(in crate::console) fn recorded(age: Duration) -> String {
-    told!("Recorded picture, {} ms old then", "Recorded picture, {} ms old then", age.as_millis())
+    told!("Recorded picture, {} ms old then", "Aufgezeichnetes Bild, damals {} ms alt", age.as_millis())
 }
 
 pub(in crate::console) const SEARCHING: Text =
-    Text::of("Looking for the picture of this moment", "Looking for the picture of this moment");
+    Text::of("Looking for the picture of this moment", "Sucht das Bild dieses Moments");
 
 /// There is no recorded picture of a moment.
 pub(in crate::console) fn none_then(why: Option<&str>) -> String {
@@ -135,16 +132,11 @@ pub(in crate::console) fn none_then(why: Option<&str>) -> String {
         || {
             word(
                 "No picture came in the two seconds before this moment",
-                "No picture came in the two seconds before this moment",
+                "Kein Bild in den zwei Sekunden vor diesem Moment",
             )
             .to_owned()
         },
-        |why| {
-            told!(
-                "The picture of this moment cannot be read: {why}",
-                "The picture of this moment cannot be read: {why}"
-            )
-        },
+        |why| told!("The picture of this moment cannot be read: {why}", "Bild dieses Moments nicht lesbar: {why}"),
     )
 }
 
@@ -152,18 +144,18 @@ pub(in crate::console) fn none_then(why: Option<&str>) -> String {
 pub(in crate::console) fn zoomed(zoom: f32) -> String {
     told!(
         "Zoom {zoom:.1}; drag moves, a double click shows all",
-        "Zoom {zoom:.1}; drag moves, a double click shows all"
+        "Zoom {zoom:.1}; Ziehen verschiebt, Doppelklick zeigt alles"
     )
 }
 
 /// A tip that is not in the view.
 pub(in crate::console) fn tip(side: &str) -> String {
-    told!("{side} tip", "{side} tip")
+    told!("{side} tip", "Spitze {side}")
 }
 
 /// The whole picture in words.
 pub(in crate::console) fn picture(standing: &str) -> String {
-    told!("Endoscope's picture: {standing}", "Endoscope's picture: {standing}")
+    told!("Endoscope's picture: {standing}", "Endoskopbild: {standing}")
 }
 
 /// A picture that comes as it should.

@@ -2,131 +2,131 @@
 
 use crate::language::{Text, told, word};
 
-pub(in crate::console) const OPERATING_FIELD: Text = Text::of("Operating field", "Operating field");
-pub(in crate::console) const SHOW: Text = Text::of("Show", "Show");
+pub(in crate::console) const OPERATING_FIELD: Text = Text::of("Operating field", "OP-Feld");
+pub(in crate::console) const SHOW: Text = Text::of("Show", "Zeigen");
 pub(in crate::console) const SHOW_HOVER: Text =
-    Text::of("Choose what else is drawn in the view", "Choose what else is drawn in the view");
-pub(in crate::console) const CEILING: Text = Text::of("Force ceiling around the tip", "Force ceiling around the tip");
+    Text::of("Choose what else is drawn in the view", "Wählen, was außerdem gezeichnet wird");
+pub(in crate::console) const CEILING: Text = Text::of("Force ceiling around the tip", "Höchstkraft um die Spitze");
 pub(in crate::console) const CEILING_HOVER: Text = Text::of(
     "The largest force that can reach the hand (N), drawn as a sphere around each tip, at the scale of the arrows",
-    "The largest force that can reach the hand (N), drawn as a sphere around each tip, at the scale of the arrows",
+    "Die größte Kraft, die die Hand erreichen kann (N), als Kugel um jede Spitze, im Maßstab der Pfeile",
 );
-pub(in crate::console) const FRAMES: Text = Text::of("Coordinate frames", "Coordinate frames");
+pub(in crate::console) const FRAMES: Text = Text::of("Coordinate frames", "Koordinatensysteme");
 pub(in crate::console) const FRAMES_HOVER: Text = Text::of(
     "World (the frame of all forces and positions), trocar (axes of the world), tip (z along the shaft, \
     away from the tissue) and endoscope (z towards the viewer). Axes are drawn 16 mm long.",
-    "World (the frame of all forces and positions), trocar (axes of the world), tip (z along the shaft, \
-    away from the tissue) and endoscope (z towards the viewer). Axes are drawn 16 mm long.",
+    "Welt (System aller Kräfte und Positionen), Trokar (Achsen der Welt), Spitze (z längs des Schafts, vom Gewebe weg) \
+     und Endoskop (z zum Betrachter). Achsen sind 16 mm lang gezeichnet.",
 );
-pub(in crate::console) const SHADOWS: Text = Text::of("Shadows on the board", "Shadows on the board");
+pub(in crate::console) const SHADOWS: Text = Text::of("Shadows on the board", "Schatten auf dem Brett");
 pub(in crate::console) const SHADOWS_HOVER: Text = Text::of(
     "What stands between the lamp and the board throws a shadow: it helps to judge height. On tissue the shafts always \
      throw theirs.",
-    "What stands between the lamp and the board throws a shadow: it helps to judge height. On tissue the shafts always \
-     throw theirs.",
+    "Was zwischen Lampe und Brett steht, wirft Schatten: das hilft, Höhe einzuschätzen. Auf Gewebe werfen die Schäfte \
+     immer Schatten.",
 );
-pub(in crate::console) const DEPTH: Text = Text::of("Darker with distance", "Darker with distance");
+pub(in crate::console) const DEPTH: Text = Text::of("Darker with distance", "Dunkler mit Abstand");
 pub(in crate::console) const DEPTH_HOVER: Text = Text::of(
     "As under an endoscope, whose light is at the lens: what is farther away is darker. It helps to judge depth.",
-    "As under an endoscope, whose light is at the lens: what is farther away is darker. It helps to judge depth.",
+    "Wie unter einem Endoskop mit Licht am Objektiv: Ferneres ist dunkler. Das hilft, Tiefe einzuschätzen.",
 );
 pub(in crate::console) const ROUND: Text =
-    Text::of("Round picture in the surgeon's view", "Round picture in the surgeon's view");
+    Text::of("Round picture in the surgeon's view", "Rundes Bild in der Ansicht Chirurg");
 pub(in crate::console) const ROUND_HOVER: Text =
-    Text::of("The endoscope's picture is a disc with a dark rim", "The endoscope's picture is a disc with a dark rim");
-pub(in crate::console) const FRAME_WORLD: Text = Text::of("World", "World");
-pub(in crate::console) const ENDOSCOPE: Text = Text::of("Endoscope", "Endoscope");
-pub(in crate::console) const TROCAR: Text = Text::of("Trocar", "Trocar");
-pub(in crate::console) const TIP: Text = Text::of("Tip", "Tip");
-pub(in crate::console) const LEAD: Text = Text::of("Drive by mouse (M)", "Drive by mouse (M)");
-pub(in crate::console) const LEAD_END: Text = Text::of("Let go (M)", "Let go (M)");
-pub(in crate::console) const ARROW_MEASURED: Text = Text::of("Measured force", "Measured force");
-pub(in crate::console) const ARROW_RENDERED: Text = Text::of("Rendered force", "Rendered force");
-pub(in crate::console) const RESET_VIEW: Text = Text::of("Endoscope view", "Endoscope view");
+    Text::of("The endoscope's picture is a disc with a dark rim", "Das Endoskopbild ist eine Scheibe mit dunklem Rand");
+pub(in crate::console) const FRAME_WORLD: Text = Text::of("World", "Welt");
+pub(in crate::console) const ENDOSCOPE: Text = Text::of("Endoscope", "Endoskop");
+pub(in crate::console) const TROCAR: Text = Text::of("Trocar", "Trokar");
+pub(in crate::console) const TIP: Text = Text::of("Tip", "Spitze");
+pub(in crate::console) const LEAD: Text = Text::of("Drive by mouse (M)", "Mit Maus steuern (M)");
+pub(in crate::console) const LEAD_END: Text = Text::of("Let go (M)", "Loslassen (M)");
+pub(in crate::console) const ARROW_MEASURED: Text = Text::of("Measured force", "Gemessene Kraft");
+pub(in crate::console) const ARROW_RENDERED: Text = Text::of("Rendered force", "Dargestellte Kraft");
+pub(in crate::console) const RESET_VIEW: Text = Text::of("Endoscope view", "Endoskopsicht");
 pub(in crate::console) const VIEW_HOVER: Text = Text::of(
     "Drag to turn, wheel to zoom, double-click to reset",
-    "Drag to turn, wheel to zoom, double-click to reset",
+    "Ziehen dreht, Mausrad zoomt, Doppelklick setzt zurück",
 );
 
 /// How the instrument is led.
 pub(in crate::console) fn lead_hover(has_jaws: bool, is_bimanual: bool) -> String {
-    let jaws = if has_jaws { word("\nG: open or close the jaws", "\nG: open or close the jaws") } else { "" };
+    let jaws = if has_jaws { word("\nG: open or close the jaws", "\nG: Backen öffnen oder schließen") } else { "" };
     let other = match (is_bimanual, has_jaws) {
         (false, _) => "",
-        (true, true) => word(". H: the other instrument", ". H: the other instrument"),
-        (true, false) => word("\nH: the other instrument", "\nH: the other instrument"),
+        (true, true) => word(". H: the other instrument", ". H: anderes Instrument"),
+        (true, false) => word("\nH: the other instrument", "\nH: anderes Instrument"),
     };
     told!(
         "Drag: move the instrument. Wheel, Page Up, Page Down: height. Arrow keys: small steps{jaws}{other}",
-        "Drag: move the instrument. Wheel, Page Up, Page Down: height. Arrow keys: small steps{jaws}{other}"
+        "Ziehen: Instrument bewegen. Mausrad, Bild auf, Bild ab: Höhe. Pfeiltasten: kleine Schritte{jaws}{other}"
     )
 }
 
 /// Name of the hand whose instrument is led.
 pub(in crate::console) fn led(side: &str) -> String {
-    told!("{side} (led)", "{side} (led)")
+    told!("{side} (led)", "{side} (gesteuert)")
 }
 
 /// The view cannot be drawn.
 pub(in crate::console) fn not_drawn(problem: &str) -> String {
     told!(
         "This graphics driver cannot draw the 3-D view: {problem}",
-        "This graphics driver cannot draw the 3-D view: {problem}"
+        "Dieser Grafiktreiber kann die 3-D-Ansicht nicht zeichnen: {problem}"
     )
 }
 
 /// Label of the sphere of the force ceiling.
 pub(in crate::console) fn ceiling_sphere(ceiling_n: f32) -> String {
-    told!("ceiling {ceiling_n:.1} N", "ceiling {ceiling_n:.1} N")
+    told!("ceiling {ceiling_n:.1} N", "Höchstkraft {ceiling_n:.1} N")
 }
 
 /// Label of the ceiling's mark on the gauges.
 pub(in crate::console) fn ceiling_mark(ceiling_n: f64) -> String {
-    told!("ceiling\n{ceiling_n:.0} N", "ceiling\n{ceiling_n:.0} N")
+    told!("ceiling\n{ceiling_n:.0} N", "max.\n{ceiling_n:.0} N")
 }
 
 /// Addition for the side, if there are two arms.
 pub(in crate::console) fn of_hand(side: &str) -> String {
-    told!(" of the {side} hand", " of the {side} hand")
+    told!(" of the {side} hand", " (Hand {side})")
 }
 
 /// A position in the base's frame, mm.
 pub(in crate::console) fn place([x, y, z]: [f32; 3]) -> String {
-    told!("x {x:.1}, y {y:.1}, z {z:.1} mm (world)", "x {x:.1}, y {y:.1}, z {z:.1} mm (world)")
+    told!("x {x:.1}, y {y:.1}, z {z:.1} mm (world)", "x {x:.1}, y {y:.1}, z {z:.1} mm (Welt)")
 }
 
 /// Hover text of the tissue.
 pub(in crate::console) fn tissue(place: &str) -> String {
-    told!("Tissue at {place}", "Tissue at {place}")
+    told!("Tissue at {place}", "Gewebe bei {place}")
 }
 
 /// Hover text of an arrow; the force in N, `whose` from [`of_hand`].
 pub(in crate::console) fn arrow(name: &str, whose: &str, size_n: f32, [x, y, z]: [f32; 3]) -> String {
     told!(
         "{name}{whose}: {size_n:.2} N\nx {x:+.2}, y {y:+.2}, z {z:+.2} N (world)",
-        "{name}{whose}: {size_n:.2} N\nx {x:+.2}, y {y:+.2}, z {z:+.2} N (world)"
+        "{name}{whose}: {size_n:.2} N\nx {x:+.2}, y {y:+.2}, z {z:+.2} N (Welt)"
     )
 }
 
 /// Depth of the tip in the tissue.
 pub(in crate::console) fn depth(depth_mm: f32) -> String {
-    told!("\n{depth_mm:.1} mm below the surface at rest", "\n{depth_mm:.1} mm below the surface at rest")
+    told!("\n{depth_mm:.1} mm below the surface at rest", "\n{depth_mm:.1} mm unter der Ruheoberfläche")
 }
 
 /// Hover text of the tip; `depth` from [`depth`].
 pub(in crate::console) fn tip(whose: &str, place: &str, depth: &str) -> String {
-    told!("Tip{whose} at {place}{depth}", "Tip{whose} at {place}{depth}")
+    told!("Tip{whose} at {place}{depth}", "Spitze{whose} bei {place}{depth}")
 }
 
 /// Hover text of a target.
 pub(in crate::console) fn target(number: usize, whose: &str, place: &str) -> String {
-    told!("Target {number}{whose} at {place}", "Target {number}{whose} at {place}")
+    told!("Target {number}{whose} at {place}", "Ziel {number}{whose} bei {place}")
 }
 
 /// Hover text of the trocar.
 pub(in crate::console) fn trocar(whose: &str, place: &str) -> String {
     told!(
         "Trocar{whose}, the remote centre of motion, at {place}",
-        "Trocar{whose}, the remote centre of motion, at {place}"
+        "Trokar{whose}, ferner Drehpunkt der Bewegung, bei {place}"
     )
 }

@@ -8,23 +8,23 @@ pub(in crate::console) const HOVER: Text = Text::of(
     ellipsoid around the force measured now; it contains 95 % of the errors (rendered minus measured) if \
     they are normally distributed. The share that it really contains is written below. The dashed circle \
     is the force ceiling. Drag to turn, double-click to reset.",
-    "Measured and rendered force of the last six seconds in force space (N, world axes), one line each. \
-    The dot is the force now, or at the time under the pointer in a trace. The three rings are an \
-    ellipsoid around the force measured now; it contains 95 % of the errors (rendered minus measured) if \
-    they are normally distributed. The share that it really contains is written below. The dashed circle \
-    is the force ceiling. Drag to turn, double-click to reset.",
+    "Gemessene und dargestellte Kraft der letzten sechs Sekunden im Kraftraum (N, Weltachsen), je eine Linie. Der \
+     Punkt ist die Kraft jetzt oder zur Zeit unter dem Zeiger in einem Verlauf. Die drei Ringe sind ein Ellipsoid um \
+     die jetzt gemessene Kraft; es enthält 95 % der Fehler (dargestellt minus gemessen), falls sie normalverteilt \
+     sind. Der tatsächlich enthaltene Anteil steht darunter. Der gestrichelte Kreis ist die Höchstkraft. Ziehen dreht, \
+     Doppelklick setzt zurück.",
 );
 
 /// Accessible name of the plot.
 pub(in crate::console) fn canvas(words: &str) -> String {
-    told!("Force space. {words}", "Force space. {words}")
+    told!("Force space. {words}", "Kraftraum. {words}")
 }
 
 /// Not enough data for the ellipsoid yet; two lines, separated by a semicolon.
 pub(in crate::console) fn too_short(seconds: f64) -> String {
     told!(
         "Last {seconds:.0} s; the error ellipsoid needs one second of data",
-        "Last {seconds:.0} s; the error ellipsoid needs one second of data"
+        "Letzte {seconds:.0} s; das Fehlerellipsoid braucht eine Sekunde Daten"
     )
 }
 
@@ -33,7 +33,7 @@ pub(in crate::console) fn error(seconds: f64, mean_n: f64, [a, b, c]: [f64; 3], 
     told!(
         "Error, last {seconds:.0} s: mean {mean_n:.2} N, 95 % half axes; {a:.2}, {b:.2}, {c:.2} N (contains \
          {percent:.0} %)",
-        "Error, last {seconds:.0} s: mean {mean_n:.2} N, 95 % half axes; {a:.2}, {b:.2}, {c:.2} N (contains \
+        "Fehler, letzte {seconds:.0} s: Mittel {mean_n:.2} N, 95-%-Halbachsen; {a:.2}, {b:.2}, {c:.2} N (enthält \
          {percent:.0} %)"
     )
 }

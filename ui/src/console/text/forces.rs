@@ -6,42 +6,42 @@ pub(in crate::console) const HOVER: Text = Text::of(
     "Force in N along the world axes x, y and z as drawn in the view, z up. Measured: at the instrument, \
     now. Rendered: to the hand, after all gates. Drag to pan, wheel to zoom, double-click to show the \
     last 10 s. E marks a moment.",
-    "Force in N along the world axes x, y and z as drawn in the view, z up. Measured: at the instrument, \
-    now. Rendered: to the hand, after all gates. Drag to pan, wheel to zoom, double-click to show the \
-    last 10 s. E marks a moment.",
+    "Kraft in N längs der Weltachsen x, y und z wie in der Ansicht, z nach oben. Gemessen: am Instrument, jetzt. \
+     Dargestellt: in der Hand, nach allen Sperren. Ziehen verschiebt, Mausrad zoomt, Doppelklick zeigt die letzten 10 \
+     s. E markiert einen Moment.",
 );
 pub(in crate::console) const HEADING: Text =
-    Text::of("Force at the tip and in the hand", "Force at the tip and in the hand");
-pub(in crate::console) const MEASURED: Text = Text::of("measured", "measured");
-pub(in crate::console) const RENDERED: Text = Text::of("rendered", "rendered");
+    Text::of("Force at the tip and in the hand", "Kraft an der Spitze und in der Hand");
+pub(in crate::console) const MEASURED: Text = Text::of("measured", "gemessen");
+pub(in crate::console) const RENDERED: Text = Text::of("rendered", "dargestellt");
 pub(in crate::console) const PAUSE: Text = Text::of("Pause", "Pause");
 pub(in crate::console) const PAUSE_HOVER: Text = Text::of(
     "Freezes the picture; data are still recorded, and the control loop is not affected",
-    "Freezes the picture; data are still recorded, and the control loop is not affected",
+    "Friert die Anzeige ein; Aufzeichnung und Regelung laufen weiter",
 );
-pub(in crate::console) const GO_ON: Text = Text::of("Go on", "Go on");
-pub(in crate::console) const GO_ON_HOVER: Text = Text::of("Shows new data again", "Shows new data again");
-pub(in crate::console) const MARK: Text = Text::of("Mark (E)", "Mark (E)");
+pub(in crate::console) const GO_ON: Text = Text::of("Go on", "Weiter");
+pub(in crate::console) const GO_ON_HOVER: Text = Text::of("Shows new data again", "Zeigt wieder neue Daten");
+pub(in crate::console) const MARK: Text = Text::of("Mark (E)", "Markieren (E)");
 pub(in crate::console) const MARK_HOVER: Text = Text::of(
     "Marks this moment in all traces, even while they are paused",
-    "Marks this moment in all traces, even while they are paused",
+    "Markiert diesen Moment in allen Verläufen, auch in der Pause",
 );
-pub(in crate::console) const LAST_TEN_SECONDS: Text = Text::of("Last 10 s", "Last 10 s");
+pub(in crate::console) const LAST_TEN_SECONDS: Text = Text::of("Last 10 s", "Letzte 10 s");
 pub(in crate::console) const LAST_TEN_SECONDS_HOVER: Text =
-    Text::of("Shows the last ten seconds again", "Shows the last ten seconds again");
-pub(in crate::console) const TIME_AXIS: Text = Text::of("Time before now (s)", "Time before now (s)");
+    Text::of("Shows the last ten seconds again", "Zeigt wieder die letzten zehn Sekunden");
+pub(in crate::console) const TIME_AXIS: Text = Text::of("Time before now (s)", "Zeit vor jetzt (s)");
 
 /// Both forces of an axis (signed, N) at the cursor of another plot.
 pub(in crate::console) fn at_cursor(axis: &str, measured_n: &str, rendered_n: &str) -> String {
     told!(
         "At the cursor, {axis}: measured {measured_n} N, rendered {rendered_n} N",
-        "At the cursor, {axis}: measured {measured_n} N, rendered {rendered_n} N"
+        "Am Zeiger, {axis}: gemessen {measured_n} N, dargestellt {rendered_n} N"
     )
 }
 
 /// Name of the plot of an axis.
 pub(in crate::console) fn plot(axis: &str, side: &str) -> String {
-    told!("Force along {axis}, {side} hand", "Force along {axis}, {side} hand")
+    told!("Force along {axis}, {side} hand", "Kraft längs {axis}, Hand {side}")
 }
 
 /// What that plot shows: the force now (signed) and the largest in this time, N, measured and rendered.
@@ -49,22 +49,22 @@ pub(in crate::console) fn summary([measured, rendered]: [(String, f64); 2], seco
     let told = |(now_n, most_n): (String, f64)| {
         told!(
             "{now_n} N now, {most_n:.1} N at most in {seconds:.0} s",
-            "{now_n} N now, {most_n:.1} N at most in {seconds:.0} s"
+            "{now_n} N jetzt, höchstens {most_n:.1} N in {seconds:.0} s"
         )
     };
-    told!("Measured {}; rendered {}", "Measured {}; rendered {}", told(measured), told(rendered))
+    told!("Measured {}; rendered {}", "Gemessen {}; dargestellt {}", told(measured), told(rendered))
 }
 
 /// Switch: forces of which side.
 pub(in crate::console) fn forces_of(side: &str) -> String {
-    told!("Shows the forces of the {side} hand", "Shows the forces of the {side} hand")
+    told!("Shows the forces of the {side} hand", "Zeigt die Kräfte der Hand {side}")
 }
 
 /// Both forces of an axis (signed, N) this many seconds ago.
 pub(in crate::console) fn before_now(ago_s: f64, axis: &str, measured_n: &str, rendered_n: &str) -> String {
     told!(
         "{ago_s:.2} s before now\nmeasured {axis} {measured_n} N\nrendered {axis} {rendered_n} N",
-        "{ago_s:.2} s before now\nmeasured {axis} {measured_n} N\nrendered {axis} {rendered_n} N"
+        "{ago_s:.2} s vor jetzt\ngemessen {axis} {measured_n} N\ndargestellt {axis} {rendered_n} N"
     )
 }
 
@@ -72,9 +72,9 @@ pub(in crate::console) const TWIST_HOVER: Text = Text::of(
     "Torque about the shaft of the instrument, against the clock as seen from the trocar: of what the jaws hold or \
      touch, and on the wrist sensor as it reads it, with its bias. A ring that is held off its centre causes it. It is \
      not rendered to the hand.",
-    "Torque about the shaft of the instrument, against the clock as seen from the trocar: of what the jaws hold or \
-     touch, and on the wrist sensor as it reads it, with its bias. A ring that is held off its centre causes it. It is \
-     not rendered to the hand.",
+    "Drehmoment um den Schaft des Instruments, vom Trokar gesehen gegen den Uhrzeigersinn: dessen, was die Backen \
+     halten oder berühren, und am Handgelenksensor wie abgelesen, mit Nullpunkt. Ursache: ein außermittig gehaltener \
+     Ring. Es wird nicht in der Hand dargestellt.",
 );
 
 /// The torque about the shaft (mNm): of what the jaws hold, and at the wrist sensor, each where it is known.
@@ -83,9 +83,9 @@ pub(in crate::console) fn twist([jaws_mnm, wrist_mnm]: [Option<f64>; 2]) -> Stri
     let told =
         |mnm: f64, whose: &str| told!("{:+.2} mNm {whose}", "{:+.2} mNm {whose}", (mnm * 100.0).round() / 100.0 + 0.0);
     let both = [
-        jaws_mnm.map(|mnm| told(mnm, word("at the jaws", "at the jaws"))),
-        wrist_mnm.map(|mnm| told(mnm, word("at the wrist sensor", "at the wrist sensor"))),
+        jaws_mnm.map(|mnm| told(mnm, word("at the jaws", "an den Backen"))),
+        wrist_mnm.map(|mnm| told(mnm, word("at the wrist sensor", "am Handgelenksensor"))),
     ];
     let both: Vec<String> = both.into_iter().flatten().collect();
-    told!("Torque about the shaft: {}", "Torque about the shaft: {}", both.join(", "))
+    told!("Torque about the shaft: {}", "Drehmoment um den Schaft: {}", both.join(", "))
 }

@@ -2,260 +2,270 @@
 
 use crate::language::{Text, told, word};
 
-pub(in crate::console) const MOUNT: Text = Text::of("Sensor mount", "Sensor mount");
-pub(in crate::console) const TIP: Text = Text::of("Tip", "Tip");
-pub(in crate::console) const HAND_EYE: Text = Text::of("Hand-eye", "Hand-eye");
-pub(in crate::console) const TABLE: Text = Text::of("Table", "Table");
-pub(in crate::console) const VIEW: Text = Text::of("View", "View");
-pub(in crate::console) const TROCAR: Text = Text::of("Trocar", "Trocar");
+pub(in crate::console) const MOUNT: Text = Text::of("Sensor mount", "Sensormontage");
+pub(in crate::console) const TIP: Text = Text::of("Tip", "Spitze");
+pub(in crate::console) const HAND_EYE: Text = Text::of("Hand-eye", "Hand-Auge");
+pub(in crate::console) const TABLE: Text = Text::of("Table", "Tisch");
+pub(in crate::console) const VIEW: Text = Text::of("View", "Bildlage");
+pub(in crate::console) const TROCAR: Text = Text::of("Trocar", "Trokar");
 pub(in crate::console) const MOUNT_MEANING: Text = Text::of(
     "Checks how the wrist sensor is turned on the arm's flange",
-    "Checks how the wrist sensor is turned on the arm's flange",
+    "Prüft, wie der Handgelenksensor am Flansch des Arms verdreht ist",
 );
 pub(in crate::console) const TIP_MEANING: Text = Text::of(
     "Finds the instrument's tip in the frame of the arm's flange",
-    "Finds the instrument's tip in the frame of the arm's flange",
+    "Bestimmt die Instrumentenspitze im Flanschsystem des Arms",
 );
 pub(in crate::console) const HAND_EYE_MEANING: Text = Text::of(
     "Finds the marker on the instrument, and the tracker beside the arm",
-    "Finds the marker on the instrument, and the tracker beside the arm",
+    "Bestimmt den Marker am Instrument und den Tracker neben dem Arm",
 );
 pub(in crate::console) const TABLE_MEANING: Text = Text::of(
     "Finds origin and plane of the workspace from points touched with the tip",
-    "Finds origin and plane of the workspace from points touched with the tip",
+    "Bestimmt Ursprung und Ebene des Arbeitsraums aus Punkten, die die Spitze berührt",
 );
 pub(in crate::console) const VIEW_MEANING: Text = Text::of(
     "Finds how the endoscope's picture is turned against arm and handle",
-    "Finds how the endoscope's picture is turned against arm and handle",
+    "Bestimmt, wie das Endoskopbild gegen Arm und Handgerät verdreht ist",
 );
 pub(in crate::console) const TROCAR_MEANING: Text =
-    Text::of("Finds the point about which the instrument pivots", "Finds the point about which the instrument pivots");
+    Text::of("Finds the point about which the instrument pivots", "Bestimmt den Punkt, um den das Instrument schwenkt");
 
 pub(in crate::console) const MOUNT_BEFORE: Text = Text::of(
     "Take the instrument out of the trocar; nothing may touch it. Recording begins with the next step.",
-    "Take the instrument out of the trocar; nothing may touch it. Recording begins with the next step.",
+    "Instrument aus dem Trokar nehmen; nichts darf es berühren. Die Aufzeichnung beginnt mit dem nächsten Schritt.",
 );
 pub(in crate::console) const MOUNT_TASK: Text = Text::of(
     "Hold the tool still in each orientation until it is recorded",
-    "Hold the tool still in each orientation until it is recorded",
+    "Instrument in jeder Orientierung stillhalten, bis sie aufgezeichnet ist",
 );
 pub(in crate::console) const TIP_BEFORE: Text = Text::of(
     "Take the instrument out of the trocar, and put its tip into a dimple that cannot move, such as a screw's recess. \
      Recording begins with the next step.",
-    "Take the instrument out of the trocar, and put its tip into a dimple that cannot move, such as a screw's recess. \
-     Recording begins with the next step.",
+    "Instrument aus dem Trokar nehmen und die Spitze in eine feste Mulde setzen, etwa einen Schraubenkopf. Die \
+     Aufzeichnung beginnt mit dem nächsten Schritt.",
 );
 pub(in crate::console) const TIP_TASK: Text = Text::of(
     "Tilt to all sides by 20 to 30 degrees, and turn about the shaft. Hold each pose still for half a second. The tip \
      must stay in the dimple.",
-    "Tilt to all sides by 20 to 30 degrees, and turn about the shaft. Hold each pose still for half a second. The tip \
-     must stay in the dimple.",
+    "Nach allen Seiten um 20 bis 30 Grad kippen und um den Schaft drehen. Jede Pose eine halbe Sekunde stillhalten. \
+     Die Spitze muss in der Mulde bleiben.",
 );
 pub(in crate::console) const HAND_EYE_BEFORE: Text = Text::of(
     "Take the instrument out of the trocar, and turn its marker towards the tracker. The other arm and its marker \
      rest. Recording begins with the next step.",
-    "Take the instrument out of the trocar, and turn its marker towards the tracker. The other arm and its marker \
-     rest. Recording begins with the next step.",
+    "Instrument aus dem Trokar nehmen und seinen Marker zum Tracker drehen. Der andere Arm und sein Marker ruhen. Die \
+     Aufzeichnung beginnt mit dem nächsten Schritt.",
 );
 pub(in crate::console) const HAND_EYE_TASK: Text = Text::of(
     "Tilt and turn the instrument in every pose, also about its shaft; moves without turns tell nothing. Hold each \
      pose still for half a second.",
-    "Tilt and turn the instrument in every pose, also about its shaft; moves without turns tell nothing. Hold each \
-     pose still for half a second.",
+    "Instrument in jeder Pose kippen und drehen, auch um den Schaft; Verschieben ohne Drehen nützt nichts. Jede Pose \
+     eine halbe Sekunde stillhalten.",
 );
 pub(in crate::console) const TABLE_BEFORE: Text = Text::of(
     "Clear the table, and mark its origin, a point along x and a point on the side of y, about 10 cm apart. Put the \
      tip on the origin. Recording begins with the next step.",
-    "Clear the table, and mark its origin, a point along x and a point on the side of y, about 10 cm apart. Put the \
-     tip on the origin. Recording begins with the next step.",
+    "Tisch räumen und markieren: Ursprung, einen Punkt längs x und einen auf der Seite von y, etwa 10 cm auseinander. \
+     Spitze auf den Ursprung setzen. Die Aufzeichnung beginnt mit dem nächsten Schritt.",
 );
 pub(in crate::console) const TABLE_TASK: Text = Text::of(
     "Touch each point with the tip and hold still for half a second. If a wrong point was recorded, remove it.",
-    "Touch each point with the tip and hold still for half a second. If a wrong point was recorded, remove it.",
+    "Jeden Punkt mit der Spitze berühren und eine halbe Sekunde stillhalten. Falsch aufgezeichnete Punkte entfernen.",
 );
 pub(in crate::console) const VIEW_BEFORE: Text = Text::of(
     "Bring the tip into the middle of the endoscope's picture and hold it still. Recording begins with the next step.",
-    "Bring the tip into the middle of the endoscope's picture and hold it still. Recording begins with the next step.",
+    "Spitze in die Mitte des Endoskopbilds bringen und stillhalten. Die Aufzeichnung beginnt mit dem nächsten Schritt.",
 );
 pub(in crate::console) const VIEW_TASK: Text = Text::of(
     "Look at the picture only. Move the tip about 3 cm each time, then hold still for half a second.",
-    "Look at the picture only. Move the tip about 3 cm each time, then hold still for half a second.",
+    "Nur auf das Bild sehen. Spitze jeweils etwa 3 cm bewegen, dann eine halbe Sekunde stillhalten.",
 );
 pub(in crate::console) const VIEW_HANDLE_BEFORE: Text = Text::of(
     "Hold the handle still in the middle of its range. Recording begins with the next step.",
-    "Hold the handle still in the middle of its range. Recording begins with the next step.",
+    "Handgerät in der Mitte seines Bereichs stillhalten. Die Aufzeichnung beginnt mit dem nächsten Schritt.",
 );
 pub(in crate::console) const VIEW_HANDLE_TASK: Text = Text::of(
     "Look at the picture only. Move the handle about 3 cm each time, as if the tip followed, then hold still for half \
      a second.",
-    "Look at the picture only. Move the handle about 3 cm each time, as if the tip followed, then hold still for half \
-     a second.",
+    "Nur auf das Bild sehen. Handgerät jeweils etwa 3 cm bewegen, als folgte die Spitze, dann eine halbe Sekunde \
+     stillhalten.",
 );
 pub(in crate::console) const TROCAR_BEFORE: Text = Text::of(
     "Put the instrument through the trocar; the tip must be clear of tissue. Recording begins with the next step.",
-    "Put the instrument through the trocar; the tip must be clear of tissue. Recording begins with the next step.",
+    "Instrument durch den Trokar führen; die Spitze muss frei von Gewebe sein. Die Aufzeichnung beginnt mit dem \
+     nächsten Schritt.",
 );
 pub(in crate::console) const TROCAR_TASK: Text = Text::of(
     "Pivot the instrument to all sides by 10 degrees or more, at several depths. Lines are recorded while it moves.",
-    "Pivot the instrument to all sides by 10 degrees or more, at several depths. Lines are recorded while it moves.",
+    "Instrument in mehreren Tiefen nach allen Seiten um 10 Grad oder mehr schwenken. Linien werden in der Bewegung \
+     aufgezeichnet.",
 );
 
-pub(in crate::console) const POSES: Text = Text::of("poses", "poses");
-pub(in crate::console) const POINTS: Text = Text::of("points", "points");
-pub(in crate::console) const PLACES: Text = Text::of("places", "places");
-pub(in crate::console) const LINES: Text = Text::of("lines", "lines");
+pub(in crate::console) const POSES: Text = Text::of("poses", "Posen");
+pub(in crate::console) const POINTS: Text = Text::of("points", "Punkte");
+pub(in crate::console) const PLACES: Text = Text::of("places", "Orte");
+pub(in crate::console) const LINES: Text = Text::of("lines", "Linien");
 
 pub(in crate::console) const BY_TRACKER: Text = Text::of(
     "Measure with the tracker instead of the arm's joints",
-    "Measure with the tracker instead of the arm's joints",
+    "Mit dem Tracker statt mit den Armgelenken messen",
 );
 pub(in crate::console) const BY_TRACKER_HOVER: Text = Text::of(
     "The tracker sees the patient's trocar move, which joints that are held in a configured trocar do not tell",
-    "The tracker sees the patient's trocar move, which joints that are held in a configured trocar do not tell",
+    "Der Tracker sieht, wie sich der Trokar des Patienten bewegt; Gelenke, an einen eingestellten Trokar gebunden, \
+     zeigen das nicht",
 );
 pub(in crate::console) const BY_HANDLE: Text =
-    Text::of("Move the handle instead of the tip", "Move the handle instead of the tip");
+    Text::of("Move the handle instead of the tip", "Handgerät statt Spitze bewegen");
 pub(in crate::console) const BY_HANDLE_HOVER: Text = Text::of(
     "Do both, one after the other: then the handle's right is the picture's right",
-    "Do both, one after the other: then the handle's right is the picture's right",
+    "Beides nacheinander tun: dann ist rechts am Handgerät auch rechts im Bild",
 );
 pub(in crate::console) const NEEDS_HAND_EYE: Text =
-    Text::of("Do the hand-eye calibration first", "Do the hand-eye calibration first");
+    Text::of("Do the hand-eye calibration first", "Zuerst Hand-Auge kalibrieren");
 
 pub(in crate::console) const PIVOT: Text =
-    Text::of("Turn about the tip, then hold still", "Turn about the tip, then hold still");
-pub(in crate::console) const TURN: Text = Text::of("Tilt and turn, then hold still", "Tilt and turn, then hold still");
+    Text::of("Turn about the tip, then hold still", "Um die Spitze drehen, dann stillhalten");
+pub(in crate::console) const TURN: Text = Text::of(
+    "Tilt and turn, then hold still",
+    "Kippen und drehen, dann \
+ stillhalten",
+);
 pub(in crate::console) const PIVOT_IN_TROCAR: Text =
-    Text::of("Pivot in the trocar, without a pause", "Pivot in the trocar, without a pause");
-pub(in crate::console) const TOUCH_ORIGIN: Text = Text::of("Touch the origin", "Touch the origin");
-pub(in crate::console) const TOUCH_X: Text = Text::of("Touch the point along x", "Touch the point along x");
+    Text::of("Pivot in the trocar, without a pause", "Im Trokar schwenken, ohne Pause");
+pub(in crate::console) const TOUCH_ORIGIN: Text = Text::of("Touch the origin", "Ursprung berühren");
+pub(in crate::console) const TOUCH_X: Text = Text::of("Touch the point along x", "Punkt längs x berühren");
 pub(in crate::console) const TOUCH_Y: Text =
-    Text::of("Touch the point on the side of y", "Touch the point on the side of y");
+    Text::of("Touch the point on the side of y", "Punkt auf der Seite von y berühren");
 pub(in crate::console) const TOUCH_FURTHER: Text =
-    Text::of("Touch any other point of the table", "Touch any other point of the table");
-pub(in crate::console) const HOLD_STILL: Text = Text::of("Hold still where you begin", "Hold still where you begin");
-pub(in crate::console) const THE_TIP: Text = Text::of("Tip", "Tip");
-pub(in crate::console) const THE_HANDLE: Text = Text::of("Handle", "Handle");
+    Text::of("Touch any other point of the table", "Einen weiteren Punkt des Tischs berühren");
+pub(in crate::console) const HOLD_STILL: Text = Text::of("Hold still where you begin", "Am Anfangsort stillhalten");
+pub(in crate::console) const THE_TIP: Text = Text::of("Tip", "Spitze");
+pub(in crate::console) const THE_HANDLE: Text = Text::of("Handle", "Handgerät");
 pub(in crate::console) const ALL_RECORDED: Text =
-    Text::of("All recorded: let go, and press Next", "All recorded: let go, and press Next");
-pub(in crate::console) const PAUSED: Text = Text::of("paused", "paused");
+    Text::of("All recorded: let go, and press Next", "Alles aufgezeichnet: loslassen und Weiter drücken");
+pub(in crate::console) const PAUSED: Text = Text::of("paused", "Pause");
 
 pub(in crate::console) const STEP_CHECK_HOVER: Text =
-    Text::of("Checks that everything that is needed sends data", "Checks that everything that is needed sends data");
-pub(in crate::console) const STEP_RECORD: Text = Text::of("Record", "Record");
+    Text::of("Checks that everything that is needed sends data", "Prüft, ob alles Nötige Daten sendet");
+pub(in crate::console) const STEP_RECORD: Text = Text::of("Record", "Aufzeichnen");
 pub(in crate::console) const STEP_RECORD_HOVER: Text =
-    Text::of("Follow the instructions until all is recorded", "Follow the instructions until all is recorded");
+    Text::of("Follow the instructions until all is recorded", "Anweisungen folgen, bis alles aufgezeichnet ist");
 pub(in crate::console) const STEP_RESULT_HOVER: Text = Text::of(
     "The result, its errors, and what it changes in the rig file",
-    "The result, its errors, and what it changes in the rig file",
+    "Ergebnis, seine Fehler, und was es in der Aufbaudatei ändert",
 );
 pub(in crate::console) const STEP_SAVE_HOVER: Text = Text::of(
     "Saves the record, and writes the numbers into the rig file; its comments stay",
-    "Saves the record, and writes the numbers into the rig file; its comments stay",
+    "Speichert das Protokoll und schreibt die Werte in die Aufbaudatei; Kommentare bleiben",
 );
-pub(in crate::console) const CHECKS_TITLE: Text = Text::of("Before the recording", "Before the recording");
+pub(in crate::console) const CHECKS_TITLE: Text = Text::of("Before the recording", "Vor der Aufzeichnung");
 pub(in crate::console) const CHECKS_HOVER: Text =
-    Text::of("Everything that is needed must send data first", "Everything that is needed must send data first");
-pub(in crate::console) const CHECK_ARM: Text = Text::of("Joints of the arm", "Joints of the arm");
+    Text::of("Everything that is needed must send data first", "Alles Nötige muss zuerst Daten senden");
+pub(in crate::console) const CHECK_ARM: Text = Text::of("Joints of the arm", "Gelenke des Arms");
 pub(in crate::console) const CHECK_MARKER: Text =
-    Text::of("Marker in sight of the tracker", "Marker in sight of the tracker");
-pub(in crate::console) const CHECK_HANDLE: Text = Text::of("Position of the handle", "Position of the handle");
-pub(in crate::console) const CHECK_WRENCH: Text = Text::of("Force at the wrist", "Force at the wrist");
-pub(in crate::console) const OPTIONS_TITLE: Text = Text::of("How to measure", "How to measure");
+    Text::of("Marker in sight of the tracker", "Marker im Sichtfeld des Trackers");
+pub(in crate::console) const CHECK_HANDLE: Text = Text::of("Position of the handle", "Position des Handgeräts");
+pub(in crate::console) const CHECK_WRENCH: Text = Text::of("Force at the wrist", "Kraft am Handgelenk");
+pub(in crate::console) const OPTIONS_TITLE: Text = Text::of("How to measure", "Messverfahren");
 pub(in crate::console) const OPTIONS_HOVER: Text =
-    Text::of("Leave this off unless you need it", "Leave this off unless you need it");
+    Text::of("Leave this off unless you need it", "Nur bei Bedarf einschalten");
 pub(in crate::console) const NEEDS_ARM: Text =
-    Text::of("This rig has no arm with joints", "This rig has no arm with joints");
+    Text::of("This rig has no arm with joints", "Dieser Aufbau hat keinen Arm mit Gelenken");
 pub(in crate::console) const NO_ARM: Text = Text::of(
     "This rig has no arm with joints: choose a rig with devices on the start page, for example the emulated rig",
-    "This rig has no arm with joints: choose a rig with devices on the start page, for example the emulated rig",
+    "Dieser Aufbau hat keinen Arm mit Gelenken: auf der Startseite einen Aufbau mit Geräten wählen, etwa den \
+     emulierten",
 );
-pub(in crate::console) const RECORD_TITLE: Text = Text::of("Do this now", "Do this now");
+pub(in crate::console) const RECORD_TITLE: Text = Text::of("Do this now", "Jetzt");
 pub(in crate::console) const RECORD_HOVER: Text =
-    Text::of("What to do until all is recorded", "What to do until all is recorded");
-pub(in crate::console) const PROGRESS: Text = Text::of("Now", "Now");
-pub(in crate::console) const COVERAGE: Text = Text::of("Recorded", "Recorded");
-pub(in crate::console) const REMOVE_LAST: Text = Text::of("Remove the last one", "Remove the last one");
+    Text::of("What to do until all is recorded", "Was zu tun ist, bis alles aufgezeichnet ist");
+pub(in crate::console) const PROGRESS: Text = Text::of("Now", "Jetzt");
+pub(in crate::console) const COVERAGE: Text = Text::of("Recorded", "Aufgezeichnet");
+pub(in crate::console) const REMOVE_LAST: Text = Text::of("Remove the last one", "Letzte entfernen");
 pub(in crate::console) const PAUSE: Text = Text::of("Pause", "Pause");
-pub(in crate::console) const GO_ON: Text = Text::of("Go on", "Go on");
+pub(in crate::console) const GO_ON: Text = Text::of("Go on", "Weiter");
 pub(in crate::console) const PAUSE_HOVER: Text =
-    Text::of("Records nothing until you go on", "Records nothing until you go on");
-pub(in crate::console) const NEEDS_MORE: Text = Text::of("Not enough is recorded yet", "Not enough is recorded yet");
+    Text::of("Records nothing until you go on", "Zeichnet nichts auf, bis es weitergeht");
+pub(in crate::console) const NEEDS_MORE: Text =
+    Text::of("Not enough is recorded yet", "Noch nicht genug aufgezeichnet");
 pub(in crate::console) const NEEDS_RESULT: Text = Text::of(
     "There is no result to save: go back and record more",
-    "There is no result to save: go back and record more",
+    "Kein Ergebnis zum Speichern: zurückgehen und mehr aufzeichnen",
 );
 pub(in crate::console) const NO_RESULT_HOVER: Text =
-    Text::of("Nothing could be computed from the recording", "Nothing could be computed from the recording");
-pub(in crate::console) const TOO_FEW: Text =
-    Text::of("Too little is recorded: go back and record more", "Too little is recorded: go back and record more");
+    Text::of("Nothing could be computed from the recording", "Aus der Aufzeichnung ließ sich nichts berechnen");
+pub(in crate::console) const TOO_FEW: Text = Text::of(
+    "Too little is recorded: go back and record more",
+    "Zu wenig aufgezeichnet: zurückgehen und mehr \
+     aufzeichnen",
+);
 pub(in crate::console) const VERDICT_HOVER: Text =
-    Text::of("Judged on data that were held out of the fit", "Judged on data that were held out of the fit");
-pub(in crate::console) const RECORDED_HOVER: Text = Text::of("How many were recorded", "How many were recorded");
-pub(in crate::console) const LEFT_OUT: Text = Text::of("Left out", "Left out");
+    Text::of("Judged on data that were held out of the fit", "Beurteilt an Daten, die im Fit zurückgehalten wurden");
+pub(in crate::console) const RECORDED_HOVER: Text = Text::of("How many were recorded", "Anzahl der Aufzeichnungen");
+pub(in crate::console) const LEFT_OUT: Text = Text::of("Left out", "Ausgelassen");
 pub(in crate::console) const LEFT_OUT_HOVER: Text =
-    Text::of("These contradict the others and were not used", "These contradict the others and were not used");
-pub(in crate::console) const HELD_OUT: Text = Text::of("Held-out error", "Held-out error");
+    Text::of("These contradict the others and were not used", "Widersprechen den anderen und wurden nicht verwendet");
+pub(in crate::console) const HELD_OUT: Text = Text::of("Held-out error", "Testfehler");
 pub(in crate::console) const HELD_OUT_HOVER: Text = Text::of(
     "Root mean square error on data that were not used for the fit",
-    "Root mean square error on data that were not used for the fit",
+    "Quadratisches Mittel der Fehler auf Daten, die nicht in den Fit eingingen",
 );
-pub(in crate::console) const HELD_OUT_MAX: Text = Text::of("Largest held-out error", "Largest held-out error");
+pub(in crate::console) const HELD_OUT_MAX: Text = Text::of("Largest held-out error", "Größter Testfehler");
 pub(in crate::console) const HELD_OUT_MAX_HOVER: Text =
-    Text::of("The largest of these errors", "The largest of these errors");
-pub(in crate::console) const FITTED: Text = Text::of("Error in the fit", "Error in the fit");
+    Text::of("The largest of these errors", "Der größte dieser Fehler");
+pub(in crate::console) const FITTED: Text = Text::of("Error in the fit", "Fitfehler");
 pub(in crate::console) const FITTED_HOVER: Text =
-    Text::of("Root mean square error on the data of the fit", "Root mean square error on the data of the fit");
-pub(in crate::console) const UNCERTAINTY: Text = Text::of("Known to within", "Known to within");
-pub(in crate::console) const UNCERTAINTY_HOVER: Text = Text::of(
-    "Half the length of the 95 % interval of the result",
-    "Half the length of the 95 % interval of the result",
-);
-pub(in crate::console) const TOOL_MASS: Text = Text::of("Tool", "Tool");
+    Text::of("Root mean square error on the data of the fit", "Quadratisches Mittel der Fehler auf den Daten des Fits");
+pub(in crate::console) const UNCERTAINTY: Text = Text::of("Known to within", "Bekannt auf");
+pub(in crate::console) const UNCERTAINTY_HOVER: Text =
+    Text::of("Half the length of the 95 % interval of the result", "Halbe Länge des 95-%-Intervalls des Ergebnisses");
+pub(in crate::console) const TOOL_MASS: Text = Text::of("Tool", "Instrument");
 pub(in crate::console) const TOOL_MASS_HOVER: Text =
-    Text::of("Mass that hangs on the sensor", "Mass that hangs on the sensor");
+    Text::of("Mass that hangs on the sensor", "Masse, die am Sensor hängt");
 pub(in crate::console) const CHANGE_TITLE: Text =
-    Text::of("What changes in the rig file", "What changes in the rig file");
+    Text::of("What changes in the rig file", "Änderungen in der Aufbaudatei");
 pub(in crate::console) const CHANGE_HOVER: Text = Text::of(
     "Nothing is changed before you save; afterwards the change can be undone",
-    "Nothing is changed before you save; afterwards the change can be undone",
+    "Vor dem Speichern ändert sich nichts; danach ist die Änderung umkehrbar",
 );
 pub(in crate::console) const NO_CHANGE: Text =
-    Text::of("Nothing: the rig file is right", "Nothing: the rig file is right");
+    Text::of("Nothing: the rig file is right", "Keine: die Aufbaudatei stimmt");
 pub(in crate::console) const WITHIN_UNCERTAINTY: Text = Text::of(
     "The change is smaller than the uncertainty of the result: the rig file was right",
-    "The change is smaller than the uncertainty of the result: the rig file was right",
+    "Die Änderung ist kleiner als die Unsicherheit des Ergebnisses: die Aufbaudatei stimmte",
 );
-pub(in crate::console) const KEY: Text = Text::of("Key", "Key");
-pub(in crate::console) const BEFORE: Text = Text::of("Now", "Now");
-pub(in crate::console) const AFTER: Text = Text::of("New", "New");
-pub(in crate::console) const CHANGE: Text = Text::of("Change", "Change");
-pub(in crate::console) const NOT_GIVEN: Text = Text::of("not given", "not given");
-pub(in crate::console) const PROOF: Text = Text::of("Accepted on held-out data", "Accepted on held-out data");
-pub(in crate::console) const UNDO_TITLE: Text = Text::of("Undo", "Undo");
+pub(in crate::console) const KEY: Text = Text::of("Key", "Schlüssel");
+pub(in crate::console) const BEFORE: Text = Text::of("Now", "Jetzt");
+pub(in crate::console) const AFTER: Text = Text::of("New", "Neu");
+pub(in crate::console) const CHANGE: Text = Text::of("Change", "Änderung");
+pub(in crate::console) const NOT_GIVEN: Text = Text::of("not given", "keine Angabe");
+pub(in crate::console) const PROOF: Text = Text::of("Accepted on held-out data", "Auf Testdaten angenommen");
+pub(in crate::console) const UNDO_TITLE: Text = Text::of("Undo", "Rückgängig");
 pub(in crate::console) const UNDO_CARD_HOVER: Text = Text::of(
     "The record keeps the values of before; they can be put back into the rig file",
-    "The record keeps the values of before; they can be put back into the rig file",
+    "Das Protokoll bewahrt die vorigen Werte; sie lassen sich in die Aufbaudatei zurückschreiben",
 );
-pub(in crate::console) const UNDO: Text = Text::of("Put the values of before back", "Put the values of before back");
+pub(in crate::console) const UNDO: Text = Text::of("Put the values of before back", "Vorige Werte wiederherstellen");
 pub(in crate::console) const UNDONE: Text =
-    Text::of("The values of before are in the rig file again", "The values of before are in the rig file again");
+    Text::of("The values of before are in the rig file again", "Die vorigen Werte stehen wieder in der Aufbaudatei");
 
 /// What the technician is to hold.
 pub(in crate::console) fn hold(name: &str) -> String {
-    told!("Hold still: {name}", "Hold still: {name}")
+    told!("Hold still: {name}", "Stillhalten: {name}")
 }
 
 /// What is to be moved, and where to.
 pub(in crate::console) fn moved(what: &str, way: &str) -> String {
-    told!("{what}: {way}, then hold still", "{what}: {way}, then hold still")
+    told!("{what}: {way}, then hold still", "{what}: {way}, dann stillhalten")
 }
 
 /// How much is there, and what is missing most.
 pub(in crate::console) fn coverage(count: usize, units: &str, missing: Option<&str>) -> String {
     let missing = missing.map_or_else(
-        || word("complete", "complete").to_owned(),
-        |missing| told!("still needed: {missing}", "still needed: {missing}"),
+        || word("complete", "vollständig").to_owned(),
+        |missing| told!("still needed: {missing}", "noch nötig: {missing}"),
     );
     format!("{count} {units}; {missing}")
 }
@@ -264,15 +274,19 @@ pub(in crate::console) fn coverage(count: usize, units: &str, missing: Option<&s
 pub(in crate::console) fn effect(change: Option<[f64; 2]>) -> String {
     change.map_or_else(
         || {
-            word("solid: found now; the rig file does not give it", "solid: found now; the rig file does not give it")
-                .to_owned()
+            word(
+                "solid: found now; the rig file does not give it",
+                "durchgezogen: jetzt bestimmt; fehlt in der \
+             Aufbaudatei",
+            )
+            .to_owned()
         },
         |[m, deg]| {
             // A point has no angle, and a rotation no place.
-            let moved = (m > 1e-9).then(|| told!("moved by {:.2} mm", "moved by {:.2} mm", m * 1e3));
-            let turned = (deg > 1e-6).then(|| told!("turned by {deg:.2} deg", "turned by {deg:.2} deg"));
+            let moved = (m > 1e-9).then(|| told!("moved by {:.2} mm", "verschoben um {:.2} mm", m * 1e3));
+            let turned = (deg > 1e-6).then(|| told!("turned by {deg:.2} deg", "gedreht um {deg:.2} deg"));
             let words: Vec<_> = moved.into_iter().chain(turned).collect();
-            told!("dashed: now   solid: new   {}", "dashed: now   solid: new   {}", words.join(", "))
+            told!("dashed: now   solid: new   {}", "gestrichelt: jetzt   durchgezogen: neu   {}", words.join(", "))
         },
     )
 }
@@ -285,22 +299,22 @@ pub(in crate::console) fn scale(length_m: f64) -> String {
 /// How the mount that was found compares with the rig file's.
 pub(in crate::console) fn mount_found(off_deg: f64, agrees: bool) -> String {
     let verdict = if agrees {
-        word("it agrees with the rig file", "it agrees with the rig file")
+        word("it agrees with the rig file", "stimmt mit der Aufbaudatei überein")
     } else {
-        word("the rig file is wrong", "the rig file is wrong")
+        word("the rig file is wrong", "die Aufbaudatei ist falsch")
     };
     told!(
         "The mount that was found differs by {off_deg:.1} deg: {verdict}",
-        "The mount that was found differs by {off_deg:.1} deg: {verdict}"
+        "Die bestimmte Montage weicht um {off_deg:.1} deg ab: {verdict}"
     )
 }
 
 /// Which axes are exchanged.
 pub(in crate::console) fn mount_axes(axes: &str) -> String {
-    told!("The sensor's x, y, z are the rig file's {axes}", "The sensor's x, y, z are the rig file's {axes}")
+    told!("The sensor's x, y, z are the rig file's {axes}", "x, y, z des Sensors sind {axes} der Aufbaudatei")
 }
 
 /// The rig file that was written.
 pub(in crate::console) fn written(record: &std::path::Path, rig: &std::path::Path) -> String {
-    told!("Saved: {}; in use: {}", "Saved: {}; in use: {}", record.display(), rig.display())
+    told!("Saved: {}; in use: {}", "Gespeichert: {}; aktiv: {}", record.display(), rig.display())
 }

@@ -4,95 +4,103 @@ use crate::language::{Text, told};
 
 pub(in crate::console) const FREE_MOTION: Text = Text::of(
     "Free motion: no contact, so there is no force to render",
-    "Free motion: no contact, so there is no force to render",
+    "Freie Bewegung: kein Kontakt, also keine Kraft darzustellen",
 );
 pub(in crate::console) const NONE_DEVICE_MISSING: Text =
-    Text::of("No force: a device is missing (see Devices)", "No force: a device is missing (see Devices)");
+    Text::of("No force: a device is missing (see Devices)", "Keine Kraft: ein Gerät fehlt (siehe Geräte)");
 pub(in crate::console) const NONE_IDLE: Text =
-    Text::of("No force: the loop is idle, press Engage", "No force: the loop is idle, press Engage");
+    Text::of("No force: the loop is idle, press Engage", "Keine Kraft: Regelung im Leerlauf, Koppeln drücken");
 pub(in crate::console) const NONE_GETTING_READY: Text =
-    Text::of("No force yet: the drives are switching on", "No force yet: the drives are switching on");
+    Text::of("No force yet: the drives are switching on", "Noch keine Kraft: Antriebe schalten ein");
 pub(in crate::console) const NONE_CLUTCH: Text = Text::of(
     "No force: the clutch is pressed, the hand moves freely",
-    "No force: the clutch is pressed, the hand moves freely",
+    "Keine Kraft: Kupplung gedrückt, die Hand ist frei beweglich",
 );
 pub(in crate::console) const NONE_STOPPED: Text =
-    Text::of("No force: stopped by the operator", "No force: stopped by the operator");
+    Text::of("No force: stopped by the operator", "Keine Kraft: vom Bediener angehalten");
 pub(in crate::console) const NONE_OTHER_ARM: Text =
-    Text::of("No force: the other arm has a fault", "No force: the other arm has a fault");
+    Text::of("No force: the other arm has a fault", "Keine Kraft: Störung am anderen Arm");
 pub(in crate::console) const NONE_FAULT: Text =
-    Text::of("No force: stopped by a fault", "No force: stopped by a fault");
+    Text::of("No force: stopped by a fault", "Keine Kraft: durch Störung angehalten");
 pub(in crate::console) const NONE_INVALID: Text =
-    Text::of("No force: the mode has no valid result", "No force: the mode has no valid result");
+    Text::of("No force: the mode has no valid result", "Keine Kraft: der Modus hat kein gültiges Ergebnis");
 pub(in crate::console) const NONE_STALE: Text =
-    Text::of("No force: the data are too old", "No force: the data are too old");
-pub(in crate::console) const NONE_GAIN: Text = Text::of("No force: the gain is zero", "No force: the gain is zero");
+    Text::of("No force: the data are too old", "Keine Kraft: die Daten sind zu alt");
+pub(in crate::console) const NONE_GAIN: Text = Text::of(
+    "No force: the gain is zero",
+    "Keine Kraft: die Verstärkung \
+ ist null",
+);
 pub(in crate::console) const LESS_ENERGY: Text = Text::of(
     "Reduced force: the hand would get back more energy than it put in",
-    "Reduced force: the hand would get back more energy than it put in",
+    "Weniger Kraft: die Hand bekäme mehr Energie zurück, als sie hineingab",
 );
-pub(in crate::console) const DEAD_BAND_OFF: Text = Text::of("off: force is kept", "off: force is kept");
+pub(in crate::console) const DEAD_BAND_OFF: Text = Text::of("off: force is kept", "aus: Kraft wird gehalten");
 pub(in crate::console) const LESS_GOVERNED: Text = Text::of(
     "Reduced force: the handle runs away and no hand holds it. The force returns when a hand takes hold.",
-    "Reduced force: the handle runs away and no hand holds it. The force returns when a hand takes hold.",
+    "Weniger Kraft: das Handgerät läuft weg, keine Hand hält es. Die Kraft kehrt zurück, sobald eine Hand zugreift.",
 );
-pub(in crate::console) const GOVERNOR_OFF: Text = Text::of("off: handle's mass unknown", "off: handle's mass unknown");
-pub(in crate::console) const NEVER_ACTED: Text = Text::of("It has not acted so far", "It has not acted so far");
-pub(in crate::console) const OPEN: Text = Text::of("open", "open");
-pub(in crate::console) const CLOSED: Text = Text::of("closed", "closed");
-pub(in crate::console) const LIMITING: Text = Text::of("limiting", "limiting");
-pub(in crate::console) const ENERGY_OFF: Text = Text::of("off", "off");
+pub(in crate::console) const GOVERNOR_OFF: Text = Text::of(
+    "off: handle's mass unknown",
+    "aus: Handgerätemasse \
+ unbekannt",
+);
+pub(in crate::console) const NEVER_ACTED: Text = Text::of("It has not acted so far", "Hat bisher nicht eingegriffen");
+pub(in crate::console) const OPEN: Text = Text::of("open", "offen");
+pub(in crate::console) const CLOSED: Text = Text::of("closed", "geschlossen");
+pub(in crate::console) const LIMITING: Text = Text::of("limiting", "begrenzt");
+pub(in crate::console) const ENERGY_OFF: Text = Text::of("off", "aus");
 
 /// Switch: gates of which side.
 pub(in crate::console) fn gates_of(side: &str) -> String {
-    told!("Shows why there is no force in the {side} hand", "Shows why there is no force in the {side} hand")
+    told!("Shows why there is no force in the {side} hand", "Zeigt, warum in der Hand {side} keine Kraft ist")
 }
 
 /// Summary: a force is rendered.
 pub(in crate::console) fn rendered(rendered_n: f64) -> String {
-    told!("Force in the hand: {rendered_n:.1} N", "Force in the hand: {rendered_n:.1} N")
+    told!("Force in the hand: {rendered_n:.1} N", "Kraft in der Hand: {rendered_n:.1} N")
 }
 
 /// Summary: the dead band reduces the force.
 pub(in crate::console) fn withheld_by_dead_band(withheld_n: f64) -> String {
     told!(
         "{withheld_n:.1} N not rendered: the hand is slower than the dead band",
-        "{withheld_n:.1} N not rendered: the hand is slower than the dead band"
+        "{withheld_n:.1} N nicht dargestellt: Hand langsamer als das Totband"
     )
 }
 
 /// Summary: a gate reduces the force.
 pub(in crate::console) fn withheld(withheld_n: f64) -> String {
-    told!("{withheld_n:.1} N not rendered", "{withheld_n:.1} N not rendered")
+    told!("{withheld_n:.1} N not rendered", "{withheld_n:.1} N nicht dargestellt")
 }
 
 /// Summary: the force is still under way over the link.
 pub(in crate::console) fn on_its_way(delay_ms: f64) -> String {
     told!(
         "No force yet: the link delays it by {delay_ms:.0} ms",
-        "No force yet: the link delays it by {delay_ms:.0} ms"
+        "Noch keine Kraft: die Verbindung verzögert um {delay_ms:.0} ms"
     )
 }
 
 /// Age at which a force has faded to zero.
 pub(in crate::console) fn zero_after(age_ms: f64) -> String {
-    told!("zero after {age_ms:.0} ms", "zero after {age_ms:.0} ms")
+    told!("zero after {age_ms:.0} ms", "null nach {age_ms:.0} ms")
 }
 
 /// How much of the force the governor keeps back.
 pub(in crate::console) fn governed(percent: f64) -> String {
-    told!("{percent:.0} % withheld", "{percent:.0} % withheld")
+    told!("{percent:.0} % withheld", "{percent:.0} % zurückgehalten")
 }
 
 /// Energy that the hand may still get back.
 pub(in crate::console) fn energy_left(stored_mj: f64) -> String {
-    told!("{stored_mj:.0} mJ left", "{stored_mj:.0} mJ left")
+    told!("{stored_mj:.0} mJ left", "{stored_mj:.0} mJ übrig")
 }
 
 /// How often a gate acted, and why it acted last.
 pub(in crate::console) fn acted(ticks: u64, percent: f64, why: &str) -> String {
     told!(
         "Acted in {ticks} ticks ({percent:.1} %); last reason: {why}",
-        "Acted in {ticks} ticks ({percent:.1} %); last reason: {why}"
+        "Griff in {ticks} Takten ein ({percent:.1} %); letzter Grund: {why}"
     )
 }

@@ -4,166 +4,169 @@ use crate::language::{Text, told};
 
 pub(in crate::console) const STEP_CHECK_HOVER: Text = Text::of(
     "Checks that the sensor sends good data and that nothing touches the tool",
-    "Checks that the sensor sends good data and that nothing touches the tool",
+    "Prüft, ob der Sensor gute Daten sendet und nichts das Instrument berührt",
 );
-pub(in crate::console) const STEP_POSES: Text = Text::of("Poses", "Poses");
+pub(in crate::console) const STEP_POSES: Text = Text::of("Poses", "Posen");
 pub(in crate::console) const STEP_POSES_HOVER: Text = Text::of(
     "Twelve orientations of the tool, so that gravity pulls from all sides",
-    "Twelve orientations of the tool, so that gravity pulls from all sides",
+    "Zwölf Orientierungen des Instruments, damit die Schwerkraft von allen Seiten zieht",
 );
 pub(in crate::console) const STEP_RESULT_HOVER: Text = Text::of(
     "The fitted model, tested on poses that were not used to fit it",
-    "The fitted model, tested on poses that were not used to fit it",
+    "Das angepasste Modell, getestet an Posen, die nicht in den Fit eingingen",
 );
-pub(in crate::console) const STEP_FREE_MOTION: Text = Text::of("Free motion", "Free motion");
+pub(in crate::console) const STEP_FREE_MOTION: Text = Text::of("Free motion", "Freie Bewegung");
 pub(in crate::console) const STEP_FREE_MOTION_HOVER: Text = Text::of(
     "The final test: a tool that moves freely through the air must read zero force",
-    "The final test: a tool that moves freely through the air must read zero force",
+    "Der Schlusstest: frei in der Luft bewegt muss das Instrument null Kraft anzeigen",
 );
 pub(in crate::console) const NEEDS_POSES: Text =
-    Text::of("At least six poses are needed", "At least six poses are needed");
+    Text::of("At least six poses are needed", "Mindestens sechs Posen sind nötig");
 pub(in crate::console) const NEEDS_MODEL: Text = Text::of(
     "There is no model to test: go back and record more poses",
-    "There is no model to test: go back and record more poses",
+    "Kein Modell zum Testen: zurückgehen und mehr Posen aufzeichnen",
 );
 pub(in crate::console) const NEEDS_FREE_MOTION: Text =
-    Text::of("Move the tool freely first", "Move the tool freely first");
-pub(in crate::console) const CHECKS_TITLE: Text = Text::of("Before the first pose", "Before the first pose");
-pub(in crate::console) const CHECKS_HOVER: Text =
-    Text::of("All checks must pass before poses are recorded", "All checks must pass before poses are recorded");
+    Text::of("Move the tool freely first", "Zuerst das Instrument frei bewegen");
+pub(in crate::console) const CHECKS_TITLE: Text = Text::of("Before the first pose", "Vor der ersten Pose");
+pub(in crate::console) const CHECKS_HOVER: Text = Text::of(
+    "All checks must pass before poses are recorded",
+    "Erst wenn alle Prüfungen bestanden sind, werden Posen \
+     aufgezeichnet",
+);
 pub(in crate::console) const CHECKS_TASK: Text = Text::of(
     "Take the instrument out of the trocar and let go of it: nothing may touch the tool",
-    "Take the instrument out of the trocar and let go of it: nothing may touch the tool",
+    "Instrument aus dem Trokar nehmen und loslassen: nichts darf es berühren",
 );
 pub(in crate::console) const OPTION_BY_ARM: Text = Text::of(
     "Take the orientation from the arm, not from the accelerometer",
-    "Take the orientation from the arm, not from the accelerometer",
+    "Orientierung vom Arm nehmen, nicht vom Beschleunigungssensor",
 );
 pub(in crate::console) const OPTION_BY_ARM_HOVER: Text = Text::of(
     "For sensors without an accelerometer. The arm must report the orientation of its wrist.",
-    "For sensors without an accelerometer. The arm must report the orientation of its wrist.",
+    "Für Sensoren ohne Beschleunigungssensor. Der Arm muss die Orientierung seines Handgelenks melden.",
 );
 pub(in crate::console) const OPTION_FLIP_IMU: Text = Text::of(
     "The accelerometer's vector points down at rest, not up",
-    "The accelerometer's vector points down at rest, not up",
+    "Der Vektor des Beschleunigungssensors zeigt in Ruhe nach unten, nicht nach oben",
 );
 pub(in crate::console) const OPTION_FLIP_IMU_HOVER: Text = Text::of(
     "Some drivers report gravity (down) instead of the force that supports the sensor (up). Poses already \
     recorded are kept.",
-    "Some drivers report gravity (down) instead of the force that supports the sensor (up). Poses already \
-    recorded are kept.",
+    "Manche Treiber melden die Schwerkraft (unten) statt der Kraft, die den Sensor trägt (oben). Aufgezeichnete Posen \
+     bleiben erhalten.",
 );
-pub(in crate::console) const POSE_TITLE: Text = Text::of("Take this pose", "Take this pose");
+pub(in crate::console) const POSE_TITLE: Text = Text::of("Take this pose", "Pose einnehmen");
 pub(in crate::console) const POSE_HOVER: Text = Text::of(
     "Turn the tool as the outline shows, let go of it, and wait until the bar is full",
-    "Turn the tool as the outline shows, let go of it, and wait until the bar is full",
+    "Instrument drehen, wie der Umriss zeigt, loslassen und warten, bis der Balken voll ist",
 );
 pub(in crate::console) const ALL_POSES_RECORDED: Text =
-    Text::of("All poses are recorded: go on to the result", "All poses are recorded: go on to the result");
+    Text::of("All poses are recorded: go on to the result", "Alle Posen aufgezeichnet: weiter zum Ergebnis");
 pub(in crate::console) const POSE_PROGRESS: Text = Text::of("Pose", "Pose");
-pub(in crate::console) const DIRECTIONS_PICTURE: Text = Text::of("Directions of gravity", "Directions of gravity");
-pub(in crate::console) const DIRECTIONS: Text = Text::of("Directions", "Directions");
+pub(in crate::console) const DIRECTIONS_PICTURE: Text = Text::of("Directions of gravity", "Schwerkraftrichtungen");
+pub(in crate::console) const DIRECTIONS: Text = Text::of("Directions", "Richtungen");
 pub(in crate::console) const SO_FAR_HOVER: Text = Text::of(
     "The model is updated after each pose, from the sixth pose on",
-    "The model is updated after each pose, from the sixth pose on",
+    "Das Modell wird ab der sechsten Pose nach jeder Pose erneuert",
 );
-pub(in crate::console) const POSES_HOVER: Text = Text::of("Poses recorded so far", "Poses recorded so far");
+pub(in crate::console) const POSES_HOVER: Text = Text::of("Poses recorded so far", "Bisher aufgezeichnete Posen");
 pub(in crate::console) const SO_FAR_EMPTY: Text =
-    Text::of("The first result appears after the sixth pose", "The first result appears after the sixth pose");
-pub(in crate::console) const REMOVE_LAST: Text = Text::of("Remove the last pose", "Remove the last pose");
+    Text::of("The first result appears after the sixth pose", "Das erste Ergebnis erscheint nach der sechsten Pose");
+pub(in crate::console) const REMOVE_LAST: Text = Text::of("Remove the last pose", "Letzte Pose entfernen");
 pub(in crate::console) const NO_RESULT_HOVER: Text =
-    Text::of("No model could be fitted to the poses", "No model could be fitted to the poses");
+    Text::of("No model could be fitted to the poses", "Kein Modell ließ sich an die Posen anpassen");
 pub(in crate::console) const NO_POSES: Text =
-    Text::of("There are no poses yet: go back and record some", "There are no poses yet: go back and record some");
-pub(in crate::console) const FREE_MOTION_TITLE: Text = Text::of("Move the tool freely", "Move the tool freely");
+    Text::of("There are no poses yet: go back and record some", "Noch keine Posen: zurückgehen und aufzeichnen");
+pub(in crate::console) const FREE_MOTION_TITLE: Text = Text::of("Move the tool freely", "Instrument frei bewegen");
 pub(in crate::console) const FREE_MOTION_HOVER: Text = Text::of(
     "Force that remains after gravity is removed. Nothing may touch the tool; it should read near 0 N.",
-    "Force that remains after gravity is removed. Nothing may touch the tool; it should read near 0 N.",
+    "Restkraft nach Abzug der Schwerkraft. Nichts darf das Instrument berühren; Soll nahe 0 N.",
 );
 pub(in crate::console) const FREE_MOTION_TASK: Text = Text::of(
     "Turn the tool slowly in all directions without touching anything. Expected: near 0 N.",
-    "Turn the tool slowly in all directions without touching anything. Expected: near 0 N.",
+    "Instrument langsam in alle Richtungen drehen, ohne etwas zu berühren. Soll: nahe 0 N.",
 );
-pub(in crate::console) const MEAN: Text = Text::of("Mean", "Mean");
+pub(in crate::console) const MEAN: Text = Text::of("Mean", "Mittel");
 pub(in crate::console) const MEAN_HOVER: Text =
-    Text::of("Mean size of the remaining force", "Mean size of the remaining force");
+    Text::of("Mean size of the remaining force", "Mittlerer Betrag der Restkraft");
 pub(in crate::console) const P95_HOVER: Text = Text::of(
     "95 % of all samples, including their noise, are below this",
-    "95 % of all samples, including their noise, are below this",
+    "95 % aller Messwerte, samt Rauschen, liegen darunter",
 );
-pub(in crate::console) const TILT: Text = Text::of("Tilt covered", "Tilt covered");
+pub(in crate::console) const TILT: Text = Text::of("Tilt covered", "Neigung abgedeckt");
 pub(in crate::console) const TILT_HOVER: Text = Text::of(
     "How far the tool was tilted; at least 45 degrees are needed",
-    "How far the tool was tilted; at least 45 degrees are needed",
+    "Wie weit das Instrument gekippt wurde; mindestens 45 Grad sind nötig",
 );
-pub(in crate::console) const PASSED: Text = Text::of("Passed", "Passed");
-pub(in crate::console) const NOT_PASSED: Text = Text::of("Not passed yet", "Not passed yet");
-pub(in crate::console) const MEASURE_AGAIN: Text = Text::of("Measure again", "Measure again");
+pub(in crate::console) const PASSED: Text = Text::of("Passed", "Bestanden");
+pub(in crate::console) const NOT_PASSED: Text = Text::of("Not passed yet", "Noch nicht bestanden");
+pub(in crate::console) const MEASURE_AGAIN: Text = Text::of("Measure again", "Neu messen");
 pub(in crate::console) const PROOF: Text =
-    Text::of("Accepted, and passed the test in free motion", "Accepted, and passed the test in free motion");
+    Text::of("Accepted, and passed the test in free motion", "Angenommen, Test in freier Bewegung bestanden");
 pub(in crate::console) const PHASE_NO_SAMPLE: Text =
-    Text::of("no valid data from the wrist sensor", "no valid data from the wrist sensor");
+    Text::of("no valid data from the wrist sensor", "keine gültigen Daten vom Handgelenksensor");
 pub(in crate::console) const PHASE_MOVING: Text =
-    Text::of("moving; hold the tool still in this pose", "moving; hold the tool still in this pose");
+    Text::of("moving; hold the tool still in this pose", "bewegt sich; Instrument in dieser Pose stillhalten");
 pub(in crate::console) const PHASE_DISTURBED: Text = Text::of(
     "the force changes although the tool is still: something touches it; let go",
-    "the force changes although the tool is still: something touches it; let go",
+    "die Kraft ändert sich, obwohl das Instrument ruht: etwas berührt es; loslassen",
 );
 pub(in crate::console) const PHASE_SAME_POSE: Text = Text::of(
     "already recorded here; turn the tool to the pose shown",
-    "already recorded here; turn the tool to the pose shown",
+    "hier schon aufgezeichnet; Instrument in die gezeigte Pose drehen",
 );
-pub(in crate::console) const PHASE_RECORDING: Text = Text::of("still; recording", "still; recording");
-pub(in crate::console) const COVERAGE: Text = Text::of("Coverage", "Coverage");
+pub(in crate::console) const PHASE_RECORDING: Text = Text::of("still; recording", "ruht; wird aufgezeichnet");
+pub(in crate::console) const COVERAGE: Text = Text::of("Coverage", "Abdeckung");
 pub(in crate::console) const COVERAGE_HOVER: Text = Text::of(
     "Share of all directions that have a pose within 45 degrees, 0 to 1",
-    "Share of all directions that have a pose within 45 degrees, 0 to 1",
+    "Anteil aller Richtungen mit einer Pose innerhalb von 45 Grad, 0 bis 1",
 );
-pub(in crate::console) const MASS: Text = Text::of("Mass", "Mass");
+pub(in crate::console) const MASS: Text = Text::of("Mass", "Masse");
 pub(in crate::console) const MASS_HOVER: Text =
-    Text::of("Mass of everything mounted on the sensor", "Mass of everything mounted on the sensor");
+    Text::of("Mass of everything mounted on the sensor", "Masse von allem, was am Sensor montiert ist");
 pub(in crate::console) const VERDICT_HOVER: Text = Text::of(
     "Tested on poses that were not used to fit the model",
-    "Tested on poses that were not used to fit the model",
+    "Getestet an Posen, die nicht in den Fit eingingen",
 );
 pub(in crate::console) const POSES_USED_HOVER: Text =
-    Text::of("Poses used for the fit and the test", "Poses used for the fit and the test");
-pub(in crate::console) const CONDITION: Text = Text::of("Condition", "Condition");
+    Text::of("Poses used for the fit and the test", "Posen für Fit und Test");
+pub(in crate::console) const CONDITION: Text = Text::of("Condition", "Kondition");
 pub(in crate::console) const CONDITION_HOVER: Text = Text::of(
     "Condition number of the fit: how well the poses determine the model, no unit; 1 is best",
-    "Condition number of the fit: how well the poses determine the model, no unit; 1 is best",
+    "Konditionszahl des Fits: wie gut die Posen das Modell bestimmen, ohne Einheit; 1 ist am besten",
 );
-pub(in crate::console) const CENTRE_OF_MASS: Text = Text::of("Centre of mass", "Centre of mass");
+pub(in crate::console) const CENTRE_OF_MASS: Text = Text::of("Centre of mass", "Schwerpunkt");
 pub(in crate::console) const CENTRE_OF_MASS_HOVER: Text =
-    Text::of("In the sensor's frame (s1)", "In the sensor's frame (s1)");
-pub(in crate::console) const LEFT_OUT: Text = Text::of("Left out", "Left out");
+    Text::of("In the sensor's frame (s1)", "Im Sensorsystem (s1)");
+pub(in crate::console) const LEFT_OUT: Text = Text::of("Left out", "Ausgelassen");
 pub(in crate::console) const LEFT_OUT_HOVER: Text = Text::of(
     "These poses contradict the others: something may have touched the tool",
-    "These poses contradict the others: something may have touched the tool",
+    "Diese Posen widersprechen den anderen: vielleicht hat etwas das Instrument berührt",
 );
-pub(in crate::console) const MODELS_TITLE: Text = Text::of("Models compared", "Models compared");
+pub(in crate::console) const MODELS_TITLE: Text = Text::of("Models compared", "Modelle im Vergleich");
 pub(in crate::console) const MODELS_HOVER: Text = Text::of(
     "Force errors in N. Held out: on poses that were not used to fit the model.",
-    "Force errors in N. Held out: on poses that were not used to fit the model.",
+    "Kraftfehler in N. Test: an Posen, die nicht in den Fit eingingen.",
 );
-pub(in crate::console) const MODEL: Text = Text::of("Model", "Model");
-pub(in crate::console) const FITTED_MEAN: Text = Text::of("fitted: mean", "fitted: mean");
-pub(in crate::console) const HELD_OUT_MEAN: Text = Text::of("held out: mean", "held out: mean");
-pub(in crate::console) const NO_READING: Text = Text::of("no reading", "no reading");
-pub(in crate::console) const P95: Text = Text::of("95 % below", "95 % below");
-pub(in crate::console) const UNDETERMINED: Text = Text::of("undetermined", "undetermined");
-pub(in crate::console) const LARGEST: Text = Text::of("largest", "largest");
+pub(in crate::console) const MODEL: Text = Text::of("Model", "Modell");
+pub(in crate::console) const FITTED_MEAN: Text = Text::of("fitted: mean", "Fit: Mittel");
+pub(in crate::console) const HELD_OUT_MEAN: Text = Text::of("held out: mean", "Test: Mittel");
+pub(in crate::console) const NO_READING: Text = Text::of("no reading", "kein Messwert");
+pub(in crate::console) const P95: Text = Text::of("95 % below", "95 % unter");
+pub(in crate::console) const UNDETERMINED: Text = Text::of("undetermined", "unbestimmt");
+pub(in crate::console) const LARGEST: Text = Text::of("largest", "größter");
 
 /// A pose was recorded.
 pub(in crate::console) fn pose_taken(number: usize) -> String {
-    told!("pose {number} recorded", "pose {number} recorded")
+    told!("pose {number} recorded", "Pose {number} aufgezeichnet")
 }
 
 /// A pose was refused because the tool was touched.
 pub(in crate::console) fn touched(by_n: f64) -> String {
     told!(
         "{by_n:.1} N too much: something touches the tool; let go",
-        "{by_n:.1} N too much: something touches the tool; let go"
+        "{by_n:.1} N zu viel: etwas berührt das Instrument; loslassen"
     )
 }
 
@@ -171,31 +174,32 @@ pub(in crate::console) fn touched(by_n: f64) -> String {
 pub(in crate::console) fn was_touched(seconds: f64) -> String {
     told!(
         "Something touched the tool for {seconds:.0} s while it was still",
-        "Something touched the tool for {seconds:.0} s while it was still"
+        "Etwas berührte das Instrument {seconds:.0} s lang in Ruhe"
     )
 }
 
 pub(in crate::console) const WAS_TOUCHED_HOVER: Text = Text::of(
     "The force changed although the tool did not turn. If the verdict is bad, let go of the tool and press Start over",
-    "The force changed although the tool did not turn. If the verdict is bad, let go of the tool and press Start over",
+    "Die Kraft änderte sich, ohne dass sich das Instrument drehte. Bei schlechtem Urteil Instrument loslassen und Neu \
+     beginnen drücken",
 );
 
 /// Poses left out of the fit.
 pub(in crate::console) fn left_out(numbers: &str) -> String {
-    told!("poses {numbers}", "poses {numbers}")
+    told!("poses {numbers}", "Posen {numbers}")
 }
 
 /// Number of recorded directions.
 pub(in crate::console) fn recorded_of(recorded: usize, asked: usize) -> String {
-    told!("{recorded} of {asked} recorded", "{recorded} of {asked} recorded")
+    told!("{recorded} of {asked} recorded", "{recorded} von {asked} aufgezeichnet")
 }
 
 /// A force and its limit.
 pub(in crate::console) fn of_allowed(force_n: f64, limit_n: f64) -> String {
-    told!("{force_n:.2} N of {limit_n} N allowed", "{force_n:.2} N of {limit_n} N allowed")
+    told!("{force_n:.2} N of {limit_n} N allowed", "{force_n:.2} N von {limit_n} N erlaubt")
 }
 
 /// The chosen model.
 pub(in crate::console) fn chosen(model: &str) -> String {
-    told!("{model} (chosen)", "{model} (chosen)")
+    told!("{model} (chosen)", "{model} (gewählt)")
 }

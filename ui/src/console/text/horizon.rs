@@ -2,22 +2,22 @@
 
 use crate::language::{Text, told};
 
-pub(in crate::console) const LAST_3_MIN: Text = Text::of("last 3 min", "last 3 min");
-pub(in crate::console) const REFERENCE: Text = Text::of("reference", "reference");
-pub(in crate::console) const COMPARE: Text = Text::of("Compare all modes", "Compare all modes");
+pub(in crate::console) const LAST_3_MIN: Text = Text::of("last 3 min", "letzte 3 min");
+pub(in crate::console) const REFERENCE: Text = Text::of("reference", "Referenz");
+pub(in crate::console) const COMPARE: Text = Text::of("Compare all modes", "Alle Modi vergleichen");
 pub(in crate::console) const COMPARE_HOVER: Text = Text::of(
     "Compute every mode on the same samples and show its error. Otherwise only the mode in use is computed, which \
     takes less time. The force in the hand does not change.",
-    "Compute every mode on the same samples and show its error. Otherwise only the mode in use is computed, which \
-    takes less time. The force in the hand does not change.",
+    "Jeden Modus auf denselben Messwerten rechnen und seinen Fehler zeigen. Sonst wird nur der aktive Modus gerechnet, \
+     das braucht weniger Zeit. Die Kraft in der Hand ändert sich nicht.",
 );
-pub(in crate::console) const IN_USE: Text = Text::of(" (in use)", " (in use)");
+pub(in crate::console) const IN_USE: Text = Text::of(" (in use)", " (aktiv)");
 
 /// The prediction horizon, and the meaning of the line in the bars.
 pub(in crate::console) fn ahead(delay_ms: f64) -> String {
     told!(
         "Mean error {delay_ms:.0} ms ahead, last seconds; line: delayed DFR",
-        "Mean error {delay_ms:.0} ms ahead, last seconds; line: delayed DFR"
+        "Mittlerer Fehler {delay_ms:.0} ms voraus, letzte Sekunden; Linie: verzögerte DFR"
     )
 }
 
@@ -25,24 +25,24 @@ pub(in crate::console) fn ahead(delay_ms: f64) -> String {
 pub(in crate::console) fn trend(seconds: usize, mode: &str, error_n: &str, dfr_n: &str) -> String {
     told!(
         "Last {seconds} s: {mode} {error_n} N, delayed DFR {dfr_n} N",
-        "Last {seconds} s: {mode} {error_n} N, delayed DFR {dfr_n} N"
+        "Letzte {seconds} s: {mode} {error_n} N, verzögerte DFR {dfr_n} N"
     )
 }
 
 /// The name of the trend.
 pub(in crate::console) fn trend_name(trend: &str) -> String {
-    told!("Error over the last minutes. {trend}", "Error over the last minutes. {trend}")
+    told!("Error over the last minutes. {trend}", "Fehler der letzten Minuten. {trend}")
 }
 
 /// The meaning of the trend.
 pub(in crate::console) fn trend_meaning(trend: &str) -> String {
     told!(
         "{trend}\nMean prediction error (N) of each second, for up to three minutes",
-        "{trend}\nMean prediction error (N) of each second, for up to three minutes"
+        "{trend}\nMittlerer Vorhersagefehler (N) jeder Sekunde, bis zu drei Minuten"
     )
 }
 
 /// Accessible name of a bar.
 pub(in crate::console) fn error(words: &str) -> String {
-    told!("Error {words}", "Error {words}")
+    told!("Error {words}", "Fehler {words}")
 }

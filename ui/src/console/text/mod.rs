@@ -1,12 +1,12 @@
 //! All texts of the window, one module per part of it, so that a translation has one place to work in. Texts for values
 //! that the libraries report (faults, gate reasons, verdicts) are in `crate::words`, which the command line shares.
 //!
-//! Constants are named by role; sentences with numbers are small functions. Panels contain no texts of their own. A
-//! message library (fluent-bundle 0.16) was tried on the feedback panel and not adopted: a misspelt name or a missing
+//! Every text stands in each language side by side (`crate::language`): constants as [`Text`](crate::language::Text), sentences with values as
+//! small functions that choose with `told!`. A text that lacks a language does not compile. Constants are named by role. Panels contain no
+//! texts of their own. A message library (fluent-bundle 0.16) was tried on the feedback panel and not adopted: a misspelt name or a missing
 //! argument appears on the screen, where the compiler refuses an unknown constant; `maximumFractionDigits` is ignored
 //! (0.8349 instead of 0.83); a sentence with two numbers takes 13 us instead of 0.8 us in each frame; and its 12 crates
-//! add 23 s of processor time to a clean build. Its advantage, plural rules, would help three sentences. For a second
-//! language, these functions would select by language, in these files alone.
+//! add 23 s of processor time to a clean build. Its advantage, plural rules, would help three sentences.
 
 pub(super) mod alarms;
 pub(super) mod calibrations;

@@ -2,43 +2,47 @@
 
 use crate::language::{Text, told, word};
 
-pub(in crate::console) const TITLE: Text = Text::of("All calibrations", "All calibrations");
+pub(in crate::console) const TITLE: Text = Text::of("All calibrations", "Alle Kalibrierungen");
 pub(in crate::console) const MEANING: Text = Text::of(
     "Of every arm: when each was made, its verdict, what has changed since then, and a button that makes it",
-    "Of every arm: when each was made, its verdict, what has changed since then, and a button that makes it",
+    "Für jeden Arm: Datum, Urteil, Änderungen seither und eine Schaltfläche zum Kalibrieren",
 );
-pub(in crate::console) const OPEN: Text = Text::of("All calibrations…", "All calibrations…");
-pub(in crate::console) const CALIBRATION: Text = Text::of("Calibration", "Calibration");
-pub(in crate::console) const MADE: Text = Text::of("Made", "Made");
-pub(in crate::console) const VERDICT: Text = Text::of("Verdict", "Verdict");
-pub(in crate::console) const SINCE: Text = Text::of("Since then", "Since then");
-pub(in crate::console) const MAKE: Text = Text::of("Calibrate", "Calibrate");
-pub(in crate::console) const REDO: Text = Text::of("Redo", "Redo");
-pub(in crate::console) const NEVER: Text = Text::of("not calibrated", "not calibrated");
-pub(in crate::console) const NOT_WATCHED: Text = Text::of("not watched", "not watched");
-pub(in crate::console) const FOR_TRAINING_ONLY: Text = Text::of("used for training only", "used for training only");
+pub(in crate::console) const OPEN: Text = Text::of("All calibrations…", "Alle Kalibrierungen…");
+pub(in crate::console) const CALIBRATION: Text = Text::of("Calibration", "Kalibrierung");
+pub(in crate::console) const MADE: Text = Text::of("Made", "Erstellt");
+pub(in crate::console) const VERDICT: Text = Text::of("Verdict", "Urteil");
+pub(in crate::console) const SINCE: Text = Text::of("Since then", "Seither");
+pub(in crate::console) const MAKE: Text = Text::of("Calibrate", "Kalibrieren");
+pub(in crate::console) const REDO: Text = Text::of("Redo", "Wiederholen");
+pub(in crate::console) const NEVER: Text = Text::of("not calibrated", "nicht kalibriert");
+pub(in crate::console) const NOT_WATCHED: Text = Text::of("not watched", "nicht überwacht");
+pub(in crate::console) const FOR_TRAINING_ONLY: Text = Text::of(
+    "used for training only",
+    "nur für das Training \
+ genutzt",
+);
 pub(in crate::console) const NOT_USED: Text =
-    Text::of("used for less than 10 s since the start", "used for less than 10 s since the start");
-pub(in crate::console) const IN_FILE: Text = Text::of("in the rig file", "in the rig file");
+    Text::of("used for less than 10 s since the start", "seit dem Start unter 10 s genutzt");
+pub(in crate::console) const IN_FILE: Text = Text::of("in the rig file", "in der Aufbaudatei");
 pub(in crate::console) const OTHER_IN_FILE: Text =
-    Text::of("the rig file has other values now", "the rig file has other values now");
-pub(in crate::console) const UNCHECKED: Text = Text::of("trained but not checked", "trained but not checked");
-pub(in crate::console) const HANDLE: Text = Text::of("View, handle", "View, handle");
-pub(in crate::console) const FUTURE: Text = Text::of("in the future", "in the future");
+    Text::of("the rig file has other values now", "die Aufbaudatei hat jetzt andere Werte");
+pub(in crate::console) const UNCHECKED: Text = Text::of("trained but not checked", "trainiert, aber nicht geprüft");
+pub(in crate::console) const HANDLE: Text = Text::of("View, handle", "Bildlage, Handgerät");
+pub(in crate::console) const FUTURE: Text = Text::of("in the future", "in der Zukunft");
 
 /// Accessible name of a button that makes a calibration.
 pub(in crate::console) fn button(verb: &str, arm: &str, calibration: &str) -> String {
-    told!("{verb} {arm} arm, {calibration}", "{verb} {arm} arm, {calibration}")
+    told!("{verb} {arm} arm, {calibration}", "{verb}: Arm {arm}, {calibration}")
 }
 
 /// Sensor and tool above an arm's lines.
 pub(in crate::console) fn of_arm(arm: &str, sensor: &str, tool: &str) -> String {
-    told!("{arm} arm: sensor {sensor}, {tool}", "{arm} arm: sensor {sensor}, {tool}")
+    told!("{arm} arm: sensor {sensor}, {tool}", "Arm {arm}: Sensor {sensor}, {tool}")
 }
 
 /// An arm whose sensor has not told who it is.
 pub(in crate::console) fn of_unknown(arm: &str, why: &str) -> String {
-    told!("{arm} arm: {why}", "{arm} arm: {why}")
+    told!("{arm} arm: {why}", "Arm {arm}: {why}")
 }
 
 /// When it was made.
@@ -49,9 +53,9 @@ pub(in crate::console) fn made(day: &str, age: &str) -> String {
 /// Age in days.
 pub(in crate::console) fn days(days: u64) -> String {
     match days {
-        0 => word("less than a day old", "less than a day old").to_owned(),
-        1 => word("1 day old", "1 day old").to_owned(),
-        _ => told!("{days} days old", "{days} days old"),
+        0 => word("less than a day old", "weniger als einen Tag alt").to_owned(),
+        1 => word("1 day old", "1 Tag alt").to_owned(),
+        _ => told!("{days} days old", "{days} Tage alt"),
     }
 }
 
@@ -60,30 +64,34 @@ pub(in crate::console) fn verdict(verdict: &str, error: &str) -> String {
     if error.is_empty() {
         verdict.to_owned()
     } else {
-        told!("{verdict}, held-out error {error}", "{verdict}, held-out error {error}")
+        told!("{verdict}, held-out error {error}", "{verdict}, Testfehler {error}")
     }
 }
 
 /// A verdict that somebody has overridden.
 pub(in crate::console) fn overridden(verdict: &str, name: &str) -> String {
-    told!("{verdict}, kept by {name}", "{verdict}, kept by {name}")
+    told!("{verdict}, kept by {name}", "{verdict}, übernommen von {name}")
 }
 
 /// What the last ready check has found.
 pub(in crate::console) fn checked(day: &str, found: &str) -> String {
-    told!("ready check of {day}: {found}", "ready check of {day}: {found}")
+    told!("ready check of {day}: {found}", "Startprüfung vom {day}: {found}")
 }
 
 /// How much of the time with force a network was outside its training data, as shares; what to do if that is much.
 pub(in crate::console) fn in_use(outside: f64, without: f64) -> String {
     let shares = told!(
         "outside its training {:.0} % of the time, not used {:.0} %",
-        "outside its training {:.0} % of the time, not used {:.0} %",
+        "{:.0} % der Zeit außerhalb des Trainings, {:.0} % nicht genutzt",
         100.0 * outside,
         100.0 * without
     );
     let much = without >= 0.02 || outside >= 0.3;
-    if much { told!("{shares}: record more where you work", "{shares}: record more where you work") } else { shares }
+    if much {
+        told!("{shares}: record more where you work", "{shares}: im Arbeitsbereich mehr aufzeichnen")
+    } else {
+        shares
+    }
 }
 
 /// A force.
@@ -93,5 +101,5 @@ pub(in crate::console) fn newton(newton: f64) -> String {
 
 /// A value with its limit.
 pub(in crate::console) fn within(value: f64, limit: f64, unit: &str) -> String {
-    told!("{value:.2} {unit}, limit {limit:.2}", "{value:.2} {unit}, limit {limit:.2}")
+    told!("{value:.2} {unit}, limit {limit:.2}", "{value:.2} {unit}, Grenze {limit:.2}")
 }

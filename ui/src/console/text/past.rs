@@ -11,107 +11,109 @@ use nima_devices::Standing;
 use nima_recording::store::utc_of;
 
 use crate::language::{Text, told, word};
+use crate::words::loss_words;
 
-pub(in crate::console) const SESSIONS: Text = Text::of("Sessions", "Sessions");
+pub(in crate::console) const SESSIONS: Text = Text::of("Sessions", "Sitzungen");
 pub(in crate::console) const SESSIONS_HOVER: Text = Text::of(
     "Recorded sessions: look at one, keep it, report on it. F7",
-    "Recorded sessions: look at one, keep it, report on it. F7",
+    "Aufgezeichnete Sitzungen: ansehen, sichern, Bericht erstellen. F7",
 );
-pub(in crate::console) const LIST: Text = Text::of("Recorded sessions", "Recorded sessions");
+pub(in crate::console) const LIST: Text = Text::of("Recorded sessions", "Aufgezeichnete Sitzungen");
 pub(in crate::console) const EMPTY: Text =
-    Text::of("No session has been recorded yet", "No session has been recorded yet");
+    Text::of("No session has been recorded yet", "Noch keine Sitzung aufgezeichnet");
 pub(in crate::console) const NO_SHELF: Text = Text::of(
     "There is no folder for your files: set NIMA_DATA_DIR",
-    "There is no folder for your files: set NIMA_DATA_DIR",
+    "Kein Ordner für Ihre Dateien: NIMA_DATA_DIR setzen",
 );
-pub(in crate::console) const LOOKING: Text = Text::of("Reading the folder", "Reading the folder");
-pub(in crate::console) const RECORDING: Text = Text::of("being recorded", "being recorded");
-pub(in crate::console) const OPEN: Text = Text::of("Open", "Open");
+pub(in crate::console) const LOOKING: Text = Text::of("Reading the folder", "Ordner wird gelesen");
+pub(in crate::console) const RECORDING: Text = Text::of("being recorded", "wird aufgezeichnet");
+pub(in crate::console) const OPEN: Text = Text::of("Open", "Öffnen");
 pub(in crate::console) const OPEN_HOVER: Text = Text::of(
     "Shows the session in all views; the machine runs on",
-    "Shows the session in all views; the machine runs on",
+    "Zeigt die Sitzung in allen Ansichten; die Maschine läuft weiter",
 );
-pub(in crate::console) const KEEP: Text = Text::of("Keep", "Keep");
-pub(in crate::console) const KEPT: Text = Text::of("Kept", "Kept");
+pub(in crate::console) const KEEP: Text = Text::of("Keep", "Sichern");
+pub(in crate::console) const KEPT: Text = Text::of("Kept", "Gesichert");
 pub(in crate::console) const KEEP_HOVER: Text = Text::of(
     "A kept session is never deleted to make room for new ones",
-    "A kept session is never deleted to make room for new ones",
+    "Eine gesicherte Sitzung wird nie gelöscht, um Platz zu schaffen",
 );
-pub(in crate::console) const REPORT: Text = Text::of("Report", "Report");
+pub(in crate::console) const REPORT: Text = Text::of("Report", "Bericht");
 pub(in crate::console) const REPORT_HOVER: Text = Text::of(
     "Writes a page with the figures of this session and opens it",
-    "Writes a page with the figures of this session and opens it",
+    "Schreibt eine Seite mit den Werten dieser Sitzung und öffnet sie",
 );
-pub(in crate::console) const DELETE: Text = Text::of("Delete", "Delete");
+pub(in crate::console) const DELETE: Text = Text::of("Delete", "Löschen");
 pub(in crate::console) const DELETE_HOVER: Text =
-    Text::of("Deletes the file; you are asked once", "Deletes the file; you are asked once");
+    Text::of("Deletes the file; you are asked once", "Löscht die Datei nach einer Rückfrage");
 pub(in crate::console) const DELETE_KEPT_HOVER: Text =
-    Text::of("A kept session cannot be deleted", "A kept session cannot be deleted");
+    Text::of("A kept session cannot be deleted", "Gesicherte Sitzungen sind nicht löschbar");
 pub(in crate::console) const DELETE_RUNNING_HOVER: Text =
-    Text::of("This session is still being recorded", "This session is still being recorded");
-pub(in crate::console) const DELETE_NOW: Text = Text::of("Delete it?", "Delete it?");
+    Text::of("This session is still being recorded", "Diese Sitzung wird noch aufgezeichnet");
+pub(in crate::console) const DELETE_NOW: Text = Text::of("Delete it?", "Löschen?");
 pub(in crate::console) const DELETE_NOW_HOVER: Text =
-    Text::of("Deletes the file for good", "Deletes the file for good");
-pub(in crate::console) const BACK: Text = Text::of("Back to the view", "Back to the view");
-pub(in crate::console) const REPORTING: Text = Text::of("Writing the report", "Writing the report");
-pub(in crate::console) const CUTTING: Text = Text::of("Saving the stretch", "Saving the stretch");
+    Text::of("Deletes the file for good", "Löscht die Datei endgültig");
+pub(in crate::console) const BACK: Text = Text::of("Back to the view", "Zurück zur Ansicht");
+pub(in crate::console) const REPORTING: Text = Text::of("Writing the report", "Bericht wird geschrieben");
+pub(in crate::console) const CUTTING: Text = Text::of("Saving the stretch", "Ausschnitt wird gespeichert");
 pub(in crate::console) const NO_THREAD: Text =
-    Text::of("The system cannot start another thread", "The system cannot start another thread");
+    Text::of("The system cannot start another thread", "Das System kann keinen weiteren Thread starten");
 
-pub(in crate::console) const PAST: Text = Text::of("PAST", "PAST");
+pub(in crate::console) const PAST: Text = Text::of("PAST", "ARCHIV");
 pub(in crate::console) const PAST_HOVER: Text = Text::of(
     "Everything inside this frame is recorded. The bar above is the machine now, and Stop stops it.",
-    "Everything inside this frame is recorded. The bar above is the machine now, and Stop stops it.",
+    "Alles in diesem Rahmen ist aufgezeichnet. Die Leiste darüber ist die Maschine jetzt, und Halt hält sie an.",
 );
-pub(in crate::console) const MACHINE: Text = Text::of("The machine now", "The machine now");
-pub(in crate::console) const LIVE_AGAIN: Text = Text::of("Live again (L)", "Live again (L)");
+pub(in crate::console) const MACHINE: Text = Text::of("The machine now", "Die Maschine jetzt");
+pub(in crate::console) const LIVE_AGAIN: Text = Text::of("Live again (L)", "Wieder live (L)");
 pub(in crate::console) const LIVE_AGAIN_HOVER: Text = Text::of(
     "Closes the session; the screen shows the machine again",
-    "Closes the session; the screen shows the machine again",
+    "Schließt die Sitzung und zeigt wieder die Maschine",
 );
 pub(in crate::console) const BLOCKED: Text =
-    Text::of("Not while the past is shown: press L first", "Not while the past is shown: press L first");
-pub(in crate::console) const OPENING: Text = Text::of("Opening the session", "Opening the session");
-pub(in crate::console) const WHOLE: Text = Text::of("Replayed to the last bit", "Replayed to the last bit");
+    Text::of("Not while the past is shown: press L first", "Nicht während der Wiedergabe: erst L drücken");
+pub(in crate::console) const OPENING: Text = Text::of("Opening the session", "Sitzung wird geöffnet");
+pub(in crate::console) const WHOLE: Text = Text::of("Replayed to the last bit", "Bitgenau wiedergegeben");
 pub(in crate::console) const PLOTTED: Text =
-    Text::of("Forces, positions and states; the rest follows", "Forces, positions and states; the rest follows");
+    Text::of("Forces, positions and states; the rest follows", "Kräfte, Positionen und Zustände; der Rest folgt");
 pub(in crate::console) const PLOTTED_ONLY: Text =
-    Text::of("Only forces, positions and states", "Only forces, positions and states");
-pub(in crate::console) const SIMULATED: Text =
-    Text::of("This rig has no devices: everything was simulated", "This rig has no devices: everything was simulated");
+    Text::of("Only forces, positions and states", "Nur Kräfte, Positionen und Zustände");
+pub(in crate::console) const SIMULATED: Text = Text::of(
+    "This rig has no devices: everything was simulated",
+    "Dieser Aufbau hat keine Geräte: alles war simuliert",
+);
 pub(in crate::console) const NOT_OF_DEVICES: Text = Text::of(
     "A session does not hold what each device counted and measured on its own: \
 rates, losses, ages, the drift of a sensor's bias, and the pages of the wizards",
-    "A session does not hold what each device counted and measured on its own: \
-rates, losses, ages, the drift of a sensor's bias, and the pages of the wizards",
+    "Nicht in der Sitzung: eigene Zähler und Messwerte der Geräte (Raten, Verluste, Alter, Drift des \
+     Sensor-Nullpunkts) und die Seiten der Assistenten",
 );
-pub(in crate::console) const TIMELINE: Text = Text::of("Time of the session", "Time of the session");
-pub(in crate::console) const PLAY: Text = Text::of("Play", "Play");
+pub(in crate::console) const TIMELINE: Text = Text::of("Time of the session", "Zeit der Sitzung");
+pub(in crate::console) const PLAY: Text = Text::of("Play", "Abspielen");
 pub(in crate::console) const PAUSE: Text = Text::of("Pause", "Pause");
 pub(in crate::console) const PLAY_HOVER: Text =
-    Text::of("Plays the session or holds it. Key P", "Plays the session or holds it. Key P");
-pub(in crate::console) const SPEED_HOVER: Text =
-    Text::of("How fast the session is played", "How fast the session is played");
-pub(in crate::console) const COMPARE: Text = Text::of("Compare", "Compare");
+    Text::of("Plays the session or holds it. Key P", "Spielt die Sitzung ab oder hält sie fest. Taste P");
+pub(in crate::console) const SPEED_HOVER: Text = Text::of("How fast the session is played", "Tempo der Wiedergabe");
+pub(in crate::console) const COMPARE: Text = Text::of("Compare", "Vergleichen");
 pub(in crate::console) const COMPARE_HOVER: Text = Text::of(
     "Shows another session beside this one, at the same time since its beginning; press again to end it",
-    "Shows another session beside this one, at the same time since its beginning; press again to end it",
+    "Zeigt daneben eine andere Sitzung, zur gleichen Zeit seit ihrem Beginn; nochmals drücken beendet es",
 );
 pub(in crate::console) const BESIDE: Text =
-    Text::of("Choose the session to show beside this one", "Choose the session to show beside this one");
-pub(in crate::console) const FROM: Text = Text::of("From", "From");
+    Text::of("Choose the session to show beside this one", "Sitzung zum Vergleich wählen");
+pub(in crate::console) const FROM: Text = Text::of("From", "Von");
 pub(in crate::console) const FROM_HOVER: Text =
-    Text::of("The stretch to save begins at this moment", "The stretch to save begins at this moment");
-pub(in crate::console) const TO: Text = Text::of("To", "To");
+    Text::of("The stretch to save begins at this moment", "Hier beginnt der Ausschnitt");
+pub(in crate::console) const TO: Text = Text::of("To", "Bis");
 pub(in crate::console) const TO_HOVER: Text =
-    Text::of("The stretch to save ends at this moment", "The stretch to save ends at this moment");
-pub(in crate::console) const SAVE: Text = Text::of("Save the stretch", "Save the stretch");
+    Text::of("The stretch to save ends at this moment", "Hier endet der Ausschnitt");
+pub(in crate::console) const SAVE: Text = Text::of("Save the stretch", "Ausschnitt speichern");
 pub(in crate::console) const SAVE_HOVER: Text = Text::of(
     "Writes what is between From and To as a session of its own, and keeps it",
-    "Writes what is between From and To as a session of its own, and keeps it",
+    "Schreibt den Teil zwischen Von und Bis als eigene, gesicherte Sitzung",
 );
 pub(in crate::console) const SAVE_DISABLED_HOVER: Text =
-    Text::of("Set From and To first: From must come before To", "Set From and To first: From must come before To");
+    Text::of("Set From and To first: From must come before To", "Erst Von und Bis setzen: Von muss vor Bis liegen");
 
 /// A factor of speed.
 pub(in crate::console) fn speed(factor: f64) -> String {
@@ -131,13 +133,13 @@ pub(in crate::console) fn short_clock(t_s: f64) -> String {
 
 /// The time on the screen, and the length of the session, s.
 pub(in crate::console) fn position(t_s: f64, end_s: f64) -> String {
-    told!("{} of {}", "{} of {}", clock(t_s), short_clock(end_s))
+    told!("{} of {}", "{} von {}", clock(t_s), short_clock(end_s))
 }
 
 /// Date and time, from ns since 1970.
 pub(in crate::console) fn when(time_ns: u64) -> String {
     let utc = utc_of(UNIX_EPOCH + Duration::from_nanos(time_ns)).replace('T', "  ");
-    told!("{}.{} UTC", "{}.{} UTC", utc.trim_end_matches('Z'), time_ns / 100_000_000 % 10)
+    format!("{}.{} UTC", utc.trim_end_matches('Z'), time_ns / 100_000_000 % 10)
 }
 
 /// A moment of a session.
@@ -148,14 +150,14 @@ pub(in crate::console) fn of_session(when: &str, name: &str) -> String {
 /// Date and time of a session's beginning.
 pub(in crate::console) fn began(utc: Option<&str>) -> String {
     utc.map_or_else(
-        || word("unknown date", "unknown date").to_owned(),
+        || word("unknown date", "Datum unbekannt").to_owned(),
         |utc| utc.replace('T', "  ").replace('Z', word(" UTC", " UTC")),
     )
 }
 
 /// A stretch of a session that begins at this time, s.
 pub(in crate::console) fn stretch(from_s: f64) -> String {
-    told!("from {}", "from {}", short_clock(from_s))
+    told!("from {}", "ab {}", short_clock(from_s))
 }
 
 /// Size of a file.
@@ -165,12 +167,12 @@ pub(in crate::console) fn megabytes(bytes: u64) -> String {
 
 /// Which part of the session was read, 0 to 1.
 pub(in crate::console) fn read(share: f64) -> String {
-    told!("{:.0} % read", "{:.0} % read", 100.0 * share)
+    told!("{:.0} % read", "{:.0} % gelesen", 100.0 * share)
 }
 
 /// An alarm of the moment on the screen.
 pub(in crate::console) fn alarm_then(word: &str, cause: &str) -> String {
-    told!("{word} then: {cause}", "{word} then: {cause}")
+    told!("{word} then: {cause}", "{word} damals: {cause}")
 }
 
 /// Below the pointer on the time line.
@@ -187,51 +189,51 @@ pub(in crate::console) fn half(name: &str, position: &str) -> String {
 pub(in crate::console) fn largest(t_s: f64, measured_n: f32, rendered_n: f32) -> String {
     told!(
         "{}\nLargest forces: measured {measured_n:.2} N, rendered {rendered_n:.2} N",
-        "{}\nLargest forces: measured {measured_n:.2} N, rendered {rendered_n:.2} N",
+        "{}\nGrößte Kräfte: gemessen {measured_n:.2} N, dargestellt {rendered_n:.2} N",
         short_clock(t_s)
     )
 }
 
 /// Why what comes after a part is only plotted.
 pub(in crate::console) fn limited(why: &str) -> String {
-    told!("Cannot be replayed in full: {why}", "Cannot be replayed in full: {why}")
+    told!("Cannot be replayed in full: {why}", "Nicht vollständig wiederzugeben: {why}")
 }
 
 /// The session cannot be shown.
 pub(in crate::console) fn refused(why: &str) -> String {
-    told!("This session cannot be shown: {why}", "This session cannot be shown: {why}")
+    told!("This session cannot be shown: {why}", "Diese Sitzung ist nicht darstellbar: {why}")
 }
 
 /// Entries are missing in a journal.
 pub(in crate::console) fn hole(lost: u64) -> String {
-    told!("the recording lost {lost} entries here", "the recording lost {lost} entries here")
+    told!("the recording lost {lost} entries here", "hier fehlen {lost} Einträge der Aufzeichnung")
 }
 
 /// A replay is not what was recorded.
 pub(in crate::console) fn differs(t_s: f64) -> String {
     told!(
         "another version of this program recorded it, or the file was changed: it differs at {t_s:.3} s",
-        "another version of this program recorded it, or the file was changed: it differs at {t_s:.3} s"
+        "andere Programmversion oder geänderte Datei: weicht ab bei {t_s:.3} s"
     )
 }
 
 /// A part of the file is missing.
 pub(in crate::console) fn without(name: &str) -> String {
-    told!("the file holds no {name}", "the file holds no {name}")
+    told!("the file holds no {name}", "in der Datei fehlt {name}")
 }
 
 /// A part of the file cannot be used.
 pub(in crate::console) fn unusable(name: &str, why: &str) -> String {
-    told!("its {name} cannot be used: {why}", "its {name} cannot be used: {why}")
+    told!("its {name} cannot be used: {why}", "{name} darin ist unbrauchbar: {why}")
 }
 
 /// How a device was.
 pub(in crate::console) fn device(name: &str, standing: Standing) -> String {
     let how = match standing {
-        Standing::Closed => word("not opened", "not opened"),
-        Standing::Opening => word("being opened", "being opened"),
-        Standing::Connected => word("connected", "connected"),
-        Standing::Lost(loss) => return told!("{name}: lost: {}", "{name}: lost: {}", loss.cause()),
+        Standing::Closed => word("not opened", "nicht geöffnet"),
+        Standing::Opening => word("being opened", "wird geöffnet"),
+        Standing::Connected => word("connected", "verbunden"),
+        Standing::Lost(loss) => return told!("{name}: lost: {}", "{name}: ausgefallen: {}", loss_words(loss)),
     };
     format!("{name}: {how}")
 }
@@ -244,65 +246,61 @@ pub(in crate::console) fn calibrations(side: &str, table: &BTreeMap<String, Stri
         let error_n = told(error_n).and_then(|error_n| error_n.parse::<f64>().ok());
         match (told(verdict), error_n) {
             (Some(verdict), Some(error_n)) => {
-                told!(" ({verdict}, {error_n:.2} N on new data)", " ({verdict}, {error_n:.2} N on new data)")
+                told!(" ({verdict}, {error_n:.2} N on new data)", " ({verdict}, {error_n:.2} N auf neuen Daten)")
             }
             (Some(verdict), None) => format!(" ({verdict})"),
             (None, _) => String::new(),
         }
     };
-    let gravity = if told(word("gravity_digest", "gravity_digest")).is_some() {
-        told!(
-            "gravity calibrated{}",
-            "gravity calibrated{}",
-            result(word("gravity_verdict", "gravity_verdict"), word("gravity_error_n", "gravity_error_n"))
-        )
+    let gravity = if told("gravity_digest").is_some() {
+        told!("gravity calibrated{}", "Schwerkraft kalibriert{}", result("gravity_verdict", "gravity_error_n"))
     } else {
-        word("no gravity calibration", "no gravity calibration").to_owned()
+        word("no gravity calibration", "ohne Schwerkraft-Kalibrierung").to_owned()
     };
-    let network = told(word("network_date", "network_date")).map_or_else(
-        || word("no network", "no network").to_owned(),
+    let network = told("network_date").map_or_else(
+        || word("no network", "kein Netz").to_owned(),
         |date| {
-            let of = |key: &str| told(key).map_or(word("unknown", "unknown"), String::as_str);
-            let result = result(word("network_verdict", "network_verdict"), word("network_error_n", "network_error_n"));
+            let of = |key: &str| told(key).map_or(word("unknown", "unbekannt"), String::as_str);
+            let result = result("network_verdict", "network_error_n");
             told!(
                 "network of {date} for sensor {}, tool {}{result}",
-                "network of {date} for sensor {}, tool {}{result}",
-                of(word("network_sensor", "network_sensor")),
-                of(word("network_tool", "network_tool"))
+                "Netz vom {date} für Sensor {}, Instrument {}{result}",
+                of("network_sensor"),
+                of("network_tool")
             )
         },
     );
     let since =
-        since_s.map_or_else(String::new, |since_s| told!(", in force since {}", ", in force since {}", clock(since_s)));
-    told!("{side} arm: {gravity}, {network}{since}", "{side} arm: {gravity}, {network}{since}")
+        since_s.map_or_else(String::new, |since_s| told!(", in force since {}", ", gültig seit {}", clock(since_s)));
+    told!("{side} arm: {gravity}, {network}{since}", "Arm {side}: {gravity}, {network}{since}")
 }
 
 /// Where a report is.
 pub(in crate::console) fn reported(path: &Path) -> String {
-    told!("Report: {}", "Report: {}", path.display())
+    told!("Report: {}", "Bericht: {}", path.display())
 }
 
 /// There is no report.
 pub(in crate::console) fn not_reported(why: &str) -> String {
-    told!("No report: {why}", "No report: {why}")
+    told!("No report: {why}", "Kein Bericht: {why}")
 }
 
 /// Where a stretch is.
 pub(in crate::console) fn saved(path: &Path) -> String {
-    told!("Saved: {}", "Saved: {}", path.display())
+    told!("Saved: {}", "Gespeichert: {}", path.display())
 }
 
 /// A stretch was not saved.
 pub(in crate::console) fn not_saved(why: &str) -> String {
-    told!("Not saved: {why}", "Not saved: {why}")
+    told!("Not saved: {why}", "Nicht gespeichert: {why}")
 }
 
 /// There is a file of this name.
 pub(in crate::console) fn taken(path: &Path) -> String {
-    told!("{} is there already", "{} is there already", path.display())
+    told!("{} is there already", "{} gibt es schon", path.display())
 }
 
 /// A session was not deleted.
 pub(in crate::console) fn not_deleted(path: &Path, error: &io::Error) -> String {
-    told!("{} was not deleted: {error}", "{} was not deleted: {error}", path.display())
+    told!("{} was not deleted: {error}", "{} wurde nicht gelöscht: {error}", path.display())
 }

@@ -4,17 +4,17 @@ use crate::language::{Text, told};
 
 pub(in crate::console) const LAYOUT_LOST: Text = Text::of(
     "The panel layout cannot be read; the default layout is used",
-    "The panel layout cannot be read; the default layout is used",
+    "Die Panel-Anordnung ist nicht lesbar; es gilt die Standardanordnung",
 );
 
 /// The file cannot be read.
 pub(in crate::console) fn not_read(error: &impl std::fmt::Display) -> String {
-    told!("The settings cannot be read: {error}", "The settings cannot be read: {error}")
+    told!("The settings cannot be read: {error}", "Einstellungen nicht lesbar: {error}")
 }
 
 /// The file cannot be written.
 pub(in crate::console) fn not_kept(error: &impl std::fmt::Display) -> String {
-    told!("The settings cannot be saved: {error}", "The settings cannot be saved: {error}")
+    told!("The settings cannot be saved: {error}", "Einstellungen nicht speicherbar: {error}")
 }
 
 /// Only the layout cannot be read.
@@ -26,7 +26,7 @@ pub(in crate::console) fn layout_lost(error: &impl std::fmt::Display) -> String 
 pub(in crate::console) fn set_aside(error: &impl std::fmt::Display, name: &str) -> String {
     told!(
         "The settings file was damaged ({error}); it was renamed to {name}, and the defaults are used",
-        "The settings file was damaged ({error}); it was renamed to {name}, and the defaults are used"
+        "Die Einstellungsdatei war beschädigt ({error}); sie heißt jetzt {name}, es gelten die Standardwerte"
     )
 }
 
@@ -34,6 +34,6 @@ pub(in crate::console) fn set_aside(error: &impl std::fmt::Display, name: &str) 
 pub(in crate::console) fn damaged(error: &impl std::fmt::Display) -> String {
     told!(
         "The settings file is damaged ({error}); the defaults are used",
-        "The settings file is damaged ({error}); the defaults are used"
+        "Die Einstellungsdatei ist beschädigt ({error}); es gelten die Standardwerte"
     )
 }

@@ -2,61 +2,61 @@
 
 use crate::language::{Text, told};
 
-pub(in crate::console) const NIMA_CONSOLE: Text = Text::of("NIMA Console", "NIMA Console");
+pub(in crate::console) const NIMA_CONSOLE: Text = Text::of("NIMA Console", "NIMA-Konsole");
 pub(in crate::console) const RESEARCH_ONLY: Text =
-    Text::of("Research software, not for clinical use", "Research software, not for clinical use");
+    Text::of("Research software, not for clinical use", "Forschungssoftware, nicht für klinische Anwendung");
 pub(in crate::console) const DISCONNECTED_MEANING: Text = Text::of(
     "A device needed for force feedback is missing. The console reconnects it automatically.",
-    "A device needed for force feedback is missing. The console reconnects it automatically.",
+    "Ein für die Kraftrückkopplung nötiges Gerät fehlt. Die Konsole verbindet es von selbst wieder.",
 );
 pub(in crate::console) const READY_MEANING: Text = Text::of(
     "The drives are on but hold still, without force, until hand and tip are aligned",
-    "The drives are on but hold still, without force, until hand and tip are aligned",
+    "Antriebe ein, aber still und ohne Kraft, bis Hand und Spitze ausgerichtet sind",
 );
 pub(in crate::console) const CLUTCHED_MEANING: Text = Text::of(
     "The clutch is pressed: the hand moves freely, the follower holds still, no force",
-    "The clutch is pressed: the hand moves freely, the follower holds still, no force",
+    "Kupplung gedrückt: die Hand bewegt sich frei, der Folgearm steht still, keine Kraft",
 );
 pub(in crate::console) const IDLE_MEANING: Text = Text::of(
     "The loop measures only. No force and no motion until you engage it.",
-    "The loop measures only. No force and no motion until you engage it.",
+    "Die Regelung misst nur. Vor dem Koppeln keine Kraft und keine Bewegung.",
 );
 pub(in crate::console) const ENGAGED_MEANING: Text = Text::of(
     "The follower moves with the hand, and the hand feels the force",
-    "The follower moves with the hand, and the hand feels the force",
+    "Der Folgearm folgt der Hand, und die Hand spürt die Kraft",
 );
 pub(in crate::console) const STOPPED_MEANING: Text = Text::of(
     "Stopped by the operator: no force, no motion. It stays stopped until you press Release stop.",
-    "Stopped by the operator: no force, no motion. It stays stopped until you press Release stop.",
+    "Vom Bediener angehalten: keine Kraft, keine Bewegung. Bleibt so, bis der Halt gelöst wird.",
 );
 pub(in crate::console) const FAULT_MEANING: Text = Text::of(
     "Stopped by a fault: no force, no motion. It stays stopped until you press Release stop.",
-    "Stopped by a fault: no force, no motion. It stays stopped until you press Release stop.",
+    "Durch eine Störung angehalten: keine Kraft, keine Bewegung. Bleibt so, bis der Halt gelöst wird.",
 );
-pub(in crate::console) const STOP: Text = Text::of("Stop", "Stop");
+pub(in crate::console) const STOP: Text = Text::of("Stop", "Halt");
 pub(in crate::console) const STOP_HOVER: Text = Text::of(
     "Sets the force to zero and stops the follower at once. Space or Escape does the same.",
-    "Sets the force to zero and stops the follower at once. Space or Escape does the same.",
+    "Setzt die Kraft auf null und hält den Folgearm sofort an. Leertaste oder Escape tun dasselbe.",
 );
 pub(in crate::console) const ENGAGE_HOVER: Text = Text::of(
     "Second of two steps: starts motion and force feedback",
-    "Second of two steps: starts motion and force feedback",
+    "Zweiter von zwei Schritten: startet Bewegung und Kraftrückkopplung",
 );
 pub(in crate::console) const RELEASE_STOP_HOVER: Text = Text::of(
     "First of two steps: returns to idle, still without force",
-    "First of two steps: returns to idle, still without force",
+    "Erster von zwei Schritten: zurück in den Leerlauf, noch ohne Kraft",
 );
 pub(in crate::console) const RELEASE_FAULT_HOVER: Text = Text::of(
     "First of two steps: returns to idle. Refused while the cause of the fault is present.",
-    "First of two steps: returns to idle. Refused while the cause of the fault is present.",
+    "Erster von zwei Schritten: zurück in den Leerlauf. Abgelehnt, solange die Störung besteht.",
 );
-pub(in crate::console) const NOT_ENGAGED: Text = Text::of("Not engaged", "Not engaged");
-pub(in crate::console) const NOT_RELEASED: Text = Text::of("Not released", "Not released");
-pub(in crate::console) const NOT_SET: Text = Text::of("Not set", "Not set");
+pub(in crate::console) const NOT_ENGAGED: Text = Text::of("Not engaged", "Nicht gekoppelt");
+pub(in crate::console) const NOT_RELEASED: Text = Text::of("Not released", "Nicht gelöst");
+pub(in crate::console) const NOT_SET: Text = Text::of("Not set", "Nicht gesetzt");
 
 /// A refused command: what was not done, for which arm if there are two, why, and what to do.
 pub(in crate::console) fn refused(what: &str, arm: &str, cause: &str, cure: &str) -> String {
-    let arm = if arm.is_empty() { String::new() } else { told!(" ({arm} arm)", " ({arm} arm)") };
+    let arm = if arm.is_empty() { String::new() } else { told!(" ({arm} arm)", " (Arm {arm})") };
     format!("{what}{arm}: {cause}; {cure}")
 }
 
@@ -67,12 +67,12 @@ pub(in crate::console) fn device(name: &str, cause: &str) -> String {
 
 /// Names of scene and rig.
 pub(in crate::console) fn scene_and_rig(scene: &str, rig: &str) -> String {
-    told!("Scene: {scene}\nRig: {rig}", "Scene: {scene}\nRig: {rig}")
+    told!("Scene: {scene}\nRig: {rig}", "Szene: {scene}\nAufbau: {rig}")
 }
 
 /// Hover text of the state.
 pub(in crate::console) fn state_meaning(meaning: &str) -> String {
-    told!("State of the control loop\n{meaning}", "State of the control loop\n{meaning}")
+    told!("State of the control loop\n{meaning}", "Zustand der Regelung\n{meaning}")
 }
 
 /// State of one of two arms that differ.
@@ -82,5 +82,5 @@ pub(in crate::console) fn state_of_side(side: &str, state: &str) -> String {
 
 /// Accessible name of the state.
 pub(in crate::console) fn state(state: &str) -> String {
-    told!("Loop state: {state}", "Loop state: {state}")
+    told!("Loop state: {state}", "Regelung: {state}")
 }

@@ -23,6 +23,7 @@ use crate::console::{
     text, theme,
     widgets::{small, weak},
 };
+use crate::words::{obstacle_words, side_word};
 use choosing::Chooser;
 use row::row_ui;
 
@@ -165,7 +166,7 @@ pub fn devices_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState) -> Option<
     });
     for (side, obstacle) in Side::ALL.into_iter().zip(&live.healths.obstacles) {
         if let Some(obstacle) = obstacle {
-            ui.add(Label::new(text::devices::not_to_be_engaged(side.word(), obstacle)).wrap());
+            ui.add(Label::new(text::devices::not_to_be_engaged(side_word(side), &obstacle_words(obstacle))).wrap());
         }
     }
     picture_ui(ui, state);

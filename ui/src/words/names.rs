@@ -1,0 +1,167 @@
+//! Texts: names and short clauses of the libraries that stand within other texts.
+
+use nima_devices::Loss;
+use nima_machine::{
+    messages::{LoopState, Scheduling},
+    rig::{Awaited, Exchange, Obstacle, Part, Side},
+};
+
+use crate::language::{Language, current, told, word};
+
+/// A side as it stands within a sentence: before the noun in English, after it in German.
+pub(crate) fn side_word(side: Side) -> &'static str {
+    match side {
+        Side::Right => word("right", "rechts"),
+        Side::Left => word("left", "links"),
+    }
+}
+
+/// A state of the loop.
+pub(crate) fn state_name(state: LoopState) -> &'static str {
+    match state {
+        LoopState::Disconnected => word("No device", "Kein Gerät"),
+        LoopState::Idle => word("Idle", "Leerlauf"),
+        LoopState::Ready => word("Ready", "Bereit"),
+        LoopState::Engaged => word("Engaged", "Gekoppelt"),
+        LoopState::Clutched => word("Clutched", "Ausgekuppelt"),
+        LoopState::Stopped => word("Stopped", "Angehalten"),
+        LoopState::Faulted(_) => word("Fault", "Störung"),
+    }
+}
+
+/// A name as it stands within a sentence: a German noun keeps its capital.
+pub(crate) fn within(name: &str) -> String {
+    if current() == Language::German { name.to_owned() } else { name.to_lowercase() }
+}
+
+/// A device by its name in the roster, `right handle`, or with its make, `right handle (Haply)`.
+pub(crate) fn device_name(name: &str) -> String {
+    let known = Part::ALL.into_iter().find_map(|part| Some((part, name.strip_prefix(part.name())?)));
+    match known {
+        Some((part, make)) if make.is_empty() || make.starts_with(" (") => part_name(part) + make,
+        _ => name.to_owned(),
+    }
+}
+
+/// A part of the rig.
+pub(crate) fn part_name(part: Part) -> String {
+    match part {
+        Part::Handle(side) => told!("{} handle", "Handgerät {}", side_word(side)),
+        Part::Arm(side) => told!("{} arm", "Arm {}", side_word(side)),
+        Part::Sensor(side) => told!("{} sensor", "Sensor {}", side_word(side)),
+        Part::Servos(side) => told!("{} servos", "Servos {}", side_word(side)),
+        Part::TissueSensor => word("tissue sensor", "Gewebesensor").to_owned(),
+        Part::Tracker => word("tracker", "Tracker").to_owned(),
+        Part::Pedal => word("pedal", "Pedal").to_owned(),
+    }
+}
+
+/// Why a device was lost.
+pub(crate) fn loss_words(loss: Loss) -> &'static str {
+    match loss {
+        Loss::Disconnected => word("the connection is gone", "Verbindung getrennt"),
+        Loss::Silent => word("it sends no data", "sendet keine Daten"),
+        Loss::Corrupt => word("its data are damaged", "Daten beschädigt"),
+        Loss::Implausible => word("it sends impossible values", "sendet unmögliche Werte"),
+        Loss::Device { .. } => word("it reports a fault", "meldet eine Störung"),
+    }
+}
+
+/// What is exchanged, a clause without a full stop.
+pub(crate) fn exchange_words(exchange: Exchange) -> &'static str {
+    match exchange {
+        Exchange::Handles => {
+            word("the right and the left handle are exchanged", "rechtes und linkes Handgerät sind vertauscht")
+        }
+        Exchange::Arms => word(
+            "the right and the left arm, or their mounts in the rig file, are exchanged",
+            "rechter und linker Arm oder ihre Montage in der Aufbaudatei sind vertauscht",
+        ),
+        Exchange::Sensors => {
+            word("the right and the left sensor are exchanged", "rechter und linker Sensor sind vertauscht")
+        }
+        Exchange::Servos => word(
+            "the servos of the right and the left instrument are exchanged",
+            "die Servos des rechten und des linken Instruments sind vertauscht",
+        ),
+        Exchange::Markers => word(
+            "the markers of the right and the left instrument are exchanged",
+            "die Marker des rechten und des linken Instruments sind vertauscht",
+        ),
+        Exchange::Trocars => word(
+            "the right and the left trocar are exchanged, or the instruments stand in each other's",
+            "rechter und linker Trokar sind vertauscht, oder jedes Instrument steckt im anderen",
+        ),
+    }
+}
+
+/// Why an arm cannot be engaged, a clause without a full stop. Where it stands in its workspace is told by the kinematics, in English.
+pub(crate) fn obstacle_words(obstacle: &Obstacle) -> String {
+    match obstacle {
+        Obstacle::Start(start) => start.to_string(),
+        Obstacle::Waiting(Awaited::Servos) => {
+            word("the servos have not answered yet", "die Servos haben noch nicht geantwortet").to_owned()
+        }
+        Obstacle::Waiting(Awaited::Markers) => word(
+            "the tracker has not seen the markers of both instruments yet",
+            "der Tracker hat noch nicht die Marker beider Instrumente gesehen",
+        )
+        .to_owned(),
+        Obstacle::Exchanged(exchange) => exchange_words(*exchange).to_owned(),
+        Obstacle::FarEnd => word(
+            "the follower's machine says that it cannot: its own screen names the reason",
+            "der Rechner des Folgearms meldet, dass er nicht kann: sein eigener Bildschirm nennt den Grund",
+        )
+        .to_owned(),
+    }
+}
+
+/// What of real-time scheduling was refused and what to do, parted by a colon or a semicolon.
+pub(crate) fn scheduling_advice(scheduling: Scheduling) -> Option<&'static str> {
+    const LIMITS: &str = "/etc/security/limits.d/realtime.conf";
+    let english = scheduling.advice()?;
+    let german = if !english.contains(LIMITS) {
+        "Echtzeitpriorität gibt es nur unter Linux; hier sind mehr versäumte Takte zu erwarten"
+    } else if scheduling.fifo || scheduling.deadline {
+        "Speicher ist nicht gesperrt: Zeile \"@realtime - memlock unlimited\" in /etc/security/limits.d/realtime.conf \
+         eintragen, der Gruppe realtime beitreten und neu anmelden"
+    } else {
+        "keine Echtzeitpriorität: Zeile \"@realtime - rtprio 95\" in /etc/security/limits.d/realtime.conf eintragen, \
+         der Gruppe realtime beitreten und neu anmelden"
+    };
+    Some(word(english, german))
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::rig::Obstacle;
+
+    use super::*;
+    use crate::language;
+
+    #[test]
+    fn what_is_said_in_english_is_what_the_libraries_say() {
+        let losses = [Loss::Disconnected, Loss::Silent, Loss::Corrupt, Loss::Implausible, Loss::Device { code: 1 }];
+        assert!(losses.iter().all(|loss| loss_words(*loss) == loss.cause()));
+        let states = [LoopState::Disconnected, LoopState::Idle, LoopState::Ready, LoopState::Engaged];
+        assert!(states.iter().all(|state| state_name(*state) == state.word()));
+        assert!(Part::ALL.iter().all(|part| part_name(*part) == part.name()));
+        let exchanges = [Exchange::Handles, Exchange::Arms, Exchange::Sensors, Exchange::Servos, Exchange::Markers];
+        let obstacles = exchanges.map(Obstacle::Exchanged).into_iter();
+        let obstacles = obstacles.chain([Awaited::Servos, Awaited::Markers].map(Obstacle::Waiting));
+        for obstacle in obstacles.chain([Obstacle::Exchanged(Exchange::Trocars), Obstacle::FarEnd]) {
+            assert_eq!(obstacle_words(&obstacle), obstacle.to_string());
+        }
+        for (fifo, memory_locked) in [(false, false), (true, false), (true, true)] {
+            let scheduling = Scheduling { fifo, deadline: false, memory_locked };
+            assert_eq!(scheduling_advice(scheduling), scheduling.advice());
+        }
+    }
+
+    #[test]
+    fn a_device_is_named_in_german_with_its_make() {
+        let german = |name: &str| language::with(Language::German, || device_name(name));
+        assert_eq!(german("right handle (Force Dimension)"), "Handgerät rechts (Force Dimension)");
+        assert_eq!((german("tracker"), german("left armadillo")), ("Tracker".to_owned(), "left armadillo".to_owned()));
+    }
+}

@@ -320,6 +320,24 @@ proptest! {
     }
 }
 
+/// The loop computes with the picture's orientation alone: where the marker is stands in the frames that are plotted, and the journal of
+/// before is read as before.
+#[test]
+fn of_an_endoscopes_marker_the_journal_keeps_how_the_picture_is_turned() {
+    let world_from_view = UnitQuaternion::from_euler_angles(0.3, -0.2, 2.0);
+    let world_from_n = Isometry3::translation(0.1, 0.2, 0.3);
+    let row = |view: View| Row {
+        timing: Timing { now_s: 1.0, wake_s: 0.0, work_s: 0.0, sample_to_force_s: None, missed_now: 0 },
+        inputs: [Some(Inputs { view, ..Inputs::NOTHING }), None],
+        check: Check { all: 0, stages: [[0; STAGES]; 2] },
+    };
+    let (seen_at, seen) = (View::SeenAt { world_from_view, world_from_n }, View::Seen(world_from_view));
+    let bytes = encoded(&[(Vec::new(), row(seen_at))]);
+    assert_eq!(bytes, encoded(&[(Vec::new(), row(seen))]));
+    let Ok((_, Message::Block(block))) = decode(&bytes) else { panic!("no block") };
+    assert_eq!(block.rows[0].inputs[0].unwrap().view, seen);
+}
+
 #[test]
 fn what_is_no_journal_of_this_version_is_named() {
     let mut bytes = Encoder::default().start(&start()).unwrap();

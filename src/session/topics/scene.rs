@@ -144,3 +144,28 @@ pub(super) fn vector(of: &Vector3<f64>) -> foxglove::Vector3 {
 pub(super) fn quaternion(of: &UnitQuaternion<f64>) -> Quaternion {
     Quaternion { x: of.i, y: of.j, z: of.k, w: of.w }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_endoscopes_marker_is_read_as_it_was_written_and_no_other_frame_or_number_is() {
+        let world_from_n = Isometry3::new(Vector3::new(0.1, -0.2, 0.3), Vector3::new(0.4, 1.0, -2.0));
+        let frame = |name: &str, at_m: Vector3<f64>| FrameTransform {
+            timestamp: None,
+            parent_frame_id: WORLD.to_owned(),
+            child_frame_id: name.to_owned(),
+            translation: Some(vector(&at_m)),
+            rotation: Some(quaternion(&world_from_n.rotation)),
+        };
+        let read = |frames: Vec<FrameTransform>| endoscope_of(&FrameTransforms { transforms: frames }.encode_to_vec());
+        let at_m = world_from_n.translation.vector;
+        let again = read(vec![frame("right.tip", Vector3::zeros()), frame(ENDOSCOPE, at_m)]).unwrap();
+        let off = again.inverse() * world_from_n;
+        assert!(off.translation.vector.norm() < 1e-12 && off.rotation.angle() < 1e-7, "{off}");
+        assert_eq!(read(vec![frame("right.tip", at_m)]), None);
+        assert_eq!(read(vec![frame(ENDOSCOPE, Vector3::new(f64::NAN, 0.0, 0.0))]), None);
+        assert_eq!(endoscope_of(b"no frames"), None);
+    }
+}

@@ -15,6 +15,9 @@ use crate::language::{Language, Text};
 /// Size that every view needs, in points; a larger scale than the window has space for is not used.
 const NEEDED: egui::Vec2 = vec2(1100.0, 680.0);
 
+/// Size of a button beside its name: the menu must not be higher than the smallest window.
+const CHOICE: egui::Vec2 = vec2(84.0, 24.0);
+
 /// The menu in the top bar; returns the command that was chosen in it. `can_undo` tells whether something can be taken back, and made again.
 pub(super) fn menu_ui(
     ui: &mut Ui,
@@ -27,18 +30,17 @@ pub(super) fn menu_ui(
     let menu = egui::containers::menu::MenuButton::from_button(button);
     let (response, _) = menu.ui(ui, |ui| {
         ui.set_width(300.0);
-        ui.label(text::menu::PALETTE.get());
         ui.horizontal(|ui| {
+            ui.label(text::menu::PALETTE.get());
             for (name, light) in [(text::menu::DARK.get(), false), (text::menu::LIGHT.get(), true)] {
                 let button = Button::selectable(settings.light == light, name).frame_when_inactive(true);
-                if ui.add(button.min_size(vec2(96.0, 30.0))).clicked() {
+                if ui.add(button.min_size(CHOICE)).clicked() {
                     wanted = Some(Action::Light(light));
                 }
             }
         });
-        ui.add_space(6.0);
         wanted = wanted.or(languages_ui(ui, settings.language));
-        ui.add_space(6.0);
+        ui.add_space(4.0);
         ui.label(text::menu::SIZE.get());
         ui.horizontal(|ui| {
             for percent in SIZES_PERCENT {
@@ -85,11 +87,11 @@ fn entry_ui(ui: &mut Ui, action: Action, width: f32) -> Option<Action> {
 /// The languages, each by its name in itself; returns the command of the one that is pressed.
 fn languages_ui(ui: &mut Ui, now: Language) -> Option<Action> {
     let mut wanted = None;
-    ui.label(text::menu::LANGUAGE.get()).on_hover_text(text::commands::LANGUAGE_DOES.get());
     ui.horizontal(|ui| {
+        ui.label(text::menu::LANGUAGE.get()).on_hover_text(text::commands::LANGUAGE_DOES.get());
         for language in Language::CHOICES {
             let button = Button::selectable(now == language, language.name()).frame_when_inactive(true);
-            if ui.add(button.min_size(vec2(96.0, 30.0))).clicked() {
+            if ui.add(button.min_size(CHOICE)).clicked() {
                 wanted = Some(Action::Speak(language));
             }
         }

@@ -1,7 +1,8 @@
 //! Small parts that several panels share.
 
 use egui::{
-    Align, Button, Color32, Layout, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, Ui, Vec2, Vec2b, pos2, vec2,
+    Align, Button, Color32, FontId, Label, Layout, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, TextStyle,
+    Ui, Vec2, Vec2b, pos2, vec2,
 };
 
 use egui_plot::Plot;
@@ -55,13 +56,43 @@ pub fn describe(ui: &Ui, plot: &Response, name: &str, summary: impl FnOnce() -> 
     ui.ctx().accesskit_node_builder(plot.id, |node| node.set_description(summary()));
 }
 
-/// A name on the left and its value on the right; `meaning` is their hover text.
+/// Least part of its size to which a font is reduced so that words fit.
+const LEAST_SIZE: f32 = 0.6;
+
+/// The width of these words in one line.
+pub fn width_of(painter: &Painter, words: &str, font: FontId) -> f32 {
+    painter.layout_no_wrap(words.to_owned(), font, Color32::PLACEHOLDER).size().x
+}
+
+/// This font, smaller if these words are wider than this in it: languages differ in length where the place does not grow.
+pub fn fitting(painter: &Painter, words: &str, font: FontId, width: f32) -> FontId {
+    let share = width / width_of(painter, words, font.clone()).max(1.0);
+    // Glyphs are placed on whole pixels, so that a smaller line is a little longer than its share.
+    let size = if share < 1.0 { font.size * (0.97 * share).max(LEAST_SIZE) } else { font.size };
+    FontId { size, ..font }
+}
+
+/// The same for words in a style of the window.
+pub fn fitting_style(ui: &Ui, words: &str, style: &TextStyle, width: f32) -> FontId {
+    fitting(ui.painter(), words, style.resolve(ui.style()), width)
+}
+
+/// A name on the left and its value on the right; `meaning` is their hover text. A name that is too long for one line has several.
 pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) -> Response {
     ui.spacing_mut().interact_size.y = 18.0;
+    let value = value.into();
     let row = ui.horizontal(|ui| {
-        ui.label(weak(name)).on_hover_text(meaning);
+        let room = ui.available_width() - width_of(ui.painter(), &value, theme::strong(14.0)) - 12.0;
+        if width_of(ui.painter(), name, TextStyle::Body.resolve(ui.style())) > room {
+            ui.scope(|ui| {
+                ui.set_max_width(room.max(40.0));
+                ui.add(Label::new(weak(name)).wrap()).on_hover_text(meaning);
+            });
+        } else {
+            ui.label(weak(name)).on_hover_text(meaning);
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.label(RichText::new(value.into()).font(theme::strong(14.0))).on_hover_text(meaning);
+            ui.label(RichText::new(value).font(theme::strong(14.0))).on_hover_text(meaning);
         });
     });
     row.response

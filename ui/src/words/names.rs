@@ -1,5 +1,6 @@
 //! Texts: names and short clauses of the libraries that stand within other texts.
 
+use nima_core::tip_force::Goal;
 use nima_devices::Loss;
 use nima_machine::{
     messages::{LoopState, Scheduling},
@@ -118,22 +119,65 @@ pub(crate) fn obstacle_words(obstacle: &Obstacle) -> String {
 
 /// What of real-time scheduling was refused and what to do, parted by a colon or a semicolon.
 pub(crate) fn scheduling_advice(scheduling: Scheduling) -> Option<&'static str> {
-    const LIMITS: &str = "/etc/security/limits.d/realtime.conf";
     let english = scheduling.advice()?;
-    let german = if !english.contains(LIMITS) {
-        "Echtzeitpriorität gibt es nur unter Linux; hier sind mehr versäumte Takte zu erwarten"
-    } else if scheduling.fifo || scheduling.deadline {
-        "Speicher ist nicht gesperrt: Zeile \"@realtime - memlock unlimited\" in /etc/security/limits.d/realtime.conf \
-         eintragen, der Gruppe realtime beitreten und neu anmelden"
-    } else {
-        "keine Echtzeitpriorität: Zeile \"@realtime - rtprio 95\" in /etc/security/limits.d/realtime.conf eintragen, \
-         der Gruppe realtime beitreten und neu anmelden"
-    };
-    Some(word(english, german))
+    Some(match (english.contains("rtprio"), english.contains("memlock")) {
+        (true, _) => word(
+            "no real-time priority: add the line \"@realtime - rtprio 95\" to /etc/security/limits.d/realtime.conf, join \
+             the group realtime and log in again",
+            "keine Echtzeitpriorität: Zeile \"@realtime - rtprio 95\" in /etc/security/limits.d/realtime.conf eintragen, \
+             der Gruppe realtime beitreten und neu anmelden",
+        ),
+        (_, true) => word(
+            "memory is not locked: add the line \"@realtime - memlock unlimited\" to \
+             /etc/security/limits.d/realtime.conf, join the group realtime and log in again",
+            "Speicher ist nicht gesperrt: Zeile \"@realtime - memlock unlimited\" in \
+             /etc/security/limits.d/realtime.conf eintragen, der Gruppe realtime beitreten und neu anmelden",
+        ),
+        _ => word(
+            "real-time scheduling is used on Linux only; expect more missed ticks here",
+            "Echtzeitpriorität gibt es nur unter Linux; hier sind mehr versäumte Takte zu erwarten",
+        ),
+    })
+}
+
+/// A goal of a tip-force recording by its name, and what to do until it is met.
+pub(crate) fn goal_words(goal: &Goal) -> [&'static str; 2] {
+    match goal.name {
+        "Tilt of the shaft" => [
+            word("Tilt of the shaft", "Neigung des Schafts"),
+            word("reach left, right, near and far", "nach links, rechts, nah und fern reichen"),
+        ],
+        "Depth" => [word("Depth", "Tiefe"), word("move in and out by 2 cm", "2 cm hinein- und herausbewegen")],
+        "In and out" => [
+            word("In and out", "Hinein und heraus"),
+            word("move as often outwards as inwards", "so oft heraus wie hinein bewegen"),
+        ],
+        "Speed" => [
+            word("Speed", "Tempo"),
+            word(
+                "make quick strokes in and out, 10 cm/s at their fastest",
+                "schnell hinein- und herausfahren, bis zu 10 cm/s",
+            ),
+        ],
+        "Force at the tip" => [
+            word("Force at the tip", "Kraft an der Spitze"),
+            word(
+                "press into the tissue up to 3 N, and drag it sideways",
+                "bis 3 N in das Gewebe drücken und es seitwärts ziehen",
+            ),
+        ],
+        "Contact and free" => [
+            word("Contact and free", "Kontakt und frei"),
+            word("be in contact half of the time", "die Hälfte der Zeit in Kontakt sein"),
+        ],
+        "Rows" => [word("Rows", "Zeilen"), word("go on", "weitermachen")],
+        _ => [goal.name, goal.advice],
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use nima_core::tip_force::Coverage;
     use nima_machine::rig::Obstacle;
 
     use super::*;
@@ -155,6 +199,15 @@ mod tests {
         for (fifo, memory_locked) in [(false, false), (true, false), (true, true)] {
             let scheduling = Scheduling { fifo, deadline: false, memory_locked };
             assert_eq!(scheduling_advice(scheduling), scheduling.advice());
+        }
+    }
+
+    #[test]
+    fn every_goal_of_a_recording_has_german_words() {
+        for goal in Coverage::default().goals() {
+            assert_eq!(goal_words(&goal), [goal.name, goal.advice]);
+            let german = language::with(Language::German, || goal_words(&goal));
+            assert!(german[0] != goal.name && german[1] != goal.advice, "{german:?}");
         }
     }
 

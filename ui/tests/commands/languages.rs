@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::words::{has_words, literals, sources};
 
 /// Texts that are the same in both languages: names, abbreviations, terms that German engineers use as they are.
-const SAME: [&str; 26] = [
+const SAME: [&str; 27] = [
     "Alarm",
     "Ctrl ",
     "Ctrl Shift ",
@@ -15,6 +15,7 @@ const SAME: [&str; 26] = [
     "Ensemble",
     "Enter",
     "Gamma",
+    "IMA, NIMA",
     "Jitter",
     "Kalman",
     "Linear",
@@ -91,9 +92,10 @@ fn all_pairs() -> Vec<[String; 2]> {
     all
 }
 
-/// What stands between braces, in the order of the alphabet.
+/// What stands between braces, in the order of the alphabet; a side after its noun is `after` in German, in lower case.
 fn values(text: &str) -> Vec<String> {
     let plain = text.replace("{{", "").replace("}}", "");
+    let plain = plain.replace("{side}", "{after}").replace("{arm}", "{after}");
     let mut values: Vec<String> =
         plain.split('{').skip(1).map(|part| part.split('}').next().unwrap_or_default().to_owned()).collect();
     values.sort();

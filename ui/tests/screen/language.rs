@@ -10,7 +10,7 @@ use egui_kittest::{
 };
 use nima_console::{
     console::{Options, desk::Layout, roles::Role, settings::Kept, wizards::Which},
-    language::{Language, pseudo},
+    language::{self, Language, pseudo},
 };
 use nima_machine::messages::LoopState;
 
@@ -70,6 +70,21 @@ fn look_at(console: &mut Console, page: &str, kind: Page) -> Vec<String> {
 /// A page of a wizard fits; for the tests that walk through it.
 pub(crate) fn fits(console: &mut Console, page: &str) {
     told(&look_at(console, page, Page::Scrolls));
+}
+
+/// The same for a window that holds a wizard alone, as wide as its place in the smallest window of the console.
+pub(crate) fn fits_alone<A>(window: &mut Harness<'_, A>, page: &str) {
+    let mut all = Vec::new();
+    for language in LANGUAGES {
+        language::set(language);
+        window.run_steps(3);
+        let mut found = faults_of_texts(&texts(window), window.ctx.content_rect(), None, true, false);
+        found.extend(too_wide(window));
+        all.extend(found.into_iter().map(|fault| format!("{page} {language:?}: {fault}")));
+    }
+    language::set(Language::English);
+    window.run_steps(2);
+    told(&all);
 }
 
 /// Buttons whose words are wider than they are.

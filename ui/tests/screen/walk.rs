@@ -106,6 +106,17 @@ pub(crate) fn faults_of_texts(
     faults
 }
 
+/// Where a row of tabs that is longer than its group is scrolled sideways: what is cut there is a press away.
+fn scrolled_tabs<A>(harness: &Harness<'_, A>) -> Vec<Rect> {
+    let is_arrow = |name: Option<String>| name.is_some_and(|name| name.starts_with("Scroll tabs"));
+    harness.query_all_by(move |node| is_arrow(node.label())).map(|node| node.rect()).collect()
+}
+
+/// Whether this is in one of these rows of tabs.
+fn is_among(rows: &[Rect], place: Rect) -> bool {
+    rows.iter().any(|row| row.y_range().contains(place.center().y))
+}
+
 /// Controls that overlap, or that leave the window sideways. A control that is scrolled away is known by its words.
 pub(crate) fn faults_of_controls<A>(harness: &Harness<'_, A>, texts: &[Text], window: Rect) -> Vec<String> {
     let seen = |name: &str, place: Rect| {
@@ -116,11 +127,12 @@ pub(crate) fn faults_of_controls<A>(harness: &Harness<'_, A>, texts: &[Text], wi
         use accesskit::Role;
         matches!(role, Role::Button | Role::CheckBox | Role::SpinButton | Role::TextInput | Role::RadioButton)
     };
+    let scrolled = scrolled_tabs(harness);
     let controls: Vec<(String, Rect)> = harness
-        .get_all_by(move |node| is_control(node.role()))
+        .query_all_by(move |node| is_control(node.role()))
         .map(|node| (node.accesskit_node().label().unwrap_or_default(), node.rect()))
         .map(|(name, place)| (name.clone(), seen(&name, place)))
-        .filter(|(_, place)| place.is_positive())
+        .filter(|(_, place)| place.is_positive() && !is_among(&scrolled, *place))
         .collect();
     let mut faults = Vec::new();
     for (i, (name, place)) in controls.iter().enumerate() {
@@ -165,7 +177,10 @@ pub(crate) fn seen(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> (Ve
     let stop = harness.get_by_role_and_label(accesskit::Role::Button, &stop).rect();
     assert!(stop.width() >= 48.0 && stop.height() >= 48.0 && window.contains_rect(stop), "{stop:?}");
     let field = harness.query_by_label(&field).map(|field| field.rect());
-    (texts(harness), window, field)
+    let scrolled = scrolled_tabs(harness);
+    let mut texts = texts(harness);
+    texts.retain(|text| !is_among(&scrolled, text.place));
+    (texts, window, field)
 }
 
 /// What is found in each view at each size, dark and light.

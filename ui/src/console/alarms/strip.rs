@@ -5,7 +5,8 @@
 
 use crate::console::text;
 use egui::{
-    Button, Color32, Context, Frame, Label, Margin, Panel, Rect, RichText, ScrollArea, Sense, Stroke, Ui, Window, vec2,
+    Button, Color32, Context, Frame, Label, Margin, Panel, Rect, RichText, ScrollArea, Sense, Stroke, TextStyle, Ui,
+    Window, vec2,
 };
 
 use super::{
@@ -15,7 +16,7 @@ use super::{
 };
 use crate::console::{
     theme,
-    widgets::{Sign, at_the_right, sign, small, weak},
+    widgets::{Sign, at_the_right, fitting_style, sign, small, weak},
 };
 
 /// Width of the strip's buttons.
@@ -59,12 +60,17 @@ impl Alarms {
             ui.horizontal(|ui| {
                 opened |= words_ui(ui, &first, others, colour);
                 at_the_right(ui, |ui| {
-                    let seen = ui.add_enabled(unseen, Button::new(text::alarms::ACKNOWLEDGE.get()).min_size(BUTTON));
+                    let name = |ui: &Ui, words: &'static str| {
+                        let room = BUTTON.x - 2.0 * ui.spacing().button_padding.x;
+                        RichText::new(words).font(fitting_style(ui, words, &TextStyle::Button, room))
+                    };
+                    let acknowledge = Button::new(name(ui, text::alarms::ACKNOWLEDGE.get())).min_size(BUTTON);
+                    let seen = ui.add_enabled(unseen, acknowledge);
                     let seen = seen
                         .on_hover_text(text::alarms::ACKNOWLEDGE_HOVER.get())
                         .on_disabled_hover_text(text::alarms::ACKNOWLEDGED_HOVER.get());
                     acknowledged = seen.clicked();
-                    let all = Button::new(text::alarms::SHOW_ALL.get()).min_size(BUTTON);
+                    let all = Button::new(name(ui, text::alarms::SHOW_ALL.get())).min_size(BUTTON);
                     opened |= ui.add(all).on_hover_text(text::alarms::SHOW_ALL_HOVER.get()).clicked();
                 });
             });

@@ -1,7 +1,7 @@
 //! The calibrations in force between wrist sensor and tip force, shown in every view; and buttons that open the
 //! wizards.
 
-use egui::{Button, Label, RichText, Ui, vec2};
+use egui::{Button, Label, RichText, TextStyle, Ui, vec2};
 use nima_machine::{
     messages::{ForceSource, LoopState},
     rig::Side,
@@ -15,7 +15,7 @@ use crate::{
         live::Live,
         scene3d::side_name,
         text, theme,
-        widgets::{Sign, next_button, sign_ui, small},
+        widgets::{Sign, fitting_style, next_button, sign_ui, small, weak},
         wizards::Which,
     },
     words::Words as _,
@@ -112,6 +112,8 @@ fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWis
             (Page::All, text::overview::OPEN.get(), text::overview::MEANING.get().to_owned(), CalibrationWish::List),
         ] {
             let (is_open, next) = (open == Some(page), next == Some(page));
+            let room = width - 2.0 * ui.spacing().button_padding.x;
+            let name = RichText::new(name).font(fitting_style(ui, name, &TextStyle::Button, room));
             let button =
                 next_button(name, next).selected(is_open).frame_when_inactive(true).min_size(vec2(width, 28.0));
             let can_open = closed.is_none() || page == Page::All;
@@ -122,7 +124,9 @@ fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWis
         }
     });
     // One line in every state, so that the buttons below do not move under a hand.
-    ui.add(Label::new(small(closed.unwrap_or(text::calibrations::SETS_IDLE.get()))).truncate());
+    let words = closed.unwrap_or(text::calibrations::SETS_IDLE.get());
+    let font = fitting_style(ui, words, &TextStyle::Small, ui.available_width());
+    ui.add(Label::new(weak(words).font(font)).truncate());
     wish
 }
 

@@ -13,6 +13,7 @@ use crate::console::{
     cloud::{Ellipsoid, SECONDS},
     live::Live,
     text, theme,
+    widgets::fitting,
 };
 
 /// Height of the caption.
@@ -102,7 +103,8 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
     let at = pos2(rect.left() + 10.0, rect.bottom() - CAPTION + 4.0);
     for (i, line) in words.split("; ").enumerate() {
         let at = at + vec2(0.0, 16.0 * i as f32);
-        painter.text(at, Align2::LEFT_TOP, line, theme::regular(12.5), theme::now().text_weak);
+        let font = fitting(&painter, line, theme::regular(12.5), rect.right() - at.x - 4.0);
+        painter.text(at, Align2::LEFT_TOP, line, font, theme::now().text_weak);
     }
 }
 

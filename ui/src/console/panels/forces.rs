@@ -3,7 +3,7 @@
 //! The view is a time interval counted back from now (or from the moment of the pause). It is moved by dragging, zoomed
 //! with the wheel and reset by a double click, even while data arrive.
 
-use egui::{Align2, Button, Color32, Rect, RichText, Sense, Ui, pos2, vec2};
+use egui::{Align2, Button, Color32, Rect, RichText, Sense, TextStyle, Ui, pos2, vec2};
 use egui_plot::{
     AxisHints, HoverPosition, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotResponse, Text, VLine,
 };
@@ -16,7 +16,7 @@ use crate::console::{
     readings::Twist,
     scene3d::side_name,
     text, theme,
-    widgets::{at_the_right, describe, force_sign, small, still},
+    widgets::{at_the_right, describe, force_sign, small, still, width_of},
 };
 use crate::words::side_word;
 
@@ -222,7 +222,7 @@ fn twist_ui(ui: &mut Ui, live: &Live, side: Side) {
 
 fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
     ui.horizontal(|ui| {
-        if ui.available_width() > HEADING_FROM {
+        if ui.available_width() > HEADING_FROM && has_room(ui, live, state) {
             ui.label(RichText::new(text::forces::HEADING.get()).text_style(egui::TextStyle::Heading))
                 .on_hover_text(text::forces::HOVER.get());
             ui.add_space(12.0);
@@ -235,6 +235,22 @@ fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
         }
         at_the_right(ui, |ui| switches_ui(ui, live, state));
     });
+}
+
+/// Whether the heading and everything beside it fit into one row in the language of the window.
+fn has_room(ui: &Ui, live: &Live, state: &ForcesState) -> bool {
+    let of = |words: &str, style: TextStyle| width_of(ui.painter(), words, style.resolve(ui.style()));
+    let signs = [text::forces::MEASURED.get(), text::forces::RENDERED.get()];
+    let pause = if state.is_paused() { text::forces::GO_ON.get() } else { text::forces::PAUSE.get() };
+    let mut buttons = vec![text::forces::LAST_TEN_SECONDS.get(), text::forces::MARK.get(), pause];
+    if live.is_bimanual() {
+        buttons.extend(Side::ALL.map(side_name));
+    }
+    let gaps = ui.spacing().item_spacing.x + 2.0 * ui.spacing().button_padding.x;
+    let heading = of(text::forces::HEADING.get(), TextStyle::Heading) + 12.0;
+    let signs: f32 = signs.iter().map(|words| of(words, TextStyle::Small) + 36.0 + 3.0 * gaps).sum();
+    let buttons: f32 = buttons.iter().map(|words| of(words, TextStyle::Button).max(76.0) + gaps).sum();
+    heading + signs + buttons < ui.available_width()
 }
 
 /// What is shown of the traces.

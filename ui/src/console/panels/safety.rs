@@ -11,7 +11,7 @@ use crate::console::{
     readings::Change,
     scene3d::side_name,
     text, theme,
-    widgets::{Sign, sign},
+    widgets::{Sign, fitting, sign},
 };
 use crate::language::Text;
 use crate::words::{side_word, state_name, within};
@@ -151,6 +151,7 @@ fn node_ui(painter: &Painter, rect: Rect, name: &str, lit: bool, state: LoopStat
     };
     painter.rect(rect, theme::CORNER, fill, Stroke::new(if lit { 2.0 } else { 1.0 }, line), egui::StrokeKind::Inside);
     let font = if lit { theme::strong(14.0) } else { theme::regular(13.0) };
+    let font = fitting(painter, name, font, rect.width() - 8.0);
     painter.text(rect.center(), Align2::CENTER_CENTER, name, font, ink);
 }
 
@@ -211,7 +212,7 @@ fn end_ui(ui: &mut Ui, width: f32, name: &str, force_n: f64) {
         rect.center() - vec2(0.0, 10.0),
         Align2::CENTER_CENTER,
         name,
-        theme::regular(12.5),
+        fitting(&painter, name, theme::regular(12.5), rect.width() - 4.0),
         theme::now().text_weak,
     );
     painter.text(rect.center() + vec2(0.0, 9.0), Align2::CENTER_CENTER, number, theme::strong(16.0), theme::now().text);
@@ -242,6 +243,7 @@ fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate, width: f32) {
         (51.0, word.to_owned(), theme::regular(12.5), if open { theme::now().text_weak } else { theme::now().text }),
         (69.0, compact(acted), theme::regular(12.5), theme::now().text_weak),
     ] {
+        let font = fitting(&painter, &text, font, rect.width() - 8.0);
         painter.text(rect.center_top() + vec2(0.0, y), Align2::CENTER_CENTER, text, font, ink);
     }
 }

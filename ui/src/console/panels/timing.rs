@@ -84,6 +84,8 @@ pub fn timing_ui(ui: &mut Ui, live: &Live, state: &mut TimingState) {
 }
 
 fn table_ui(ui: &mut Ui, timings: &[Timing<'_>]) {
+    // Four numbers stand beside a name, which has several lines where it is long.
+    let room = (ui.available_width() - 4.0 * 52.0).max(60.0);
     Grid::new("timing").num_columns(5).spacing([10.0, 3.0]).min_col_width(40.0).show(ui, |ui| {
         ui.label(small("µs"));
         for head in ["p50", "p99", "p99.9", "max"] {
@@ -91,7 +93,10 @@ fn table_ui(ui: &mut Ui, timings: &[Timing<'_>]) {
         }
         ui.end_row();
         for Timing { name, meaning, quantiles, .. } in timings {
-            ui.label(weak(*name)).on_hover_text(*meaning);
+            ui.scope(|ui| {
+                ui.set_max_width(room);
+                ui.add(egui::Label::new(weak(*name)).wrap()).on_hover_text(*meaning);
+            });
             let Quantiles { p50, p99, p999, max } = *quantiles;
             for value in [p50, p99, p999, max] {
                 right(ui, RichText::new(format!("{value:.0}")).font(theme::strong(14.0)));

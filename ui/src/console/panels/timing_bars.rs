@@ -8,7 +8,7 @@ use super::timing::grouped;
 use crate::console::{
     deadlines::{Deadlines, SECONDS},
     text, theme,
-    widgets::small,
+    widgets::{fitting, small},
 };
 
 /// Number of bars of a histogram; the last one includes everything longer.
@@ -110,7 +110,8 @@ fn axis(painter: &Painter, ground: Rect, deadline_us: f64, most: u64) {
     painter.text(pos2(ground.left(), under), Align2::LEFT_TOP, "0", font.clone(), ink);
     painter.text(pos2(x(0.5), under), Align2::CENTER_TOP, format!("{:.0}", 0.5 * deadline_us), font.clone(), ink);
     let deadline = text::timing::deadline(deadline_us);
-    painter.text(pos2(x(1.0) + 8.0, under), Align2::CENTER_TOP, deadline, font.clone(), ink);
+    let smaller = fitting(painter, &deadline, font.clone(), 2.0 * (ground.right() - x(1.0) - 8.0));
+    painter.text(pos2(x(1.0) + 8.0, under), Align2::CENTER_TOP, deadline, smaller, ink);
     let scale = text::timing::log_scale(&grouped(most));
     painter.text(pos2(x(1.0) - 6.0, ground.top() + 1.0), Align2::RIGHT_TOP, scale, font, ink);
 }

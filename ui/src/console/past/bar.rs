@@ -1,8 +1,8 @@
 //! The frame around the past: a head that says which moment is on the screen, and the time line below every view.
 
 use egui::{
-    Align, Button, Color32, FontId, Frame, Label, Layout, Margin, Panel, Rect, Response, RichText, Sense, Stroke, Ui,
-    WidgetInfo, pos2, vec2,
+    Align, Button, Color32, FontId, Frame, Label, Layout, Margin, Panel, Rect, Response, RichText, Sense, Stroke,
+    TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 use nima_machine::messages::LoopState;
 use nima_session::file::LineKind;
@@ -14,7 +14,7 @@ use super::{
 use crate::console::{
     alarms::judge,
     text, theme,
-    widgets::{Sign, sign, small, weak},
+    widgets::{Sign, fitting_style, sign, weak},
 };
 
 const HEAD: f32 = 54.0;
@@ -158,7 +158,8 @@ fn buttons_ui(ui: &mut Ui, past: &mut Past) {
     let reading = (share < 0.999 && past.told.refused.is_none()).then(|| text::past::read(share));
     let words = past.told.job.clone().or_else(|| past.told.limited.clone()).or(reading);
     if let Some(words) = words {
-        ui.add(Label::new(small(words.clone())).truncate()).on_hover_text(words);
+        let font = fitting_style(ui, &words, &TextStyle::Small, ui.available_width());
+        ui.add(Label::new(weak(words.clone()).font(font)).truncate()).on_hover_text(words);
     }
 }
 

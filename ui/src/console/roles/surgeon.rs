@@ -11,7 +11,7 @@ use crate::console::{
     panels::{calm_gain_ui, why_no_force},
     scene3d::{scene_ui, side_name},
     text, theme,
-    widgets::{bar, force_sign, small},
+    widgets::{bar, fitting, force_sign, small},
 };
 use crate::words::mode_name;
 
@@ -112,5 +112,6 @@ fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
     painter.vline(mark, bars.top()..=bars.bottom(), egui::Stroke::new(2.5, theme::now().text));
     let words = text::roles::ceiling(ceiling_n);
     let at = pos2(mark, inner.top() + 2.0);
-    painter.text(at, Align2::CENTER_TOP, words, theme::regular(14.0), theme::now().text_weak);
+    let font = fitting(&painter, &words, theme::regular(14.0), 2.0 * (inner.right() - mark));
+    painter.text(at, Align2::CENTER_TOP, words, font, theme::now().text_weak);
 }

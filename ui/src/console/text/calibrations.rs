@@ -102,7 +102,8 @@ pub(in crate::console) fn source(words: &str) -> String {
 
 /// Name of an arm.
 pub(in crate::console) fn arm(side: &str) -> String {
-    told!("{side} arm", "Arm {side}")
+    let after = side.to_lowercase();
+    told!("{side} arm", "Arm {after}")
 }
 
 /// Sensor and tool of the calibrations.

@@ -9,5 +9,6 @@ pub(in crate::console) const RENDERED: Text = Text::of("Rendered", "Dargestellt"
 
 /// Name of a hand, as in "Right hand".
 pub(in crate::console) fn hand(side: &str) -> String {
-    told!("{side} hand", "Hand {side}")
+    let after = side.to_lowercase();
+    told!("{side} hand", "Hand {after}")
 }

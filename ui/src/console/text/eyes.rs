@@ -150,7 +150,8 @@ pub(in crate::console) fn zoomed(zoom: f32) -> String {
 
 /// A tip that is not in the view.
 pub(in crate::console) fn tip(side: &str) -> String {
-    told!("{side} tip", "Spitze {side}")
+    let after = side.to_lowercase();
+    told!("{side} tip", "Spitze {after}")
 }
 
 /// The whole picture in words.

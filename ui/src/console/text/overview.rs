@@ -32,17 +32,20 @@ pub(in crate::console) const FUTURE: Text = Text::of("in the future", "in der Zu
 
 /// Accessible name of a button that makes a calibration.
 pub(in crate::console) fn button(verb: &str, arm: &str, calibration: &str) -> String {
-    told!("{verb} {arm} arm, {calibration}", "{verb}: Arm {arm}, {calibration}")
+    let after = arm.to_lowercase();
+    told!("{verb} {arm} arm, {calibration}", "{verb}: Arm {after}, {calibration}")
 }
 
 /// Sensor and tool above an arm's lines.
 pub(in crate::console) fn of_arm(arm: &str, sensor: &str, tool: &str) -> String {
-    told!("{arm} arm: sensor {sensor}, {tool}", "Arm {arm}: Sensor {sensor}, {tool}")
+    let after = arm.to_lowercase();
+    told!("{arm} arm: sensor {sensor}, {tool}", "Arm {after}: Sensor {sensor}, {tool}")
 }
 
 /// An arm whose sensor has not told who it is.
 pub(in crate::console) fn of_unknown(arm: &str, why: &str) -> String {
-    told!("{arm} arm: {why}", "Arm {arm}: {why}")
+    let after = arm.to_lowercase();
+    told!("{arm} arm: {why}", "Arm {after}: {why}")
 }
 
 /// When it was made.

@@ -107,7 +107,7 @@ pub(in crate::console) const FROM_HOVER: Text =
 pub(in crate::console) const TO: Text = Text::of("To", "Bis");
 pub(in crate::console) const TO_HOVER: Text =
     Text::of("The stretch to save ends at this moment", "Hier endet der Ausschnitt");
-pub(in crate::console) const SAVE: Text = Text::of("Save the stretch", "Ausschnitt speichern");
+pub(in crate::console) const SAVE: Text = Text::of("Save the stretch", "Speichern");
 pub(in crate::console) const SAVE_HOVER: Text = Text::of(
     "Writes what is between From and To as a session of its own, and keeps it",
     "Schreibt den Teil zwischen Von und Bis als eigene, gesicherte Sitzung",

@@ -65,7 +65,7 @@ pub(in crate::console) const DEMO_MATCHED: Text = Text::of("Matched", "Abgeglich
 pub(in crate::console) const DEMO_MATCHED_CAPTION: Text = Text::of(
     "Same delay, and no force crosses the link at all. Only the tissue's \
     parameters do; the blue arrow is made from the hand's own motion, so a late force cannot kick.",
-    "Gleiche Verzögerung, doch keine Kraft geht über die Verbindung, nur die Parameter des Gewebes; der blaue Pfeil \
+    "Gleiche Verzögerung, doch keine Kraft geht über die Verbindung, nur die Parameter des Gewebes. Der blaue Pfeil \
      entsteht aus der Bewegung der Hand selbst, so kann keine verspätete Kraft stoßen.",
 );
 pub(in crate::console) const DEMO_LET_GO: Text = Text::of("Letting go", "Loslassen");

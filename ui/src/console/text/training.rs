@@ -44,7 +44,8 @@ pub(in crate::console) const JAWS_HOLD: Text = Text::of("holds a ring", "hält e
 /// The instrument that is led, and what its jaws do with a ring.
 pub(in crate::console) fn jaws(side: &str, with_ring: Option<&str>) -> String {
     let with_ring = with_ring.map(|words| format!(" {words}")).unwrap_or_default();
-    told!("{side} instrument{with_ring}", "Instrument {side}{with_ring}")
+    let after = side.to_lowercase();
+    told!("{side} instrument{with_ring}", "Instrument {after}{with_ring}")
 }
 
 /// Peg transfer: `led` from [`jaws`], and how many rings were handed over in mid-air, put on pegs, and dropped.

@@ -103,7 +103,8 @@ pub(in crate::console) fn met(measured: &str) -> String {
 
 /// Button that goes on with the calibration that is to be made after a saved one.
 pub(in crate::console) fn following(arm: &str, calibration: &str) -> String {
-    told!("Next: {arm} arm, {}", "Weiter: Arm {arm}, {}", within(calibration))
+    let after = arm.to_lowercase();
+    told!("Next: {arm} arm, {}", "Weiter: Arm {after}, {}", within(calibration))
 }
 
 /// Title of a wizard.

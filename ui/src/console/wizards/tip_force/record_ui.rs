@@ -18,6 +18,7 @@ use crate::console::{
     text, theme,
     widgets::{card, next_button, small},
 };
+use crate::words::{goal_words, within};
 
 /// Number of rows of the paper's data set.
 const PAPER_ROWS: usize = 30_000;
@@ -77,7 +78,8 @@ impl TipForceWizard {
             } else {
                 text::tip_force::ADVICE_NOW.get()
             };
-            let advice = text::tip_force::advice(when, goal.advice, &goal.name.to_lowercase());
+            let [name, advice] = goal_words(&goal);
+            let advice = text::tip_force::advice(when, advice, &within(name));
             ui.label(RichText::new(advice).font(theme::strong(16.0)));
         }
         ui.label(text::tip_force::state(&take.phase_words()));
@@ -118,7 +120,7 @@ fn goals_ui(ui: &mut Ui, coverage: &Coverage) {
                 let percent = format!("{:.0} %", (100.0 * goal.share).floor());
                 progress(
                     &mut columns[i / goals.len().div_ceil(2)],
-                    goal.name,
+                    goal_words(goal)[0],
                     goal.share,
                     if goal.share < 1.0 { &percent } else { text::wizards::MET.get() },
                 );

@@ -13,6 +13,8 @@ use crate::console::{
     text, theme,
     widgets::{card, figure, next_button, small},
 };
+use crate::words::{goal_words, within};
+use nima_core::tip_force::Goal;
 
 const HEIGHT: f32 = 330.0;
 
@@ -100,7 +102,8 @@ impl TipForceWizard {
                 text::tip_force::HELD_OUT_LOSS_HOVER.get(),
             );
             if let Some(goal) = trained.narrow {
-                ui.label(text::tip_force::not_complete(&goal.to_lowercase()));
+                let [goal, _] = goal_words(&Goal { name: goal, share: 0.0, advice: "" });
+                ui.label(text::tip_force::not_complete(&within(goal)));
             }
             if origin.rows < self.rows() {
                 ui.label(small(text::tip_force::TRAINED_STALE.get()));

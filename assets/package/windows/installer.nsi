@@ -1,5 +1,5 @@
 ; The installer for Windows, for one user: no administrator is needed. Made by assets/package/windows.sh, which gives VERSION, FILES and OUT.
-Unicode true
+Target amd64-unicode
 SetCompressor /SOLID lzma
 SetDateSave off
 RequestExecutionLevel user

@@ -250,7 +250,7 @@ fn has_room(ui: &Ui, live: &Live, state: &ForcesState) -> bool {
     let heading = of(text::forces::HEADING.get(), TextStyle::Heading) + 12.0;
     let signs: f32 = signs.iter().map(|words| of(words, TextStyle::Small) + 36.0 + 3.0 * gaps).sum();
     let buttons: f32 = buttons.iter().map(|words| of(words, TextStyle::Button).max(76.0) + gaps).sum();
-    heading + signs + buttons < ui.available_width()
+    heading + signs + buttons + 24.0 < ui.available_width()
 }
 
 /// What is shown of the traces.

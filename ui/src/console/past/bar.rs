@@ -20,6 +20,8 @@ use crate::console::{
 const HEAD: f32 = 54.0;
 const BAR: f32 = 118.0;
 const STRIP: f32 = 54.0;
+/// Least width of a message at the end of a row.
+const MESSAGE: f32 = 60.0;
 /// Height of the states at the foot of the strip.
 const STATES: f32 = 7.0;
 /// Height of the marks at its head.
@@ -158,6 +160,10 @@ fn buttons_ui(ui: &mut Ui, past: &mut Past) {
     let reading = (share < 0.999 && past.told.refused.is_none()).then(|| text::past::read(share));
     let words = past.told.job.clone().or_else(|| past.told.limited.clone()).or(reading);
     if let Some(words) = words {
+        // The time line shows how far the reading is where the row has no room for it.
+        if ui.available_width() < MESSAGE {
+            return;
+        }
         let font = fitting_style(ui, &words, &TextStyle::Small, ui.available_width());
         ui.add(Label::new(weak(words.clone()).font(font)).truncate()).on_hover_text(words);
     }

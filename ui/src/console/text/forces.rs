@@ -21,7 +21,7 @@ pub(in crate::console) const PAUSE_HOVER: Text = Text::of(
 );
 pub(in crate::console) const GO_ON: Text = Text::of("Go on", "Weiter");
 pub(in crate::console) const GO_ON_HOVER: Text = Text::of("Shows new data again", "Zeigt wieder neue Daten");
-pub(in crate::console) const MARK: Text = Text::of("Mark (E)", "Markieren (E)");
+pub(in crate::console) const MARK: Text = Text::of("Mark (E)", "Marke (E)");
 pub(in crate::console) const MARK_HOVER: Text = Text::of(
     "Marks this moment in all traces, even while they are paused",
     "Markiert diesen Moment in allen Verläufen, auch in der Pause",

@@ -7,7 +7,7 @@ use egui::{
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::tip_force::{MAP, Map};
 
-use crate::console::{text, theme};
+use crate::console::{text, theme, widgets::fitting};
 
 /// Projection for a viewer in front of the base, slightly to the right and above (`world`: x to the right, z up).
 pub(super) fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2, f64) {
@@ -42,12 +42,13 @@ pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, he
         (None, Some(_)) => text::wizards::POSE_HELD.get().to_owned(),
         _ => text::wizards::POSE_UNKNOWN.get().to_owned(),
     };
-    caption_below(&painter, rect, caption);
+    caption_below(&painter, rect, &caption);
 }
 
-fn caption_below(painter: &Painter, rect: Rect, words: String) {
+fn caption_below(painter: &Painter, rect: Rect, words: &str) {
     let place = rect.center_bottom() - vec2(0.0, 8.0);
-    painter.text(place, Align2::CENTER_BOTTOM, words, theme::regular(12.5), theme::now().text_weak);
+    let font = fitting(painter, words, theme::regular(12.5), rect.width() - 8.0);
+    painter.text(place, Align2::CENTER_BOTTOM, words, font, theme::now().text_weak);
 }
 
 /// A square on the floor and a vertical line, to show the orientation.
@@ -110,7 +111,7 @@ pub(super) fn sphere_picture(
         dot(&painter, centre, scale, &direction, 3.5, Stroke::new(1.5, theme::now().measured), true);
     }
     let caption = text::wizards::rings_and_discs(name);
-    caption_below(&painter, rect, caption);
+    caption_below(&painter, rect, &caption);
 }
 
 /// Equator and two meridians; only their front parts.
@@ -157,7 +158,8 @@ pub(super) fn progress(ui: &mut Ui, name: &str, share: f64, words: &str) {
     let share = if share.is_finite() { share.clamp(0.0, 1.0) as f32 } else { 0.0 };
     let filled = Rect::from_min_size(rect.min, vec2(rect.width() * share, rect.height()));
     painter.rect_filled(filled, 4.0, theme::now().selected);
-    painter.text(rect.center(), Align2::CENTER_CENTER, label, theme::regular(13.0), theme::now().text);
+    let font = fitting(painter, &label, theme::regular(13.0), rect.width() - 8.0);
+    painter.text(rect.center(), Align2::CENTER_CENTER, label, font, theme::now().text);
 }
 
 /// Number of rows in a cell of a map at which it has full brightness.
@@ -178,7 +180,8 @@ pub(super) fn heat_map(ui: &mut Ui, width: f32, title: &str, map: &Map, [across,
     let painter = ui.painter_at(rect);
     let side = width - LEFT - 2.0;
     let field = Rect::from_min_size(rect.min + vec2(LEFT, 20.0), vec2(side, side));
-    painter.text(rect.left_top() + vec2(LEFT, 0.0), Align2::LEFT_TOP, title, theme::strong(13.0), theme::now().text);
+    let heading = fitting(&painter, title, theme::strong(13.0), side);
+    painter.text(rect.left_top() + vec2(LEFT, 0.0), Align2::LEFT_TOP, title, heading, theme::now().text);
     painter.rect_filled(field, 2.0, theme::now().groove);
     let cell = side / MAP as f32;
     for (row, counts) in map.counts.iter().enumerate() {
@@ -208,12 +211,14 @@ fn axis_words(painter: &Painter, field: Rect, across: AxisWords, up: AxisWords) 
         (field.center().x, Align2::CENTER_TOP, across[1], 14.0),
     ];
     for (x, anchor, words, lower) in places {
-        painter.text(pos2(x, below + lower), anchor, words, font.clone(), theme::now().text_weak);
+        let font = fitting(painter, words, font.clone(), field.width());
+        painter.text(pos2(x, below + lower), anchor, words, font, theme::now().text_weak);
     }
     let left = field.left() - 3.0;
     for (y, anchor, words) in [(field.bottom(), Align2::RIGHT_BOTTOM, up[0]), (field.top(), Align2::RIGHT_TOP, up[2])] {
         painter.text(pos2(left, y), anchor, words, font.clone(), theme::now().text_weak);
     }
+    let font = fitting(painter, up[1], font, field.height());
     let name = painter.layout_no_wrap(up[1].to_owned(), font, theme::now().text_weak);
     let place = pos2(field.left() - 18.0 - 0.5 * name.size().y, field.center().y + 0.5 * name.size().x);
     painter.add(TextShape::new(place, name, theme::now().text_weak).with_angle(-std::f32::consts::FRAC_PI_2));

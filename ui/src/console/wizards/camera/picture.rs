@@ -4,7 +4,7 @@ use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInf
 use nima_camera::{CELLS, Coverage, Sight};
 use nima_endoscope::{Board, Picture};
 
-use crate::console::{double_buffer::DoubleBuffer, text::camera as texts, theme};
+use crate::console::{double_buffer::DoubleBuffer, text::camera as texts, theme, widgets::fitting};
 
 /// Width of the map, points.
 pub(super) const MAP_WIDTH: f32 = 190.0;
@@ -90,5 +90,6 @@ pub(super) fn coverage_ui(ui: &mut Ui, coverage: &Coverage, size_px: [usize; 2])
         }
     }
     let below = pos2(map.left(), map.bottom() + 3.0);
-    painter.text(below, Align2::LEFT_TOP, words, theme::regular(12.5), theme::now().text_weak);
+    let font = fitting(&painter, &words, theme::regular(12.5), map.width());
+    painter.text(below, Align2::LEFT_TOP, words, font, theme::now().text_weak);
 }

@@ -4,7 +4,7 @@ use egui::{Align2, Color32, Painter, Pos2, Sense, Shape, Stroke, Ui, WidgetInfo,
 use nalgebra::{Isometry3, Vector3};
 
 use super::numbers::Effect;
-use crate::console::{text::frames as texts, theme, wizards::pictures::on_paper};
+use crate::console::{text::frames as texts, theme, widgets::fitting, wizards::pictures::on_paper};
 
 const HEIGHT: f32 = 250.0;
 /// Length of an axis, in half heights.
@@ -40,7 +40,8 @@ pub(super) fn effect_picture(ui: &mut Ui, effect: &Effect) {
     axes(&painter, place(&effect.after), half * AXIS, &effect.after, false);
     scale_bar(&painter, rect, points_per_m);
     let below = rect.center_bottom() - vec2(0.0, 8.0);
-    painter.text(below, Align2::CENTER_BOTTOM, words, theme::regular(12.5), theme::now().text_weak);
+    let font = fitting(&painter, &words, theme::regular(12.5), rect.width() - 8.0);
+    painter.text(below, Align2::CENTER_BOTTOM, words, font, theme::now().text_weak);
 }
 
 /// Three axes of a frame: dashed before, solid after.

@@ -163,7 +163,7 @@ try_archive() {
   folder=$(basename "$archive" .tar.zst)
   zstd --quiet --decompress --stdout "$archive" | tar --extract --directory "$root/home/person" || return
   as_person "$root" "$folder/bin/nima" run --virtual --seconds 5 --json >"$target/try-archive.json" || return
-  say "unpacked from .tar.zst: $(grep -o '"final_state": "[a-z]*"' "$target/try-archive.json")"
+  say "unpacked from .tar.zst: $(grep -m 1 -o '"final_state": "[a-z]*"' "$target/try-archive.json")"
   rm -rf "${root:?}/home/person/$folder"
 }
 
@@ -174,7 +174,7 @@ try_rpm() {
   # The system's programs have their database elsewhere.
   rpm --root "$root" --dbpath /var/lib/rpm --nodeps --nosignature --install "$rpm" || return
   as_person "$root" nima run --virtual --seconds 5 --json >"$target/try-rpm.json" || return
-  say "installed from .rpm: $(grep -o '"final_state": "[a-z]*"' "$target/try-rpm.json"), group $(grep '^realtime:' "$root/etc/group")"
+  say "installed from .rpm: $(grep -m 1 -o '"final_state": "[a-z]*"' "$target/try-rpm.json"), group $(grep '^realtime:' "$root/etc/group")"
   rpm --root "$root" --dbpath /var/lib/rpm --nodeps --erase nima-console || return
   nothing_left "$root"
 }
@@ -212,6 +212,9 @@ window_in_wine() {
   local work=$1 nima=$2 screen status=0
   Xvfb :97 -screen 0 1600x1000x24 -nolisten tcp -noreset -ac >/dev/null 2>&1 &
   screen=$!
+  # What wine started without a display knows none.
+  in_wine "$work" wine wineboot --kill || true
+  sleep 3
   try_display=:97 in_wine "$work" wine "$nima" console --exit-after 8 --frames frames.json --screenshot window.png || status=1
   kill "$screen"
   wait "$screen" 2>/dev/null || true
@@ -239,7 +242,7 @@ walk_through_windows() {
   dpkg-deb --extract "$deb" "$work/linux" || return
   (cd "$work" && linux/usr/bin/nima run --virtual --seconds 10 --record linux.mcap --json >/dev/null && linux/usr/bin/nima replay session.mcap) || return
   in_wine "$work" wine "$nima" replay linux.mcap || return
-  say "wine: $(grep -o '"final_state": "[a-z]*"' "$target/try-windows.json")"
+  say "wine: $(grep -m 1 -o '"final_state": "[a-z]*"' "$target/try-windows.json")"
   window_in_wine "$work" "$nima" || return
   in_wine "$work" wine "$out"/*-windows-setup.exe /S || return
   installed=$(find "$work/wine" -path '*/Programs/NIMA Console/nima.exe')

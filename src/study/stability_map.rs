@@ -84,15 +84,6 @@ impl Verdict {
             _ => None,
         }
     }
-
-    /// Text for the screen.
-    pub const fn words(self) -> &'static str {
-        match self {
-            Self::Stable => "stable",
-            Self::Marginal => "at the limit",
-            Self::Unstable => "unstable",
-        }
-    }
 }
 
 /// A file that is not a valid map.

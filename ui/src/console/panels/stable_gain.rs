@@ -55,7 +55,7 @@ fn strip_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     }
     let greatest = map.greatest_stable_gain(mode, delay_s, n_m);
     let now = map.at(mode, live.gain(), delay_s, n_m);
-    let words = text::feedback::stable_up_to(now.words(), greatest, n_m);
+    let words = text::feedback::stable_up_to(now, greatest, n_m);
     response.on_hover_text(text::feedback::STABLE_GAIN_HOVER.get());
     ui.label(small(words)).on_hover_text(text::feedback::STABLE_GAIN_HOVER.get());
 }

@@ -1,6 +1,8 @@
 //! The feedback panel: mode, gain, delay, dead band, highest stable gain.
 
-use crate::language::{Text, told};
+use nima_study::stability_map::Verdict;
+
+use crate::language::{Text, told, word};
 
 pub(in crate::console) const GAIN_HOVER: Text = Text::of(
     "Ratio of the force in the hand to the force that the mode asks for, no unit: 0 to 1, or up to 3 if \
@@ -67,7 +69,12 @@ pub(in crate::console) const STABLE_GAIN_HOVER: Text = Text::of(
 );
 
 /// Verdict of the stability map for this gain.
-pub(in crate::console) fn stable_up_to(verdict: &str, greatest: f64, stiffness_n_m: f64) -> String {
+pub(in crate::console) fn stable_up_to(verdict: Verdict, greatest: f64, stiffness_n_m: f64) -> String {
+    let verdict = match verdict {
+        Verdict::Stable => word("stable", "stabil"),
+        Verdict::Marginal => word("at the limit", "an der Grenze"),
+        Verdict::Unstable => word("unstable", "instabil"),
+    };
     told!(
         "This gain is {verdict}; stable up to {greatest:.2} at {stiffness_n_m:.0} N/m",
         "Diese Verstärkung ist {verdict}; stabil bis {greatest:.2} bei {stiffness_n_m:.0} N/m"

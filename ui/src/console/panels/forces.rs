@@ -234,7 +234,7 @@ fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
         if ui.available_width() < needed {
             let spacing = ui.spacing_mut();
             (spacing.item_spacing.x, spacing.button_padding.x) =
-                (0.5 * spacing.item_spacing.x, 0.5 * spacing.button_padding.x);
+                (0.25 * spacing.item_spacing.x, 0.35 * spacing.button_padding.x);
         }
         for (name, rendered) in [(text::forces::MEASURED.get(), false), (text::forces::RENDERED.get(), true)] {
             let (rect, _) = ui.allocate_exact_size(vec2(30.0, 14.0), Sense::hover());

@@ -72,7 +72,7 @@ pub fn with<T>(language: Language, work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// The same work for another thread, which then speaks the language of this one.
+/// The same work for another thread, which then has the language of this one.
 pub(crate) fn carried<T>(work: impl FnOnce() -> T) -> impl FnOnce() -> T {
     let language = current();
     move || {
@@ -121,14 +121,14 @@ macro_rules! told {
         if $crate::language::current() == $crate::language::Language::German {
             format!($german $(, $($argument)*)?)
         } else {
-            $crate::language::spoken(format!($english $(, $($argument)*)?))
+            $crate::language::plain_or_pseudo(format!($english $(, $($argument)*)?))
         }
     };
 }
 pub(crate) use told;
 
 /// An English text with its values in it, as it is or lengthened.
-pub(crate) fn spoken(english: String) -> String {
+pub(crate) fn plain_or_pseudo(english: String) -> String {
     if current() == Language::Pseudo { pseudo(&english) } else { english }
 }
 

@@ -346,7 +346,7 @@ impl ConsoleApp {
 
 impl eframe::App for ConsoleApp {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
-        self.speak();
+        self.use_language();
         if self.only_flashes(ctx) {
             return;
         }
@@ -360,7 +360,7 @@ impl eframe::App for ConsoleApp {
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        self.speak();
+        self.use_language();
         self.measure(&ctx, frame);
         // Not switched on again: a view that keeps changing its look would be worse.
         let slow = self.opened.elapsed() > WARM_UP && self.live.figures.frame_ms[0] > SLOW_MS;

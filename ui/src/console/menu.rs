@@ -92,7 +92,7 @@ fn languages_ui(ui: &mut Ui, now: Language) -> Option<Action> {
         for language in Language::CHOICES {
             let button = Button::selectable(now == language, language.name()).frame_when_inactive(true);
             if ui.add(button.min_size(CHOICE)).clicked() {
-                wanted = Some(Action::Speak(language));
+                wanted = Some(Action::Language(language));
             }
         }
     });

@@ -75,7 +75,7 @@ pub struct Options {
     pub pictures: Option<pictures::Album>,
     /// Start in this role instead of the last one.
     pub role: Option<roles::Role>,
-    /// Speak this language instead of the last one.
+    /// Use this language instead of the last one.
     pub language: Option<Language>,
     /// Show this recorded session at the start.
     pub session: Option<PathBuf>,

@@ -382,5 +382,5 @@ fn the_option_chooses_the_language_and_english_is_the_first() {
     assert!(bench::can_press(&console, &pseudo("Stop")), "{:?}", bench::texts(&console));
     let mut console = console_of("peg_transfer", SIZES[0], |app| app);
     console.run_steps(3);
-    assert!(bench::can_press(&console, "Stop"), "a window that is opened afterwards speaks its own language");
+    assert!(bench::can_press(&console, "Stop"), "a window that is opened afterwards has its own language");
 }

@@ -170,9 +170,9 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
         done.push(alike(&mut console, Action::Light(light), reset, of_menu(Kind::Button, name), settings));
     }
     // The way back is tried where German labels are known.
-    let speak = Action::Speak(Language::German);
+    let german = Action::Language(Language::German);
     let reset = set(|settings| settings.language = Language::English);
-    done.push(alike(&mut console, speak, reset, of_menu(Kind::Button, Language::German.name()), settings));
+    done.push(alike(&mut console, german, reset, of_menu(Kind::Button, Language::German.name()), settings));
     for action in [Action::Larger, Action::Smaller] {
         let reset = set(|settings| settings.scale_percent = 150);
         done.push(alike(&mut console, action, reset, |c| by_key(c, action), settings));
@@ -225,7 +225,7 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
             action,
             Action::View(_)
                 | Action::Light(_)
-                | Action::Speak(Language::German)
+                | Action::Language(Language::German)
                 | Action::Larger
                 | Action::Smaller
                 | Action::Size(_)
@@ -594,7 +594,7 @@ fn every_command_of_the_table_is_tried() {
     let tried_in = |action: Action| match action {
         Action::View(_)
         | Action::Light(_)
-        | Action::Speak(_)
+        | Action::Language(_)
         | Action::Larger
         | Action::Smaller
         | Action::Size(_)

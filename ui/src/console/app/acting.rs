@@ -105,7 +105,7 @@ impl ConsoleApp {
             Action::Tour => self.help.begin_tour(),
             Action::Palette => self.palette.toggle(),
             Action::Light(light) => settings.light = light,
-            Action::Speak(language) => settings.language = language,
+            Action::Language(language) => settings.language = language,
             Action::Larger => settings.scale_by(1),
             Action::Smaller => settings.scale_by(-1),
             Action::Size(percent) => settings.scale_percent = percent,

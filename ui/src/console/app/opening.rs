@@ -27,7 +27,7 @@ impl ConsoleApp {
         self.photographer = self.options.pictures.clone().map(Photographer::new);
         self.settings.now.role = self.options.role.unwrap_or(self.settings.now.role);
         self.settings.now.language = self.options.language.unwrap_or(self.settings.now.language);
-        self.speak();
+        self.use_language();
         if let Some(which) = self.options.wizard {
             self.open_wizard(which);
         }
@@ -38,8 +38,8 @@ impl ConsoleApp {
         self
     }
 
-    /// The window's thread speaks the language of the settings; what is told without a window stays English.
-    pub(super) fn speak(&self) {
+    /// The window's thread has the language of the settings; what is told without a window stays English.
+    pub(super) fn use_language(&self) {
         language::set(self.settings.now.language);
     }
 

@@ -56,7 +56,7 @@ pub enum Action {
     /// Chooses the light or the dark palette.
     Light(bool),
     /// Chooses the language of the window.
-    Speak(Language),
+    Language(Language),
     /// One step larger.
     Larger,
     /// One step smaller.

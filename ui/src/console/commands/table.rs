@@ -74,7 +74,7 @@ fn screen() -> Vec<Entry> {
     let [undo, redo] = UNDO;
     // Each in itself: who does not read the present language finds the own one.
     let languages = Language::CHOICES
-        .map(|one| entry(Action::Speak(one), names::language(one.name()), names::LANGUAGE_DOES.get(), &[], menu));
+        .map(|one| entry(Action::Language(one), names::language(one.name()), names::LANGUAGE_DOES.get(), &[], menu));
     let mut entries = vec![
         entry(Action::Undo, names::UNDO.get(), names::UNDO_DOES.get(), undo, menu),
         entry(Action::Redo, names::REDO.get(), names::REDO_DOES.get(), redo, menu),

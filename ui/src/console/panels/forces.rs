@@ -222,10 +222,19 @@ fn twist_ui(ui: &mut Ui, live: &Live, side: Side) {
 
 fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
     ui.horizontal(|ui| {
-        if ui.available_width() > HEADING_FROM && has_room(ui, live, state) {
-            ui.label(RichText::new(text::forces::HEADING.get()).text_style(egui::TextStyle::Heading))
+        let needed = needed_width(ui, live, state);
+        let heading = text::forces::HEADING.get();
+        let style = TextStyle::Heading.resolve(ui.style());
+        let with_heading = needed + width_of(ui.painter(), heading, style) + 36.0;
+        if ui.available_width() > with_heading.max(HEADING_FROM) {
+            ui.label(RichText::new(heading).text_style(egui::TextStyle::Heading))
                 .on_hover_text(text::forces::HOVER.get());
             ui.add_space(12.0);
+        }
+        if ui.available_width() < needed {
+            let spacing = ui.spacing_mut();
+            (spacing.item_spacing.x, spacing.button_padding.x) =
+                (0.25 * spacing.item_spacing.x, 0.35 * spacing.button_padding.x);
         }
         for (name, rendered) in [(text::forces::MEASURED.get(), false), (text::forces::RENDERED.get(), true)] {
             let (rect, _) = ui.allocate_exact_size(vec2(30.0, 14.0), Sense::hover());
@@ -237,8 +246,8 @@ fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
     });
 }
 
-/// Whether the heading and everything beside it fit into one row in the language of the window.
-fn has_room(ui: &Ui, live: &Live, state: &ForcesState) -> bool {
+/// What the row takes beside its heading in the language of the window.
+fn needed_width(ui: &Ui, live: &Live, state: &ForcesState) -> f32 {
     let of = |words: &str, style: TextStyle| width_of(ui.painter(), words, style.resolve(ui.style()));
     let signs = [text::forces::MEASURED.get(), text::forces::RENDERED.get()];
     let pause = if state.is_paused() { text::forces::GO_ON.get() } else { text::forces::PAUSE.get() };
@@ -247,15 +256,14 @@ fn has_room(ui: &Ui, live: &Live, state: &ForcesState) -> bool {
         buttons.extend(Side::ALL.map(side_name));
     }
     let gaps = ui.spacing().item_spacing.x + 2.0 * ui.spacing().button_padding.x;
-    let heading = of(text::forces::HEADING.get(), TextStyle::Heading) + 12.0;
     let signs: f32 = signs.iter().map(|words| of(words, TextStyle::Small) + 36.0 + 3.0 * gaps).sum();
-    let buttons: f32 = buttons.iter().map(|words| of(words, TextStyle::Button).max(76.0) + gaps).sum();
-    heading + signs + buttons + 24.0 < ui.available_width()
+    let buttons: f32 = buttons.iter().map(|words| of(words, TextStyle::Button).max(44.0) + gaps).sum();
+    signs + buttons
 }
 
 /// What is shown of the traces.
 fn switches_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
-    let size = vec2(76.0, 26.0);
+    let size = vec2(60.0, 26.0);
     let reset = ui.add(Button::new(text::forces::LAST_TEN_SECONDS.get()).min_size(size));
     if reset.on_hover_text(text::forces::LAST_TEN_SECONDS_HOVER.get()).clicked() {
         state.show_last_ten();

@@ -2,6 +2,7 @@
 
 use crate::language::{Text, told};
 
+pub(in crate::console) const PAPER: Text = Text::of("paper", "Artikel");
 pub(in crate::console) const STEP_READY: Text = Text::of("Ready", "Bereit");
 pub(in crate::console) const STEP_READY_HOVER: Text = Text::of(
     "Checks that everything needed for a recording is present",

@@ -184,7 +184,7 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, going_on: &GoingOn) -> Opti
         }
     });
     ui.label(small(steps[now].meaning.get()));
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let size = vec2(96.0, 34.0);
         if ui.add_enabled(now > 0, Button::new(text::wizards::BACK.get()).min_size(size)).clicked() {
             wish = Some(Wish::GoTo(now - 1));

@@ -1,6 +1,6 @@
 //! The check: a new guided recording, then the network's errors compared with the paper's and with simpler methods.
 
-use egui::{Button, Grid, RichText, Ui, vec2};
+use egui::{Button, Grid, RichText, TextStyle, Ui, vec2};
 use egui_plot::{AxisHints, Bar, BarChart, Corner, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
 use nima_core::calibration::Verdict;
 use nima_recording::tip_force::ROW_EVERY_S;
@@ -15,7 +15,7 @@ use super::{
 use crate::{
     console::{
         text, theme,
-        widgets::{card, figure, next_button, small},
+        widgets::{card, figure, fitting_style, next_button, small, weak},
     },
     words::Words as _,
 };
@@ -119,24 +119,28 @@ fn mae_of(part: &Part, method: &str, axis: usize) -> String {
     stats.map_or_else(|| "-".to_owned(), |stats| format!("{:.3}", stats.mae))
 }
 
+/// Widest head of a column of errors.
+const HEAD: f32 = 100.0;
+
 fn figures_ui(ui: &mut Ui, checked: &Checked) {
     let meaning = text::tip_force::ERRORS_HOVER.get();
     card(ui, text::tip_force::ERRORS_TITLE.get(), meaning, |ui| {
         let check = &checked.check;
-        Grid::new("tip_force_check").num_columns(9).spacing(vec2(20.0, 5.0)).show(ui, |ui| {
+        Grid::new("tip_force_check").num_columns(9).spacing(vec2(14.0, 5.0)).show(ui, |ui| {
             let heads = [
                 text::tip_force::AXIS.get(),
                 "MAE",
-                "paper",
+                text::tip_force::PAPER.get(),
                 "SD",
-                "paper",
+                text::tip_force::PAPER.get(),
                 text::tip_force::WRIST_ALONE_MAE.get(),
                 text::tip_force::FRICTION_MODEL_MAE.get(),
             ];
             for head in
                 heads.into_iter().chain([text::tip_force::NO_CONTACT_MEAN.get(), text::tip_force::NO_CONTACT_SD.get()])
             {
-                ui.label(small(head));
+                let font = fitting_style(ui, head, &TextStyle::Small, HEAD);
+                ui.label(weak(head).font(font));
             }
             ui.end_row();
             for (axis, name) in AXES.into_iter().enumerate() {

@@ -1,6 +1,6 @@
 //! The panel "Why no force?": the gates between model and hand in order, and the present effect of each.
 
-use egui::{Button, Color32, Label, RichText, Ui, vec2};
+use egui::{Button, Color32, Label, RichText, TextStyle, Ui, vec2};
 use nima_core::safety::{EnergyMode, GATES, Gate as Which, Reason};
 use nima_machine::{
     messages::{Fault, LoopState},
@@ -13,7 +13,7 @@ use crate::{
         live::Live,
         scene3d::side_name,
         text, theme,
-        widgets::{Sign, sign_ui, small},
+        widgets::{Sign, fitting_style, sign_ui, small},
     },
     words::{Words as _, gate_words},
 };
@@ -183,7 +183,8 @@ fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate) {
         let ink: Color32 = if acting { theme::now().text } else { theme::now().text_weak };
         ui.label(RichText::new(gate.name).color(ink));
         ui.label(RichText::new(word).color(ink));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(small(&gate.note)));
+        let font = fitting_style(ui, &gate.note, &TextStyle::Small, ui.available_width());
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(small(&gate.note).font(font)));
     });
     row.response.on_hover_text(format!("{}\n{}", gate.meaning, history(live, side, gate.which)));
 }

@@ -73,6 +73,8 @@ mod terminal {
         io::{Error, Result},
         os::unix::fs::symlink,
         path::{Path, PathBuf},
+        thread::sleep,
+        time::{Duration, Instant},
     };
 
     use nima_devices::own_folder::lock_file;
@@ -80,6 +82,8 @@ mod terminal {
 
     use super::{foreign, path_of, served};
 
+    /// A program that this process starts holds the lock too until it is loaded, also when the emulator has just ended.
+    const INHERITED: Duration = Duration::from_millis(500);
     /// Where the system makes pseudo-terminals: only links to there are replaced.
     const TERMINALS: &str = "/dev/pts/";
 
@@ -98,10 +102,14 @@ mod terminal {
         pub(in crate::emulators) fn claim(link: Option<&Path>, name: &str) -> Result<Self> {
             let (path, folder) = path_of(link, name)?;
             let claim = lock_file(&hidden(&path, "lock"))?;
-            match claim.try_lock() {
-                Ok(()) => {}
-                Err(TryLockError::Error(error)) => return Err(error),
-                Err(TryLockError::WouldBlock) => return Err(served(&path)),
+            let begin = Instant::now();
+            loop {
+                match claim.try_lock() {
+                    Ok(()) => break,
+                    Err(TryLockError::Error(error)) => return Err(error),
+                    Err(TryLockError::WouldBlock) if begin.elapsed() < INHERITED => sleep(INHERITED / 50),
+                    Err(TryLockError::WouldBlock) => return Err(served(&path)),
+                }
             }
             if !may_be_replaced(&path) {
                 return Err(foreign(&path));

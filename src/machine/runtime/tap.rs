@@ -25,8 +25,8 @@ use crate::{
 pub const TICKS_TAPPED_MAX: usize = 2048;
 /// Room for operations and events beside the ticks.
 const OTHERS_MAX: usize = 512;
-/// How often the other end looks for entries.
-const LOOK_EVERY: Duration = Duration::from_millis(5);
+/// How often the other end looks for entries: what watches a loop over a network is told of a tick that much later at most.
+const LOOK_EVERY: Duration = Duration::from_millis(3);
 
 /// What is done to the loop between two ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]

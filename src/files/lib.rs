@@ -7,7 +7,9 @@
 mod input;
 mod output;
 mod quote;
+mod settings;
 
 pub use input::{CONFIG_MAX, Input, MODEL_MAX, TABLE_MAX, open_file, open_table, read, read_text};
 pub use output::{check_output, copy_atomically, write_atomically, write_private};
 pub use quote::{PASSAGE, QUOTE, quoted, shortened};
+pub use settings::{Misfit, from_table, from_toml};

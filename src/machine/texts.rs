@@ -2,29 +2,29 @@
 //! short and printable.
 
 use nima_files::quoted;
-use toml::{Table, Value};
+use toml::de::{DeTable, DeValue};
 
 /// Longest text, characters: names, addresses, ports, paths.
 const MOST: usize = 512;
 
 /// Key and fault of the first text that cannot be displayed.
-pub(crate) fn fault(table: &Table) -> Option<String> {
-    table
-        .iter()
-        .find_map(|(key, value)| of_value(value).map(|(place, fault)| format!("{}{place} {fault}", quoted(key))))
+pub(crate) fn fault(table: &DeTable<'_>) -> Option<String> {
+    table.iter().find_map(|(key, value)| {
+        of_value(value.get_ref()).map(|(place, fault)| format!("{}{place} {fault}", quoted(key.get_ref())))
+    })
 }
 
 /// Key below this value, and what is wrong with its text.
-fn of_value(value: &Value) -> Option<(String, String)> {
+fn of_value(value: &DeValue<'_>) -> Option<(String, String)> {
     match value {
-        Value::String(text) => of_text(text).map(|fault| (String::new(), fault)),
-        Value::Array(values) => values
+        DeValue::String(text) => of_text(text).map(|fault| (String::new(), fault)),
+        DeValue::Array(values) => values
             .iter()
             .enumerate()
-            .find_map(|(k, value)| of_value(value).map(|(place, fault)| (format!("[{k}]{place}"), fault))),
-        Value::Table(table) => table
-            .iter()
-            .find_map(|(key, value)| of_value(value).map(|(place, fault)| (format!(".{}{place}", quoted(key)), fault))),
+            .find_map(|(k, value)| of_value(value.get_ref()).map(|(place, fault)| (format!("[{k}]{place}"), fault))),
+        DeValue::Table(table) => table.iter().find_map(|(key, value)| {
+            of_value(value.get_ref()).map(|(place, fault)| (format!(".{}{place}", quoted(key.get_ref())), fault))
+        }),
         _ => None,
     }
 }
@@ -43,7 +43,7 @@ mod tests {
 
     #[test]
     fn a_text_that_cannot_be_shown_is_told_by_its_key() {
-        let fault = |text: &str| fault(&toml::from_str(text).unwrap());
+        let fault = |text: &str| fault(DeTable::parse(text).unwrap().get_ref());
         assert_eq!(fault("name = \"x\"\nn = 1\n[a]\nports = [\"/dev/ttyUSB0\"]\n"), None);
         let coloured = fault("[a]\nports = [\"x\", \"\\u001b[31m\"]\n").unwrap();
         assert!(coloured.starts_with("a.ports[1] = \"\\u{1b}[31m\" has a control character"), "{coloured}");

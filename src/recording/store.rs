@@ -263,16 +263,18 @@ pub fn read<R: Record>(path: &Path) -> Result<Option<R>, StoreError> {
         Err(source) => return Err(StoreError::Read { path: path.to_owned(), source }),
     };
     let damaged = |message: String| StoreError::Damaged { path: path.to_owned(), message };
-    let in_words = |error: toml::de::Error| damaged(shortened(&one_line(&error.to_string()), PASSAGE));
+    let in_words = |misfit: nima_files::Misfit| {
+        damaged(shortened(&format!("line {}: {}", misfit.line(&text), misfit.message()), PASSAGE))
+    };
     // Check the kind first: keys of another kind would only be reported as unknown.
-    let head: toml::Table = toml::from_str(&text).map_err(in_words)?;
+    let head: toml::Table = text.parse().map_err(|error: toml::de::Error| in_words(error.into()))?;
     if let Some(found) = head.get("kind").and_then(toml::Value::as_str)
         && found != R::KIND
     {
         let (found, wanted) = (quoted(found), R::KIND.to_owned());
         return Err(StoreError::Other { path: path.to_owned(), what: "kind", found, wanted });
     }
-    let record: R = toml::from_str(&text).map_err(in_words)?;
+    let record: R = nima_files::from_toml(&text).map_err(in_words)?;
     if let Some(fault) = record.fault() {
         return Err(damaged(fault.to_owned()));
     }
@@ -307,12 +309,6 @@ pub fn previous(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".previous");
     name.into()
-}
-
-fn one_line(text: &str) -> String {
-    // Without the lines in which the parser quotes the file; position and message are enough.
-    let kept = text.lines().filter(|line| !line.trim_start().starts_with('|') && !line.contains(" | "));
-    kept.map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(": ")
 }
 
 /// Whether a name can be part of a file name: only letters, digits and a few symbols, so that it cannot contain a path.

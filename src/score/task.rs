@@ -107,8 +107,10 @@ impl TaskFile {
     /// # Errors
     /// [`TaskError::Toml`] if it is no TOML or has an unknown or missing key, [`TaskError::Setting`] if a value is out of range.
     pub fn from_toml(text: &str) -> Result<Self, TaskError> {
-        let task: Self = toml::from_str(text)
-            .map_err(|error| TaskError::Toml { reason: error.to_string().trim_end().to_owned() })?;
+        let task: Self = nima_files::from_toml(text).map_err(|misfit| {
+            let reason = format!("line {}: {}", misfit.line(text), misfit.message());
+            TaskError::Toml { reason }
+        })?;
         task.check()?;
         Ok(task)
     }

@@ -89,9 +89,8 @@ impl Answers {
     /// assert!(Answers::from_toml("realism = 5", Questionnaire::Sus).is_err());
     /// ```
     pub fn from_toml(text: &str, asked: Questionnaire) -> Result<Self, String> {
-        let file: AnswerFile = toml::from_str(text).map_err(|error| {
-            format!("the answers cannot be read: {}", error.message().lines().collect::<Vec<_>>().join(" "))
-        })?;
+        let file: AnswerFile = nima_files::from_toml(text)
+            .map_err(|misfit| format!("the answers cannot be read: {}", misfit.message()))?;
         let AnswerFile { nasa_tlx, nasa_tlx_weighted, sus, realism, free_text } = file;
         let answers = match asked {
             Questionnaire::NasaTlx => nasa_tlx.map(Self::NasaTlx),

@@ -184,10 +184,8 @@ impl StudyFile {
     /// # Errors
     /// [`Mistakes`]: every value that is wrong, or why the text cannot be read at all.
     pub fn from_toml(text: &str) -> Result<Self, Mistakes> {
-        let file: Self = toml::from_str(text).map_err(|error| {
-            let line = error.span().map_or(1, |span| text[..span.start.min(text.len())].matches('\n').count() + 1);
-            Mistakes(vec![format!("line {line}: {}", error.message().lines().collect::<Vec<_>>().join(" "))])
-        })?;
+        let file: Self = nima_files::from_toml(text)
+            .map_err(|misfit| Mistakes(vec![format!("line {}: {}", misfit.line(text), misfit.message())]))?;
         file.check()?;
         Ok(file)
     }

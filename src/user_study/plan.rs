@@ -122,7 +122,7 @@ impl Plan {
     }
 
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
-        let plan: Self = toml::from_str(text).map_err(|error| error.message().lines().collect::<Vec<_>>().join(" "))?;
+        let plan: Self = nima_files::from_toml(text).map_err(|misfit| misfit.message().to_owned())?;
         match plan.version {
             OLDEST..=VERSION => Ok(plan),
             other => Err(format!(

@@ -1,14 +1,11 @@
 //! Reading of settings files: by name, with the line of an error, and with range checks.
 
-use std::{
-    ops::Range,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 use nima_devices::Trouble;
-use nima_files::{PASSAGE, shortened};
-use serde::Deserialize;
+use nima_files::{Misfit, PASSAGE, from_table, shortened};
+use serde::de::DeserializeOwned;
 use toml::de::DeTable;
 
 use crate::rig::Misread;
@@ -90,28 +87,25 @@ pub fn text(kind: &'static str, name: &str, embedded: &[(&str, &str)]) -> Result
 /// let error = parse::<RigConfig>("rig", Path::new("mine.toml"), "rate = 1000").expect_err("no such key");
 /// assert!(error.to_string().contains("mine.toml") && error.to_string().contains("rate"), "{error}");
 /// ```
-pub fn parse<T: for<'de> Deserialize<'de>>(kind: &'static str, path: &Path, text: &str) -> Result<T, ConfigError> {
+pub fn parse<T: DeserializeOwned>(kind: &'static str, path: &Path, text: &str) -> Result<T, ConfigError> {
     parse_with(kind, path, text, |_| Ok(()))
 }
 
 /// The same for a file whose tables are transformed first; every value keeps its position in the text.
-pub(crate) fn parse_with<T: for<'de> Deserialize<'de>>(
+pub(crate) fn parse_with<T: DeserializeOwned>(
     kind: &'static str,
     path: &Path,
     text: &str,
     transform: impl FnOnce(&mut DeTable<'_>) -> Result<(), Misread>,
 ) -> Result<T, ConfigError> {
     let refused = |message: String| ConfigError::Parse { kind, path: path.to_owned(), message };
-    let at = |place: Option<Range<usize>>, message: &str| {
-        let line = place.map_or(1, |span| text[..span.start.min(text.len())].matches('\n').count() + 1);
-        let words = message.lines().collect::<Vec<_>>().join(" ");
-        refused(format!("line {line}: {}", shortened(&words, PASSAGE)))
-    };
-    let wrong = |error: toml::de::Error| at(error.span(), error.message());
-    let mut root = DeTable::parse(text).map_err(wrong)?;
-    transform(root.get_mut()).map_err(|(place, message)| at(Some(place), &message))?;
-    let parsed = T::deserialize(toml::Deserializer::from(root)).map_err(wrong)?;
-    match crate::texts::fault(&toml::from_str(text).map_err(wrong)?) {
+    let wrong =
+        |misfit: Misfit| refused(format!("line {}: {}", misfit.line(text), shortened(misfit.message(), PASSAGE)));
+    let mut root = DeTable::parse(text).map_err(|error| wrong(error.into()))?;
+    let fault = crate::texts::fault(root.get_ref());
+    transform(root.get_mut()).map_err(|(place, message)| wrong(Misfit::new(message, Some(place))))?;
+    let parsed = from_table(root).map_err(wrong)?;
+    match fault {
         None => Ok(parsed),
         Some(fault) => Err(refused(fault)),
     }

@@ -156,7 +156,7 @@ impl Store {
         names.sort_by(|one, other| stem(one).cmp(stem(other)));
         names.iter().rev().find_map(|name| {
             let text = nima_files::read_text(&self.checks().join(name), nima_files::CONFIG_MAX).ok()?;
-            let record: ReadyRecord = toml::from_str(&text).ok()?;
+            let record: ReadyRecord = nima_files::from_toml(&text).ok()?;
             (record.kind == KIND && record.rig == rig && fits(&record)).then_some(record)
         })
     }

@@ -126,7 +126,10 @@ pub(super) fn take_calibrations(from: &mut &[u8]) -> Result<Calibrations, Journa
     let gravity: Option<GravityModel> = if gravity.is_empty() {
         None
     } else {
-        Some(toml::from_str(&gravity).map_err(|error| part("gravity calibration")(error.message().to_owned()))?)
+        Some(
+            nima_files::from_toml(&gravity)
+                .map_err(|misfit| part("gravity calibration")(misfit.message().to_owned()))?,
+        )
     };
     let model = take_part(from)?;
     let tip_force = if model.is_empty() {

@@ -178,17 +178,19 @@ pub fn choose(ctx: &egui::Context, light: bool) {
     ctx.set_theme(if light { egui::Theme::Light } else { egui::Theme::Dark });
 }
 
+/// Roboto alone: every character that the screen shows is in it, and one font looks the same on every computer.
 fn fonts() -> FontDefinitions {
-    let mut fonts = FontDefinitions::default();
+    let mut fonts = FontDefinitions::empty();
     let regular = FontData::from_static(include_bytes!("../../../assets/fonts/Roboto-Regular.ttf"));
     let medium = FontData::from_static(include_bytes!("../../../assets/fonts/Roboto-Medium.ttf"));
-    fonts.font_data.insert("roboto".to_owned(), Arc::new(regular));
-    fonts.font_data.insert("roboto-medium".to_owned(), Arc::new(medium));
-    let fallback = fonts.families.entry(FontFamily::Proportional).or_default();
-    let mut strong = fallback.clone();
-    fallback.insert(0, "roboto".to_owned());
-    strong.insert(0, "roboto-medium".to_owned());
-    fonts.families.insert(FontFamily::Name(STRONG.into()), strong);
+    for (family, name, font) in [
+        (FontFamily::Proportional, "roboto", regular.clone()),
+        (FontFamily::Monospace, "roboto", regular),
+        (FontFamily::Name(STRONG.into()), "roboto-medium", medium),
+    ] {
+        fonts.font_data.insert(name.to_owned(), Arc::new(font));
+        fonts.families.insert(family, vec![name.to_owned()]);
+    }
     fonts
 }
 
@@ -256,7 +258,37 @@ pub fn card() -> egui::Frame {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
+
+    /// Every character beyond ASCII in the console's source, where all its texts are: nothing else may be drawn as an empty box.
+    fn written(folder: &Path, into: &mut std::collections::BTreeSet<char>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                written(&path, into);
+            } else {
+                into.extend(std::fs::read_to_string(&path).unwrap().chars().filter(|letter| !letter.is_ascii()));
+            }
+        }
+    }
+
+    #[test]
+    fn the_fonts_have_every_character_that_is_shown() {
+        let ctx = egui::Context::default();
+        apply(&ctx);
+        ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
+        let mut shown = "°…−·".chars().collect();
+        written(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut shown);
+        assert!(shown.len() > 20, "{shown:?}");
+        for font in [regular(14.0), strong(14.0), FontId::monospace(14.0)] {
+            let lacks: Vec<char> =
+                ctx.fonts_mut(|fonts| shown.iter().filter(|one| !fonts.has_glyph(&font, **one)).copied().collect());
+            assert!(lacks.is_empty(), "{font:?} {lacks:?}");
+            assert!(!ctx.fonts_mut(|fonts| fonts.has_glyph(&font, '力')), "a glyph that no font has");
+        }
+    }
 
     /// Relative luminance as defined by WCAG 2.
     fn luminance(colour: Color32) -> f64 {

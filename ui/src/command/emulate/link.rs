@@ -50,12 +50,12 @@ fn line(set: &[String]) -> anyhow::Result<Line> {
         };
         text += &lines;
     }
-    toml::from_str(&text).map_err(|error| {
+    nima_files::from_toml(&text).map_err(|misfit| {
         anyhow::anyhow!(
             "{}; keys: to, at, seed, and for both directions or behind there. or back.: delay_s, jitter.normal.deviation_s, \
              jitter.pareto.mean_s and .shape, overtakes, loss.independent.share, loss.bursts.share and .burst_s, reorder, reorder_s, \
              duplicate, rate_bit_s, queue_s, flap.down_s and flap.every_s",
-            error.message()
+            misfit.message()
         )
     })
 }

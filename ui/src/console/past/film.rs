@@ -121,7 +121,8 @@ fn attached<T: serde::de::DeserializeOwned>(recorded: &Recorded, name: &str) -> 
     let reader = recorded.reader();
     let place = reader.attachments().iter().find(|one| one.name == name).ok_or_else(|| text::past::without(name))?;
     let bytes = reader.attachment(place).map_err(|error| chain(&error))?;
-    toml::from_str(&String::from_utf8_lossy(&bytes)).map_err(|error| text::past::unusable(name, error.message()))
+    nima_files::from_toml(&String::from_utf8_lossy(&bytes))
+        .map_err(|misfit| text::past::unusable(name, misfit.message()))
 }
 
 /// Extremes of the forces in a short time.

@@ -44,12 +44,15 @@ package_flags() {
   printf '%s\n' "--remap-path-prefix=$registry=/cargo" "--remap-path-prefix=$PWD=/nima" "--remap-path-prefix=$target=/target"
 }
 
+# The last step optimises all crates together, for size: what must be fast was made so in its own crate (Cargo.toml, profile `packages`).
+package_last_step=(-Copt-level=z)
+
 # The program with its symbols, built from this folder.
 build_program() {
   local target=$1 flags=(-Clinker=nima-linker -Clinker-features=-lld)
   mapfile -t -O 2 flags < <(package_flags "$target")
   PATH=$PWD/assets/package:$PATH CARGO_ENCODED_RUSTFLAGS=$(IFS=$'\x1f'; printf '%s' "${flags[*]}") CARGO_TARGET_DIR=$target CARGO_INCREMENTAL=0 \
-    timed cargo build --locked --profile packages --target "$package_target" -p nima-console --bin nima
+    timed cargo rustc --locked --profile packages --target "$package_target" -p nima-console --bin nima -- "${package_last_step[@]}"
 }
 
 # SBOM, licence texts and the list of crates of the program for a kind of system.

@@ -24,7 +24,7 @@ build_windows_program() {
   mapfile -t flags < <(package_flags "$target")
   flags+=(-Clink-arg=-Wl,--no-insert-timestamp)
   CARGO_ENCODED_RUSTFLAGS=$(IFS=$'\x1f'; printf '%s' "${flags[*]}") CARGO_TARGET_DIR=$target CARGO_INCREMENTAL=0 \
-    timed cargo build --locked --profile packages --target "$windows_target" -p nima-console --bin nima
+    timed cargo rustc --locked --profile packages --target "$windows_target" -p nima-console --bin nima -- "${package_last_step[@]}"
 }
 
 make_windows() {

@@ -1,7 +1,8 @@
 //! Settings in TOML, read into a type of its own.
 //!
 //! `toml` parses the text; the way from its values into a type is here, because `toml`'s builds each type four times (for tables, dates,
-//! positions and documents), which was a megabyte of the program. Dates are not settings and are refused; so are entries that nothing reads.
+//! positions and documents), which was a megabyte of the program. Dates are not settings and are refused; so are entries
+//! that nothing reads.
 
 use std::{fmt, ops::Range};
 

@@ -15,7 +15,7 @@ use nima_console::{
 use nima_machine::messages::LoopState;
 
 use crate::{
-    bench::{self, Console, console_of, pick, press, read, shows, until},
+    bench::{self, Console, console_of, pick, press, read, shows, toured, until},
     past, studies,
     walk::{VIEWS, faults, faults_of_controls, faults_of_texts, faults_overlaid, seen, texts},
 };
@@ -120,11 +120,7 @@ fn told(all: &[String]) {
 
 fn begin(scene: &str, folder: &Path) -> Console {
     let folder = folder.to_path_buf();
-    let mut console = console_of(scene, SIZES[2], move |app| {
-        let mut kept = Kept::open(&folder);
-        kept.now.toured = true;
-        app.with_settings(kept)
-    });
+    let mut console = console_of(scene, SIZES[2], move |app| app.with_settings(toured(&folder)));
     until(&mut console, "any tick", |_| true);
     console
 }

@@ -22,7 +22,7 @@ use nima_console::{
 use nima_machine::messages::LoopState;
 
 use crate::{
-    bench::{self, console_of, until},
+    bench::{self, console_of, toured, until},
     past, studies,
 };
 
@@ -308,11 +308,7 @@ fn nothing_is_cut_or_overlaps_in_the_past_and_in_the_list_of_sessions() {
     fs::create_dir_all(&sessions).unwrap();
     let path = sessions.join("20261123T131415Z-Simulated-rig.mcap");
     past::record(&path, "bimanual", "3");
-    let mut harness = console_of("peg_transfer", SIZES[0], move |app| {
-        let mut kept = Kept::open(&data);
-        kept.now.toured = true;
-        app.with_settings(kept)
-    });
+    let mut harness = console_of("peg_transfer", SIZES[0], move |app| app.with_settings(toured(&data)));
     until(&mut harness, "any tick", |_| true);
     let mut all = Vec::new();
     bench::press(&mut harness, "Sessions");

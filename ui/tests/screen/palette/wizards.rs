@@ -39,10 +39,9 @@ fn every_wizard_is_opened_and_left() {
     done.push(Action::CloseWizard);
     let offered = rows(&mut console);
     assert!(offered.iter().all(|(title, _)| *title != entry(Action::Calibrate(Which::Camera)).title), "no endoscope");
-    expect(&done, |action| match action {
-        Action::Calibrate(which) => which.scene().is_some(),
-        action => matches!(action, Action::Check | Action::Calibrations | Action::CloseWizard),
-    });
+    // Those that need arms or an endoscope are opened in other tests.
+    done.extend(Which::ALL.into_iter().filter(|which| which.scene().is_none()).map(Action::Calibrate));
+    expect(&done, "the wizards");
 }
 
 #[cfg(target_os = "linux")]

@@ -31,6 +31,7 @@ pub mod simulated_arm;
 mod slot;
 pub mod transport;
 mod trouble;
+mod unread;
 
 pub use health::{Health, Identity, Loss, Standing, same_serial};
 pub use lever::Lever;

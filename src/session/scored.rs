@@ -1,6 +1,8 @@
 //! The score of a trial: how the hands moved and pressed while they were engaged, and what happened to the objects of the scene.
 //!
-//! [`Trial`] takes it from a loop that runs, [`score`] from a recorded session, with the same figures to the last bit.
+//! [`LiveTrial`] takes it from the ticks of a loop that runs, [`score`] from a recorded session, with the same figures to the last bit.
+
+mod live;
 
 use std::{
     collections::{BTreeMap, VecDeque},
@@ -8,6 +10,7 @@ use std::{
     path::Path,
 };
 
+use nalgebra::Vector3;
 use nima_machine::{
     messages::LoopState,
     rig::{SIDES, Side},
@@ -15,6 +18,7 @@ use nima_machine::{
 use nima_recording::session::Reader;
 use nima_score::{Event, HandSample, Happening, Sample, Score, Scorer, TaskFile};
 
+pub use self::live::LiveTrial;
 use crate::{
     objects,
     plotted::{self, PlottedError, PlottedTick},
@@ -26,7 +30,7 @@ const STRETCH_NS: u64 = 2_000_000_000;
 /// A trial, from the first tick in which an arm is engaged to the last one. What is told of a time must be told before the sample of that
 /// time.
 #[derive(Debug)]
-pub struct Trial {
+struct Trial {
     scorer: Scorer,
     begun_s: Option<f64>,
     engaged_s: f64,
@@ -40,7 +44,7 @@ pub struct Trial {
 
 impl Trial {
     /// A trial of this task.
-    pub fn new(task: &TaskFile) -> Self {
+    fn new(task: &TaskFile) -> Self {
         Self {
             scorer: Scorer::new(task),
             begun_s: None,
@@ -53,17 +57,17 @@ impl Trial {
     }
 
     /// From this time of the loop (s) on the jaws of this side are open so far, rad.
-    pub fn opening(&mut self, side: Side, t_s: f64, opening_rad: f64) {
+    fn opening(&mut self, side: Side, t_s: f64, opening_rad: f64) {
         self.openings[side.index()].push_back((as_recorded(t_s), opening_rad));
     }
 
     /// This happened to the objects.
-    pub fn happening(&mut self, happening: &Happening) {
+    fn happening(&mut self, happening: &Happening) {
         self.happenings.push_back(Happening { t_s: as_recorded(happening.t_s), ..*happening });
     }
 
     /// Both hands at the next time of the loop. The jaws are those that were told.
-    pub fn sample(&mut self, sample: &Sample) {
+    fn sample(&mut self, sample: &Sample) {
         let mut sample = Sample { t_s: as_recorded(sample.t_s), ..*sample };
         self.move_jaws(&mut sample);
         let t_s = sample.t_s;
@@ -94,7 +98,7 @@ impl Trial {
 
     /// The score; `None` if no arm was engaged. With `is_done` the trial was completed when an arm was last engaged: where nobody tells
     /// when the task is done.
-    pub fn end(self, is_done: bool) -> Option<Score> {
+    fn end(self, is_done: bool) -> Option<Score> {
         self.begun_s?;
         let mut scorer = self.before_pause.unwrap_or(self.scorer);
         if is_done {
@@ -159,11 +163,16 @@ pub fn score(
 }
 
 /// A side as the score has it.
-pub const fn side_of(arm: Side) -> nima_score::Side {
+const fn side_of(arm: Side) -> nima_score::Side {
     match arm {
         Side::Left => nima_score::Side::Left,
         Side::Right => nima_score::Side::Right,
     }
+}
+
+/// A hand in a tick. No endoscope tells yet whether it is in view.
+const fn hand_of(tip_m: Vector3<f64>, force_n: Vector3<f64>, rendered_n: Vector3<f64>, engaged: bool) -> HandSample {
+    HandSample { tip_m, jaw_rad: None, force_n, rendered_n, engaged, in_view: true }
 }
 
 /// Both hands, tick by tick.
@@ -174,8 +183,7 @@ fn samples(reader: &Reader, path: &Path, times_ns: Range<u64>, arms: &[Side]) ->
         plotted::each_tick(reader, path, *arm, times_ns.clone(), |tick| {
             let PlottedTick { time_ns, t_s, tip_m, measured_n, rendered_n, state, .. } = tick;
             let engaged = state == LoopState::Engaged.word();
-            // No endoscope is in a session yet.
-            let hand = HandSample { tip_m, jaw_rad: None, force_n: measured_n, rendered_n, engaged, in_view: true };
+            let hand = hand_of(tip_m, measured_n, rendered_n, engaged);
             let none = || Sample { t_s, ..Sample::default() };
             samples.entry(time_ns).or_insert_with(none).hands[place.index()] = Some(hand);
             Ok::<_, PlottedError>(())

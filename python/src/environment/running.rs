@@ -10,8 +10,8 @@ use nima_machine::{
     runtime,
     teleop::Loop,
 };
-use nima_score::{Event, HandSample, Sample, Score, TaskKind};
-use nima_session::scored::{Trial, side_of};
+use nima_score::{Event, Score};
+use nima_session::scored::LiveTrial;
 use nima_world::{Plan, Training, Watched, Worlds};
 
 use super::{
@@ -56,8 +56,7 @@ pub(super) struct Running {
     rig: Handled,
     watched: Option<Watched>,
     training: Option<Training>,
-    trial: Option<Trial>,
-    has_jaws: bool,
+    trial: Option<LiveTrial>,
     ticks: u64,
     period_s: f64,
     /// Tips until one delay ago, the oldest first, m.
@@ -74,22 +73,9 @@ impl Running {
         let period_s = 1.0 / plan.rig.rate_hz;
         let rig = Handled::new(worlds, SIDE, plan.scene.leader, plan.scene.hand.mass_kg, period_s);
         let (training, tips_m) = (None, VecDeque::new());
-        let has_jaws = plan.scene.task.as_ref().is_some_and(|task| task.kind == TaskKind::PegTransfer);
-        let trial = plan.scene.task.as_ref().map(Trial::new);
+        let trial = plan.scene.task.as_ref().map(LiveTrial::new);
         let (handle_before_m, known) = (None, None);
-        Ok(Self {
-            control,
-            rig,
-            watched,
-            training,
-            trial,
-            has_jaws,
-            ticks: 0,
-            period_s,
-            tips_m,
-            handle_before_m,
-            known,
-        })
+        Ok(Self { control, rig, watched, training, trial, ticks: 0, period_s, tips_m, handle_before_m, known })
     }
 
     /// Runs until the pair is engaged.
@@ -179,29 +165,14 @@ impl Running {
             training.ended |= happenings.iter().any(|happening| happening.event == Event::Ended);
         }
         let Some(trial) = &mut self.trial else { return };
-        for moment in moments.iter().filter(|_| self.has_jaws) {
-            for side in Side::ALL {
-                trial.opening(side, moment.t_s, moment.opening_rad[side.index()]);
-            }
+        for moment in &moments {
+            trial.opening(moment.t_s, moment.opening_rad);
         }
         for happening in &happenings {
             trial.happening(happening);
         }
-        let mut sample: Option<Sample> = None;
         for tick in ticks.iter().flatten() {
-            let hand = HandSample {
-                tip_m: tick.tip_m,
-                jaw_rad: None,
-                force_n: tick.measured_n,
-                rendered_n: tick.rendered_n,
-                engaged: tick.state == LoopState::Engaged,
-                in_view: true,
-            };
-            let sample = sample.get_or_insert(Sample { t_s: tick.t_s, ..Sample::default() });
-            sample.hands[side_of(tick.side).index()] = Some(hand);
-        }
-        if let Some(sample) = &sample {
-            trial.sample(sample);
+            trial.tick(tick);
         }
     }
 

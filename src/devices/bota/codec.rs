@@ -4,6 +4,8 @@
 //! clock, no allocation. A frame is accepted only with a correct checksum. After a false header the search continues
 //! one byte later, so that the decoder cannot lock onto a constant value in the payload.
 
+use crate::unread::Unread;
+
 /// Header of a frame with force and torque only.
 pub const HEADER_WRENCH: u8 = 0xAA;
 /// Header of a frame that also has the inertial unit.
@@ -158,9 +160,7 @@ const ROOM: usize = 2048;
 /// then call [`next`](Self::next) until it returns `None`.
 #[derive(Debug)]
 pub struct Decoder {
-    buffer: [u8; ROOM],
-    begin: usize,
-    end: usize,
+    unread: Unread,
     /// Bytes skipped since the last frame that was refused or accepted, so that the remainder of a refused frame is not
     /// counted as another one.
     since_refused: usize,
@@ -172,35 +172,33 @@ pub struct Decoder {
 
 impl Default for Decoder {
     fn default() -> Self {
-        Self { buffer: [0; ROOM], begin: 0, end: 0, since_refused: WRENCH_BYTES, damaged: 0, skipped: 0 }
+        Self { unread: Unread::with_room(ROOM), since_refused: WRENCH_BYTES, damaged: 0, skipped: 0 }
     }
 }
 
 impl Decoder {
     /// Buffer for new bytes; not empty once [`next`](Self::next) has returned `None`.
     pub fn room(&mut self) -> &mut [u8] {
-        self.buffer.copy_within(self.begin..self.end, 0);
-        (self.begin, self.end) = (0, self.end - self.begin);
-        &mut self.buffer[self.end..]
+        self.unread.room()
     }
 
     /// Reports that `count` bytes were written into the buffer.
     pub fn filled(&mut self, count: usize) {
-        self.end = (self.end + count).min(ROOM);
+        self.unread.filled(count);
     }
 
     /// The next complete frame; `None` when more bytes are needed. Each call advances in the stream, so the work is
     /// bounded by the bytes received.
     #[expect(clippy::should_implement_trait, reason = "an iterator would borrow the room")]
     pub fn next(&mut self) -> Option<Frame> {
-        while self.begin < self.end {
-            let Some(length) = length_of(self.buffer[self.begin]) else {
+        while let Some(first) = self.unread.bytes().first() {
+            let Some(length) = length_of(*first) else {
                 self.skip();
                 continue;
             };
-            let candidate = self.buffer[self.begin..self.end].get(..length)?;
+            let candidate = self.unread.bytes().get(..length)?;
             if let Ok(frame) = Frame::decode(candidate) {
-                self.begin += length;
+                self.unread.pass(length);
                 self.since_refused = WRENCH_BYTES;
                 return Some(frame);
             }
@@ -213,8 +211,8 @@ impl Decoder {
         None
     }
 
-    const fn skip(&mut self) {
-        self.begin += 1;
+    fn skip(&mut self) {
+        self.unread.pass(1);
         self.skipped += 1;
         self.since_refused = self.since_refused.saturating_add(1);
     }
@@ -231,7 +229,7 @@ impl Decoder {
 
     /// Discards the buffer's content; the counters are kept.
     pub const fn clear(&mut self) {
-        (self.begin, self.end) = (0, 0);
+        self.unread.clear();
     }
 }
 

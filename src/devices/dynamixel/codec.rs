@@ -6,6 +6,8 @@
 //! to fast reads (status packets from the broadcast id) are not stuffed. No clock is used and nothing is allocated
 //! after construction; the work per byte is bounded by the longest accepted packet.
 
+use crate::unread::Unread;
+
 const HEADER: [u8; 4] = [0xFF, 0xFF, 0xFD, 0x00];
 const MARK: [u8; 3] = [0xFF, 0xFF, 0xFD];
 const STUFFING: u8 = 0xFD;
@@ -149,8 +151,7 @@ pub struct Refused {
 /// Finds packets in a stream.
 #[derive(Debug)]
 pub struct Incoming {
-    buffer: Vec<u8>,
-    begin: usize,
+    unread: Unread,
     body: Vec<u8>,
     longest: usize,
     refused: Refused,
@@ -162,8 +163,7 @@ impl Incoming {
     pub fn new(longest: usize) -> Self {
         let longest = longest.max(OVERHEAD);
         Self {
-            buffer: Vec::with_capacity(2 * longest),
-            begin: 0,
+            unread: Unread::with_room(2 * longest),
             body: Vec::with_capacity(longest),
             longest,
             refused: Refused::default(),
@@ -177,26 +177,20 @@ impl Incoming {
 
     /// Whether an incomplete packet is in the buffer.
     pub const fn is_midway(&self) -> bool {
-        self.begin < self.buffer.len()
+        !self.unread.is_empty()
     }
 
     /// Discards an incomplete packet; returns the number of bytes discarded, which count as skipped.
     pub fn reset(&mut self) -> usize {
-        let rest = self.buffer.len() - self.begin;
+        let rest = self.unread.clear();
         self.refused.skipped += rest as u64;
-        self.buffer.clear();
-        self.begin = 0;
         rest
     }
 
     /// Accepts as many bytes as there is room for and returns their number. Call [`next`](Self::next) until it returns
     /// `None`, then pass the remaining bytes.
     pub fn feed(&mut self, bytes: &[u8]) -> usize {
-        self.buffer.drain(..self.begin);
-        self.begin = 0;
-        let count = bytes.len().min(2 * self.longest - self.buffer.len());
-        self.buffer.extend_from_slice(&bytes[..count]);
-        count
+        self.unread.feed(bytes)
     }
 
     /// The next complete packet.
@@ -204,7 +198,7 @@ impl Incoming {
     pub fn next(&mut self) -> Option<Packet<'_>> {
         loop {
             self.find_header();
-            let rest = &self.buffer[self.begin..];
+            let rest = self.unread.bytes();
             if rest.len() < PREFIX {
                 return None;
             }
@@ -228,24 +222,24 @@ impl Incoming {
             } else {
                 unstuff(&covered[PREFIX + 1..], &mut self.body);
             }
-            self.begin += wire_bytes;
+            self.unread.pass(wire_bytes);
             return Some(Packet { id, instruction, body: &self.body, wire_bytes });
         }
     }
 
     /// Counts a damaged packet and looks for the next header within it.
-    const fn refuse(&mut self) {
+    fn refuse(&mut self) {
         self.refused.damaged += 1;
         self.refused.skipped += 1;
-        self.begin += 1;
+        self.unread.pass(1);
     }
 
     fn find_header(&mut self) {
-        let rest = &self.buffer[self.begin..];
+        let rest = self.unread.bytes();
         let begins = |tail: &[u8]| tail.iter().zip(HEADER).all(|(byte, known)| *byte == known);
         let skip = (0..rest.len()).find(|at| begins(&rest[*at..])).unwrap_or(rest.len());
         self.refused.skipped += skip as u64;
-        self.begin += skip;
+        self.unread.pass(skip);
     }
 }
 

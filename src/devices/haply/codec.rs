@@ -1,6 +1,8 @@
 //! Requests and answers on the line: little-endian, a code and its values, no checksum (reference `haply.md`, section
 //! 4.2). No input or output, no clock, no allocation.
 
+use crate::unread::Unread;
+
 /// Code of the request for the device's identity.
 pub const WAKE_UP: u8 = 0x0A;
 /// Code of its answer.
@@ -124,48 +126,44 @@ const ROOM: usize = 512;
 /// then call [`next`](Self::next) until it returns `None`.
 #[derive(Debug)]
 pub struct Decoder {
-    buffer: [u8; ROOM],
-    begin: usize,
-    end: usize,
+    unread: Unread,
     skipped: u64,
 }
 
 impl Default for Decoder {
     fn default() -> Self {
-        Self { buffer: [0; ROOM], begin: 0, end: 0, skipped: 0 }
+        Self { unread: Unread::with_room(ROOM), skipped: 0 }
     }
 }
 
 impl Decoder {
     /// Buffer for new bytes; not empty once [`next`](Self::next) has returned `None`.
     pub fn room(&mut self) -> &mut [u8] {
-        self.buffer.copy_within(self.begin..self.end, 0);
-        (self.begin, self.end) = (0, self.end - self.begin);
-        &mut self.buffer[self.end..]
+        self.unread.room()
     }
 
     /// Reports that `count` bytes were written into the buffer.
     pub fn filled(&mut self, count: usize) {
-        self.end = (self.end + count).min(ROOM);
+        self.unread.filled(count);
     }
 
     /// The next whole answer. Without a checksum, one with impossible numbers may be no answer at all: it is taken as a whole only
     /// where the next one begins behind it, or nothing stands there yet.
     #[expect(clippy::should_implement_trait, reason = "an iterator would borrow the room")]
     pub fn next(&mut self) -> Option<Next> {
-        while self.begin < self.end {
-            if self.buffer[self.begin] != STATE {
+        while let Some(first) = self.unread.bytes().first() {
+            if *first != STATE {
                 self.skip();
                 continue;
             }
-            let waiting = &self.buffer[self.begin..self.end];
+            let waiting = self.unread.bytes();
             let state = State::decode(waiting.get(..STATE_BYTES)?)?;
             if state.is_possible() {
-                self.begin += STATE_BYTES;
+                self.unread.pass(STATE_BYTES);
                 return Some(Next::State(state));
             }
             if waiting.get(STATE_BYTES).is_none_or(|next| *next == STATE) {
-                self.begin += STATE_BYTES;
+                self.unread.pass(STATE_BYTES);
                 return Some(Next::Impossible);
             }
             self.skip();
@@ -173,8 +171,8 @@ impl Decoder {
         None
     }
 
-    const fn skip(&mut self) {
-        self.begin += 1;
+    fn skip(&mut self) {
+        self.unread.pass(1);
         self.skipped += 1;
     }
 
@@ -185,8 +183,7 @@ impl Decoder {
 
     /// Discards what is there: the rest of an answer that did not come whole. Returns the number of bytes.
     pub const fn clear(&mut self) -> usize {
-        let count = self.end - self.begin;
-        (self.begin, self.end) = (0, 0);
+        let count = self.unread.clear();
         self.skipped += count as u64;
         count
     }

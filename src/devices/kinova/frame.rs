@@ -19,6 +19,7 @@ use super::{
     messages::Rpc,
     wire::{Damaged, Fields},
 };
+use crate::unread::Unread;
 
 /// Start of every packet on TCP.
 pub const MARK: [u8; 8] = *b"\x07xEtRoK\x07";
@@ -187,66 +188,62 @@ pub const PACKET_MAX: usize = 16 * 1024;
 /// Finds packets in a stream that may contain errors. Fixed memory; every byte is examined a bounded number of times.
 #[derive(Debug)]
 pub struct PacketReader {
-    buffer: Box<[u8]>,
-    begin: usize,
-    end: usize,
+    unread: Unread,
     /// Bytes skipped while searching for a mark.
     pub skipped: u64,
     /// Malformed packets.
     pub damaged: u64,
 }
 
+/// Mark and length, bytes.
+const PREFIX: usize = MARK.len() + LENGTH_BYTES;
+
 impl Default for PacketReader {
     fn default() -> Self {
-        Self { buffer: vec![0; 2 * PACKET_MAX].into_boxed_slice(), begin: 0, end: 0, skipped: 0, damaged: 0 }
+        Self { unread: Unread::with_room(2 * PACKET_MAX), skipped: 0, damaged: 0 }
     }
 }
 
 impl PacketReader {
-    /// Buffer for new bytes; report their number with [`took`](Self::took). Never empty once all complete packets have
+    /// Buffer for new bytes; report their number with [`filled`](Self::filled). Never empty once all complete packets have
     /// been read.
     pub fn room(&mut self) -> &mut [u8] {
-        if self.begin > 0 {
-            self.buffer.copy_within(self.begin..self.end, 0);
-            (self.begin, self.end) = (0, self.end - self.begin);
-        }
-        &mut self.buffer[self.end..]
+        self.unread.room()
     }
 
     /// Reports that `count` bytes were written into the buffer.
-    pub fn took(&mut self, count: usize) {
-        self.end = (self.end + count).min(self.buffer.len());
+    pub fn filled(&mut self, count: usize) {
+        self.unread.filled(count);
     }
 
     /// The next complete frame; `None` until more bytes arrive.
     pub fn next_frame(&mut self) -> Option<Frame<'_>> {
-        let (from, to) = self.find()?;
-        self.begin = to;
-        Frame::decode(&self.buffer[from..to]).ok()
+        let length = self.find()?;
+        Frame::decode(&self.unread.pass(PREFIX + length)[PREFIX..]).ok()
     }
 
-    fn find(&mut self) -> Option<(usize, usize)> {
+    /// Moves to the next whole packet, and returns the length of its frame, bytes.
+    fn find(&mut self) -> Option<usize> {
         loop {
             self.seek();
-            let waiting = &self.buffer[self.begin..self.end];
-            let length = waiting.get(MARK.len()..MARK.len() + LENGTH_BYTES)?;
+            let waiting = self.unread.bytes();
+            let length = waiting.get(MARK.len()..PREFIX)?;
             let length = u32::from_be_bytes(length.try_into().ok()?) as usize;
-            let from = self.begin + MARK.len() + LENGTH_BYTES;
-            if length <= PACKET_MAX - MARK.len() - LENGTH_BYTES {
-                let frame = self.buffer[..self.end].get(from..from + length)?;
+            if length <= PACKET_MAX - PREFIX {
+                let frame = waiting.get(PREFIX..PREFIX + length)?;
                 if Frame::decode(frame).is_ok() {
-                    return Some((from, from + length));
+                    return Some(length);
                 }
             }
             // The length may be the damaged part, so continue the search directly behind this mark.
             self.damaged += 1;
-            self.begin += MARK.len();
+            self.unread.pass(MARK.len());
         }
     }
 
     /// Moves to the next position where a mark begins, possibly cut off at the end.
     fn seek(&mut self) {
-        let waiting = &self.buffer[self.begin..self.end];
+        let waiting = self.unread.bytes();
         let begins = |at: &usize| {
             let tail = &waiting[*at..];
             let length = tail.len().min(MARK.len());
@@ -254,6 +251,6 @@ impl PacketReader {
         };
         let skip = (0..waiting.len()).find(begins).unwrap_or(waiting.len());
         self.skipped += skip as u64;
-        self.begin += skip;
+        self.unread.pass(skip);
     }
 }

@@ -79,7 +79,7 @@ fn requests_are_the_bytes_of_the_manufacturers_client_both_ways() {
     assert_eq!(packet, bytes(CREATE_SESSION));
     let mut reader = PacketReader::default();
     reader.room()[..packet.len()].copy_from_slice(&packet);
-    reader.took(packet.len());
+    reader.filled(packet.len());
     let frame = reader.next_frame().unwrap();
     assert_eq!(frame.header, request(0, 1, Rpc::CREATE_SESSION));
     assert_eq!(CreateSessionInfo::decode(frame.payload).unwrap(), login());
@@ -167,7 +167,7 @@ fn a_dirty_stream_is_taken_up_again_and_counted() {
     while !rest.is_empty() {
         let count = random.usize(1..50).min(rest.len()).min(reader.room().len());
         reader.room()[..count].copy_from_slice(&rest[..count]);
-        reader.took(count);
+        reader.filled(count);
         rest = &rest[count..];
         while let Some(frame) = reader.next_frame() {
             assert_eq!(frame.header.message, next);
@@ -208,7 +208,7 @@ fn storm(frames: u32, seed: u64) {
         let room = reader.room();
         let count = frame.len().min(room.len());
         room[..count].copy_from_slice(&frame[..count]);
-        reader.took(count);
+        reader.filled(count);
         while reader.next_frame().is_some() {
             packets += 1;
         }

@@ -159,7 +159,7 @@ impl Lines {
         let end = Instant::now() + timeout;
         while Instant::now() < end {
             let count = self.tcp.receive(self.packets.room()).map_err(|loss| self.broken(loss, before.0))?;
-            self.packets.took(count);
+            self.packets.filled(count);
             while let Some(frame) = self.packets.next_frame() {
                 if frame.header.kind == RESPONSE && frame.header.message == number {
                     self.calls.session = frame.header.session;

@@ -6,6 +6,7 @@
 //! discarded.
 
 use super::crc::{crc16, read_hex};
+use crate::unread::Unread;
 
 /// First bytes of a binary reply: 0xA5C4, little-endian.
 const BINARY_START: [u8; 2] = [0xC4, 0xA5];
@@ -36,9 +37,7 @@ pub enum Arrival<'a> {
 /// Buffer of bytes that are not yet a complete reply.
 #[derive(Debug)]
 pub struct Inbox {
-    bytes: Box<[u8; REPLY_MAX]>,
-    begin: usize,
-    end: usize,
+    unread: Unread,
     skipped: u64,
 }
 
@@ -51,31 +50,26 @@ impl Default for Inbox {
 impl Inbox {
     /// An empty buffer.
     pub fn new() -> Self {
-        Self { bytes: Box::new([0; REPLY_MAX]), begin: 0, end: 0, skipped: 0 }
+        Self { unread: Unread::with_room(REPLY_MAX), skipped: 0 }
     }
 
     /// Space for new bytes; never empty.
     pub fn room(&mut self) -> &mut [u8] {
-        if self.end == REPLY_MAX {
-            self.bytes.copy_within(self.begin..self.end, 0);
-            (self.begin, self.end) = (0, self.end - self.begin);
-        }
-        if self.end == REPLY_MAX {
-            // The buffer is full of bytes that never became a reply.
+        if self.unread.is_full() {
+            // These bytes never became a reply.
             self.clear();
         }
-        &mut self.bytes[self.end..]
+        self.unread.room()
     }
 
     /// Reports that `count` bytes were written into the space.
     pub fn filled(&mut self, count: usize) {
-        self.end = (self.end + count).min(REPLY_MAX);
+        self.unread.filled(count);
     }
 
     /// Discards everything received.
     pub fn clear(&mut self) {
-        self.skipped += (self.end - self.begin) as u64;
-        (self.begin, self.end) = (0, 0);
+        self.skipped += self.unread.clear() as u64;
     }
 
     /// Number of bytes that belonged to no reply, since the last call.
@@ -85,9 +79,6 @@ impl Inbox {
 
     /// The next complete reply.
     pub fn next(&mut self, expected: Expected) -> Option<Arrival<'_>> {
-        if self.begin == self.end {
-            (self.begin, self.end) = (0, 0);
-        }
         match expected {
             Expected::Line => self.next_line(),
             Expected::Block => self.next_block(),
@@ -95,40 +86,34 @@ impl Inbox {
     }
 
     fn next_line(&mut self) -> Option<Arrival<'_>> {
-        let length = self.bytes[self.begin..self.end].iter().position(|byte| *byte == b'\r')?;
-        let line = self.begin..self.begin + length;
-        self.begin = line.end + 1;
-        if checked(&self.bytes[line.clone()]).is_none() {
+        let length = self.unread.bytes().iter().position(|byte| *byte == b'\r')?;
+        let line = self.unread.pass(length + 1);
+        let Some(text) = checked(&line[..length]) else {
             self.skipped += length as u64 + 1;
             return Some(Arrival::Damaged);
-        }
-        Some(Arrival::Line(&self.bytes[line.start..line.end - 4]))
+        };
+        Some(Arrival::Line(text))
     }
 
     fn next_block(&mut self) -> Option<Arrival<'_>> {
         loop {
-            let rest = &self.bytes[self.begin..self.end];
-            match seek(rest) {
-                Found::Nothing if rest.is_empty() => return None,
+            match seek(self.unread.bytes()) {
+                Found::Nothing if self.unread.is_empty() => return None,
                 Found::Nothing => {
-                    self.begin += 1;
+                    self.unread.pass(1);
                     self.skipped += 1;
                 }
                 Found::Part => return None,
                 Found::Bad => {
-                    self.begin += 2;
+                    self.unread.pass(2);
                     self.skipped += 2;
                     return Some(Arrival::Damaged);
                 }
                 Found::Block(body) => {
-                    let begin = self.begin + HEADER;
-                    self.begin = begin + body + 2;
-                    return Some(Arrival::Block(&self.bytes[begin..begin + body]));
+                    return Some(Arrival::Block(&self.unread.pass(HEADER + body + 2)[HEADER..HEADER + body]));
                 }
                 Found::Line(text) => {
-                    let begin = self.begin;
-                    self.begin = begin + text + 5;
-                    return Some(Arrival::Line(&self.bytes[begin..begin + text]));
+                    return Some(Arrival::Line(&self.unread.pass(text + 5)[..text]));
                 }
             }
         }

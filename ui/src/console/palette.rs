@@ -60,7 +60,7 @@ impl Palette {
         let Some(search) = &mut self.open else { return };
         let field = Id::unique("palette_field");
         let keys = Keys::take(ctx);
-        let window = Window::new(PALETTE.get()).title_bar(false).resizable(false).movable(false).constrain_to(room);
+        let window = Window::new(PALETTE.0.get()).title_bar(false).resizable(false).movable(false).constrain_to(room);
         let window = window.order(Order::Foreground).fixed_size(vec2(WIDTH.min(room.width() - 24.0), 0.0));
         let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, 8.0));
         let mut wanted = None;

@@ -7,13 +7,12 @@ use nima_console::console::{
     Options,
     desk::{Layout, Panel},
     roles::Role,
-    settings::Kept,
     wizards::Which,
 };
 use nima_machine::messages::LoopState;
 
 use crate::{
-    bench::{Console, console_of, pick, press, until, wait},
+    bench::{Console, console_of, pick, press, toured, until, wait},
     past, studies,
     walk::VIEWS,
 };
@@ -22,11 +21,7 @@ const SIZE: [f32; 2] = [1600.0, 1000.0];
 
 fn begin(scene: &str, folder: &std::path::Path) -> Console {
     let folder = folder.to_path_buf();
-    let mut console = console_of(scene, SIZE, move |app| {
-        let mut kept = Kept::open(&folder);
-        kept.now.toured = true;
-        app.with_settings(kept)
-    });
+    let mut console = console_of(scene, SIZE, move |app| app.with_settings(toured(&folder)));
     until(&mut console, "any tick", |_| true);
     console.run_steps(3);
     console

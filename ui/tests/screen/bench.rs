@@ -1,13 +1,16 @@
 //! The console on a real running loop, stepped by a test.
 
-use std::time::{Duration, Instant};
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
 
 use egui::accesskit::Role;
 use egui_kittest::{
     Harness, Node,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::console::ConsoleApp;
+use nima_console::console::{ConsoleApp, settings::Kept};
 use nima_machine::messages::Tick;
 use nima_tests::plan;
 use nima_world::{Plan, start_watched};
@@ -19,6 +22,13 @@ pub(crate) const WIZARD_SPEED: f64 = 4.0;
 
 /// A window with the console.
 pub(crate) type Console = Harness<'static, ConsoleApp>;
+
+/// The settings that are kept in this folder, for somebody who has seen the tour.
+pub(crate) fn toured(folder: &Path) -> Kept {
+    let mut kept = Kept::open(folder);
+    kept.now.toured = true;
+    kept
+}
 
 /// The console on the simulated rig in this scene, made ready by `prepare`; both hands of a scene that has two.
 pub(crate) fn console_of(

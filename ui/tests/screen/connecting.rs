@@ -11,7 +11,6 @@ use egui_kittest::{
 use nima_console::console::{
     ConsoleApp,
     desk::{Layout, Panel},
-    settings::Kept,
 };
 use nima_machine::{
     config::{RigConfig, RigFile},
@@ -25,7 +24,7 @@ use nima_tests::{
 };
 use nima_world::start_simulated;
 
-use crate::bench::{comes, press, until};
+use crate::bench::{comes, press, toured, until};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 /// Far longer than emulators and devices need to start; a machine on which they do not is too busy.
@@ -39,8 +38,7 @@ fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     let handle = start_simulated(&plan, 1.0).unwrap();
     // The loop of an emulated rig runs in real time, as its devices do.
     let mut harness = Harness::builder().with_size(SIZE).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
-        let mut kept = Kept::open(&folder);
-        kept.now.toured = true;
+        let mut kept = toured(&folder);
         kept.now.layout = Layout { front: vec![Panel::Devices], ..Layout::default() };
         let app = ConsoleApp::new(cc, handle, plan.rig, plan.scene);
         app.with_settings(kept).with_store(&folder).with_program(Path::new(NIMA))

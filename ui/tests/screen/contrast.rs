@@ -2,10 +2,10 @@
 
 use egui::{Color32, Key, Modifiers, Pos2, Rect, Shape, accesskit::Role as Kind};
 use egui_kittest::kittest::Queryable as _;
-use nima_console::console::{Options, desk::Layout, settings::Kept, theme, wizards::Which};
+use nima_console::console::{Options, desk::Layout, theme, wizards::Which};
 
 use crate::{
-    bench::{self, Console, console_of, until},
+    bench::{self, Console, console_of, toured, until},
     past,
     walk::VIEWS,
 };
@@ -122,11 +122,7 @@ fn every_text_of_the_views_is_read() {
 fn every_text_of_lists_menus_and_alarms_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_path_buf();
-    let mut console = console_of("peg_transfer", SIZE, move |app| {
-        let mut kept = Kept::open(&path);
-        kept.now.toured = true;
-        app.with_settings(kept)
-    });
+    let mut console = console_of("peg_transfer", SIZE, move |app| app.with_settings(toured(&path)));
     until(&mut console, "any tick", |_| true);
     let mut all = Vec::new();
     for key in [Key::F4, Key::F5, Key::F6, Key::F7, Key::F8] {

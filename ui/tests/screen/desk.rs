@@ -14,20 +14,15 @@ use egui_kittest::{
 use nima_console::console::{
     ConsoleApp,
     desk::{Layout, Node, Panel},
-    settings::Kept,
 };
 
-use crate::bench::{console_of, press, until};
+use crate::bench::{console_of, press, toured, until};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
 fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     let path = folder.to_path_buf();
-    let mut harness = console_of("peg_transfer", SIZE, move |app| {
-        let mut kept = Kept::open(&path);
-        kept.now.toured = true;
-        app.with_settings(kept)
-    });
+    let mut harness = console_of("peg_transfer", SIZE, move |app| app.with_settings(toured(&path)));
     until(&mut harness, "any tick", |_| true);
     harness.run_steps(3);
     harness
@@ -166,11 +161,7 @@ fn the_histograms_tell_how_many_ticks_are_later_than_the_deadline() {
 fn the_gates_of_the_selected_hand_are_shown() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_path_buf();
-    let mut harness = console_of("bimanual", SIZE, move |app| {
-        let mut kept = Kept::open(&path);
-        kept.now.toured = true;
-        app.with_settings(kept)
-    });
+    let mut harness = console_of("bimanual", SIZE, move |app| app.with_settings(toured(&path)));
     until(&mut harness, "engaged", |tick| tick.state == nima_machine::messages::LoopState::Engaged);
     harness.run_steps(3);
     for hand in ["Left hand", "Right hand"] {

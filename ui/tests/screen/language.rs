@@ -3,11 +3,8 @@
 
 use std::{fs, path::Path};
 
-use egui::{Key, Modifiers, Rect, Shape, accesskit, vec2};
-use egui_kittest::{
-    Harness,
-    kittest::{NodeT as _, Queryable as _},
-};
+use egui::{Key, Modifiers, Rect, vec2};
+use egui_kittest::Harness;
 use nima_console::{
     console::{Options, desk::Layout, roles::Role, settings::Kept, wizards::Which},
     language::{self, Language, pseudo},
@@ -15,29 +12,15 @@ use nima_console::{
 use nima_machine::messages::LoopState;
 
 use crate::{
-    bench::{self, Console, console_of, pick, press, read, shows, until},
+    bench::{self, Console, console_of, pick, press, read, shows, toured, until},
+    faults::{Page, faults, faults_of_controls, faults_of_texts, none, texts, too_wide},
     past, studies,
-    walk::{VIEWS, faults, faults_of_controls, faults_of_texts, faults_overlaid, seen, texts},
+    walk::VIEWS,
 };
 
 /// The smallest window, the sizes of common screens, and that in which the console opens; points.
 const SIZES: [[f32; 2]; 4] = [[1100.0, 680.0], [1280.0, 720.0], [1600.0, 1000.0], [1920.0, 1080.0]];
 const LANGUAGES: [Language; 2] = [Language::German, Language::Pseudo];
-/// The texts of a button may come this close to its edge, points.
-const SLACK: f32 = 0.5;
-
-/// How a page is looked at.
-#[derive(Clone, Copy, PartialEq)]
-enum Page {
-    /// Everything must be seen.
-    Whole,
-    /// A long column may be scrolled.
-    Scrolls,
-    /// Controls may be scrolled away too, and lie nowhere then.
-    Form,
-    /// It lies over something else.
-    Over,
-}
 
 /// What is wrong with this page in every language at every size.
 fn look_at(console: &mut Console, page: &str, kind: Page) -> Vec<String> {
@@ -46,15 +29,7 @@ fn look_at(console: &mut Console, page: &str, kind: Page) -> Vec<String> {
     for language in LANGUAGES {
         console.state_mut().settings_mut().language = language;
         for size in SIZES {
-            let mut found = match kind {
-                Page::Whole => faults(console, size, false),
-                Page::Scrolls => faults(console, size, true),
-                Page::Over => faults_overlaid(console, size),
-                Page::Form => {
-                    let (texts, window, field) = seen(console, size);
-                    faults_of_texts(&texts, window, field, true, false)
-                }
-            };
+            let mut found = faults(console, size, kind);
             if kind != Page::Over {
                 found.extend(too_wide(console));
             }
@@ -69,7 +44,7 @@ fn look_at(console: &mut Console, page: &str, kind: Page) -> Vec<String> {
 
 /// A page of a wizard fits; for the tests that walk through it.
 pub(crate) fn fits(console: &mut Console, page: &str) {
-    told(&look_at(console, page, Page::Scrolls));
+    none(&look_at(console, page, Page::Scrolls));
 }
 
 /// The same for a window that holds a wizard alone, as wide as its place in the smallest window of the console.
@@ -84,47 +59,12 @@ pub(crate) fn fits_alone<A>(window: &mut Harness<'_, A>, page: &str) {
     }
     language::set(Language::English);
     window.run_steps(2);
-    told(&all);
-}
-
-/// Buttons whose words are wider than they are.
-fn too_wide<A>(harness: &Harness<'_, A>) -> Vec<String> {
-    let buttons = harness.query_all_by(|node| node.role() == accesskit::Role::Button);
-    let buttons: Vec<(String, Rect)> =
-        buttons.filter_map(|node| Some((node.accesskit_node().label()?, node.rect()))).collect();
-    let mut words = Vec::new();
-    harness.output().shapes.iter().for_each(|clipped| add(&clipped.shape, &mut words));
-    let leaves = |(words, place): &(String, Rect)| {
-        let (_, button) = buttons.iter().find(|(name, button)| name == words && button.intersects(*place))?;
-        let beyond = place.left() < button.left() - SLACK || place.right() > button.right() + SLACK;
-        beyond.then(|| format!("\"{words}\" is wider than its button: {place:?} in {button:?}"))
-    };
-    words.iter().filter_map(leaves).collect()
-}
-
-/// The words of a shape and their places.
-fn add(shape: &Shape, words: &mut Vec<(String, Rect)>) {
-    match shape {
-        Shape::Vec(shapes) => shapes.iter().for_each(|shape| add(shape, words)),
-        Shape::Text(text) if text.angle == 0.0 => {
-            let place = text.galley.mesh_bounds.translate(text.pos.to_vec2());
-            words.push((text.galley.text().trim().to_owned(), place));
-        }
-        _ => {}
-    }
-}
-
-fn told(all: &[String]) {
-    assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+    none(&all);
 }
 
 fn begin(scene: &str, folder: &Path) -> Console {
     let folder = folder.to_path_buf();
-    let mut console = console_of(scene, SIZES[2], move |app| {
-        let mut kept = Kept::open(&folder);
-        kept.now.toured = true;
-        app.with_settings(kept)
-    });
+    let mut console = console_of(scene, SIZES[2], move |app| app.with_settings(toured(&folder)));
     until(&mut console, "any tick", |_| true);
     console
 }
@@ -138,8 +78,7 @@ fn views(console: &mut Console, what: &str) -> Vec<String> {
         settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
         let kind = match role {
             Role::Technician if what == "past" => Page::Form,
-            Role::Technician => Page::Scrolls,
-            _ => Page::Whole,
+            role => Page::of_view(role),
         };
         all.extend(look_at(console, &format!("{what} {role:?} {front:?}"), kind));
     }
@@ -151,7 +90,7 @@ fn every_view_fits() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = begin("bimanual", folder.path());
     until(&mut console, "a contact", |tick| tick.t_s > 1.5);
-    told(&views(&mut console, "live"));
+    none(&views(&mut console, "live"));
 }
 
 #[test]
@@ -166,7 +105,7 @@ fn the_alarm_and_the_stopped_state_fit() {
     press(&mut console, "Stop");
     read(&mut console, "has stopped sending data");
     all.extend(look_at(&mut console, "alarm", Page::Scrolls));
-    told(&all);
+    none(&all);
 }
 
 #[test]
@@ -201,7 +140,7 @@ fn every_page_list_and_menu_fits() {
     }
     press(&mut console, "Rig");
     all.extend(look_at(&mut console, "start", Page::Scrolls));
-    told(&all);
+    none(&all);
 }
 
 #[test]
@@ -216,7 +155,7 @@ fn welcome_and_tour_fit() {
         all.extend(look_at(&mut console, &format!("step {step} of the tour"), Page::Over));
         press(&mut console, if step < 4 { "Next step" } else { "Begin" });
     }
-    told(&all);
+    none(&all);
 }
 
 #[test]
@@ -232,7 +171,7 @@ fn the_first_page_of_every_wizard_fits() {
         until(&mut console, "any tick", |_| true);
         all.extend(look_at(&mut console, &format!("{which:?}"), Page::Scrolls));
     }
-    told(&all);
+    none(&all);
 }
 
 #[test]
@@ -261,7 +200,7 @@ fn the_pages_of_a_study_and_a_trial_fit() {
     bench::wait(&mut console, "its end", |console| !console.state().in_trial());
     pick(&mut console, "Fill in the questionnaire");
     all.extend(look_at(&mut console, "questionnaire", Page::Form));
-    told(&all);
+    none(&all);
 }
 
 #[test]
@@ -277,7 +216,7 @@ fn the_past_and_the_list_of_sessions_fit() {
     press(&mut console, "Open 20261123T131415Z-Simulated-rig.mcap");
     past::until_whole(&mut console);
     all.extend(views(&mut console, "past"));
-    told(&all);
+    none(&all);
 }
 
 /// A window with one planted fault, and how many are found.

@@ -11,6 +11,7 @@ mod contrast;
 mod desk;
 mod drift;
 mod eyes;
+mod faults;
 mod identity;
 mod instruments;
 mod language;

@@ -13,7 +13,7 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::console::{ConsoleApp, roles::Role, settings::Kept};
+use nima_console::console::{ConsoleApp, roles::Role};
 use nima_machine::{
     config::SchedulingClass,
     messages::{Command, LoopState},
@@ -26,7 +26,7 @@ use nima_session::objects;
 use nima_tests::plan;
 use nima_world::Plan;
 
-use crate::bench::{TIMEOUT, console_of, press, shows, until, wait};
+use crate::bench::{TIMEOUT, console_of, press, shows, toured, until, wait};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
@@ -219,11 +219,7 @@ pub(crate) fn until_listed(harness: &mut Harness<'_, ConsoleApp>, name: &str) {
 
 fn listed(folder: &Path) -> Harness<'static, ConsoleApp> {
     let folder = folder.to_path_buf();
-    let mut harness = console_of("free_motion", SIZE, move |app| {
-        let mut kept = Kept::open(&folder);
-        kept.now.toured = true;
-        app.with_settings(kept)
-    });
+    let mut harness = console_of("free_motion", SIZE, move |app| app.with_settings(toured(&folder)));
     until(&mut harness, "any tick", |_| true);
     harness.key_press(Key::F7);
     harness.step();

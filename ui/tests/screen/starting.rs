@@ -8,7 +8,7 @@ use nima_console::console::{ConsoleApp, settings::Kept, start::Choice};
 use nima_machine::messages::LoopState;
 
 use crate::{
-    bench::{console_of, pick, press, read, until, wait, write_into},
+    bench::{console_of, pick, press, read, toured, until, wait, write_into},
     eyes::camera,
 };
 
@@ -16,11 +16,7 @@ const SIZE: [f32; 2] = [1600.0, 1000.0];
 
 fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     let folder = folder.to_path_buf();
-    let mut harness = console_of("peg_transfer", SIZE, move |app| {
-        let mut kept = Kept::open(&folder);
-        kept.now.toured = true;
-        app.with_settings(kept)
-    });
+    let mut harness = console_of("peg_transfer", SIZE, move |app| app.with_settings(toured(&folder)));
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
     harness
 }

@@ -9,7 +9,7 @@ use std::{
 use eframe::App as _;
 use egui::{Key, Pos2, Shape, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
-use nima_console::console::{Options, settings::Kept};
+use nima_console::console::Options;
 use nima_machine::messages::LoopState;
 use nima_score::{Event, HandSample, Happening, Sample, Scorer, TaskFile};
 use nima_tests::{
@@ -20,7 +20,7 @@ use nima_user_study::{Comparison, Ending, Excludes, Study, StudyFile};
 use nima_world::scene::Scene;
 
 use crate::bench::{
-    Console, can_press, pick, press, read, shown_at, shows, texts, until, wait, write_into, write_over,
+    Console, can_press, pick, press, read, shown_at, shows, texts, toured, until, wait, write_into, write_over,
 };
 
 pub(crate) const SIZE: [f32; 2] = [1600.0, 1000.0];
@@ -40,11 +40,7 @@ pub(crate) fn make(data: &Path, head: &str, seconds: f64, rest: &str) -> PathBuf
 /// The console with this folder of the user's data.
 pub(crate) fn console(data: &Path, options: Options) -> Console {
     let data = data.to_path_buf();
-    shown_at(SPEED, &plan("peg_transfer"), SIZE, move |app| {
-        let mut kept = Kept::open(&data);
-        kept.now.toured = true;
-        app.with_settings(kept).with_options(options)
-    })
+    shown_at(SPEED, &plan("peg_transfer"), SIZE, move |app| app.with_settings(toured(&data)).with_options(options))
 }
 
 /// Opens the study that [`make`] has made.

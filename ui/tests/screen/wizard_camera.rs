@@ -6,7 +6,7 @@ use std::{
 };
 
 use nalgebra::Isometry3;
-use nima_console::console::{Options, settings::Kept, wizards::Which};
+use nima_console::console::{Options, wizards::Which};
 use nima_endoscope::Board;
 use nima_machine::config::{RigConfig, RigFile};
 use nima_tests::plan;
@@ -20,7 +20,7 @@ use nima_world::{
 };
 
 use crate::{
-    bench::{Console, can_press, pick, read, shown, shows, until, wait},
+    bench::{Console, can_press, pick, read, shown, shows, toured, until, wait},
     language,
 };
 
@@ -69,10 +69,8 @@ impl Bench {
         let plan = Plan { rig, engage: false, ..plan("peg_transfer") };
         let (kept, running) = (folder.to_path_buf(), name.clone());
         let console = shown(&plan, size, move |app| {
-            let mut settings = Kept::open(&kept);
-            settings.now.toured = true;
             let options = Options { wizard: Some(Which::Camera), ..Options::default() };
-            app.with_settings(settings).with_rig_name(running).with_options(options)
+            app.with_settings(toured(&kept)).with_rig_name(running).with_options(options)
         });
         (console, name)
     }

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use egui_kittest::Harness;
-use nima_console::console::{ConsoleApp, reader::Reader, settings::Kept};
+use nima_console::console::{ConsoleApp, reader::Reader};
 use nima_machine::{
     config::{RigConfig, RigFile},
     rig::{Settings, Side},
@@ -14,7 +14,7 @@ use nima_tests::emulated::{elsewhere, started};
 use nima_world::{Plan, emulated::EmulatedRig, scene::Scene, start};
 
 use crate::{
-    bench::{Console, TIMEOUT, can_press, comes, console_of, pick, shows, texts},
+    bench::{Console, TIMEOUT, can_press, comes, console_of, pick, shows, texts, toured},
     language,
 };
 
@@ -63,11 +63,9 @@ pub(crate) fn console(folder: &Path) -> (Console, EmulatedRig, String) {
     let technician = emulators.technician();
     let (store, kept, running) = (folder.join("calibrations"), folder.to_path_buf(), name.clone());
     let console = Harness::builder().with_size(SIZE).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
-        let mut settings = Kept::open(&kept);
-        settings.now.toured = true;
         ConsoleApp::new(cc, handle, rig, scene)
             .with_store(&store)
-            .with_settings(settings)
+            .with_settings(toured(&kept))
             .with_rig_name(running)
             .with_reader(Reader::new(move |screen| technician.reads(screen)))
     });

@@ -154,7 +154,7 @@ impl Driver {
         for _ in 0..READS {
             match self.lines.tcp.receive(self.lines.packets.room()) {
                 Ok(0) => break,
-                Ok(count) => self.lines.packets.took(count),
+                Ok(count) => self.lines.packets.filled(count),
                 Err(loss) => {
                     self.health.lose(loss);
                     return;

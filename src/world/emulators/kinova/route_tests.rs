@@ -62,7 +62,7 @@ impl Client {
             assert!(asked.elapsed() < TIMEOUT, "nothing comes");
             let count = self.stream.read(self.packets.room()).expect("an answer");
             assert!(count > 0, "the connection is closed");
-            self.packets.took(count);
+            self.packets.filled(count);
         }
     }
 

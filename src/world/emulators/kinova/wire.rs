@@ -32,7 +32,7 @@ impl Server {
             let room = packets.room();
             let (now, later) = bytes.split_at(bytes.len().min(room.len()));
             room[..now.len()].copy_from_slice(now);
-            packets.took(now.len());
+            packets.filled(now.len());
             bytes = later;
             while let Some(asked) = packets.next_frame() {
                 let (header, payload) = answer(&mut self.base, from, &asked, turn.now_s, turn.fault);

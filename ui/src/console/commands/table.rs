@@ -8,7 +8,7 @@ use super::{Action, Entry, Place, SIZE, SIZES_PERCENT, Stroke, UNDO, With};
 use crate::console::{
     desk::Panel, roles::Role, scene3d::extras::Switch, text, text::commands as names, wizards::Which,
 };
-use crate::language::{self, Language};
+use crate::language::{self, Language, Text};
 use crate::words::within;
 
 type Keys = &'static [Stroke];
@@ -39,7 +39,12 @@ fn made(language: Language) -> Vec<Entry> {
     named.map(|(entry, english)| Entry { english: english.title, ..entry }).collect()
 }
 
-fn entry(action: Action, title: impl Into<String>, does: &'static str, keys: Keys, place: Place) -> Entry {
+fn entry(action: Action, (title, does): (Text, Text), keys: Keys, place: Place) -> Entry {
+    named(action, title.get(), does.get(), keys, place)
+}
+
+/// The same with words that are made of others.
+fn named(action: Action, title: impl Into<String>, does: &'static str, keys: Keys, place: Place) -> Entry {
     Entry { action, title: title.into(), english: String::new(), does, keys, place }
 }
 
@@ -50,7 +55,7 @@ fn views() -> Vec<Entry> {
             Role::Technician => key!(F2),
             Role::Demo => key!(F3),
         };
-        entry(Action::View(role), names::view(role.name()), role.meaning(), keys, Place::Bar)
+        named(Action::View(role), names::view(role.name()), role.meaning(), keys, Place::Bar)
     };
     Role::ALL.map(of).into()
 }
@@ -58,13 +63,13 @@ fn views() -> Vec<Entry> {
 fn pages() -> Vec<Entry> {
     const PALETTE: Keys = &[Stroke { key: Key::P, with: With::Ctrl }];
     vec![
-        entry(Action::Glossary, names::GLOSSARY.get(), names::GLOSSARY_DOES.get(), key!(F4), Place::ViewMenu),
-        entry(Action::Alarms, names::ALARMS.get(), names::ALARMS_DOES.get(), key!(F5), Place::ViewMenu),
-        entry(Action::Rig, names::RIG.get(), names::RIG_DOES.get(), key!(F6), Place::Bar),
-        entry(Action::Sessions, names::SESSIONS.get(), names::SESSIONS_DOES.get(), key!(F7), Place::Bar),
-        entry(Action::Studies, names::STUDIES.get(), names::STUDIES_DOES.get(), key!(F8), Place::Keys),
-        entry(Action::Tour, names::TOUR.get(), names::TOUR_DOES.get(), &[], Place::ViewMenu),
-        entry(Action::Palette, names::PALETTE.get(), names::PALETTE_DOES.get(), PALETTE, Place::ViewMenu),
+        entry(Action::Glossary, names::GLOSSARY, key!(F4), Place::ViewMenu),
+        entry(Action::Alarms, names::ALARMS, key!(F5), Place::ViewMenu),
+        entry(Action::Rig, names::RIG, key!(F6), Place::Bar),
+        entry(Action::Sessions, names::SESSIONS, key!(F7), Place::Bar),
+        entry(Action::Studies, names::STUDIES, key!(F8), Place::Keys),
+        entry(Action::Tour, names::TOUR, &[], Place::ViewMenu),
+        entry(Action::Palette, names::PALETTE, PALETTE, Place::ViewMenu),
     ]
 }
 
@@ -74,72 +79,76 @@ fn screen() -> Vec<Entry> {
     let [undo, redo] = UNDO;
     // Each in itself: who does not read the present language finds the own one.
     let languages = Language::CHOICES
-        .map(|one| entry(Action::Language(one), names::language(one.name()), names::LANGUAGE_DOES.get(), &[], menu));
+        .map(|one| named(Action::Language(one), names::language(one.name()), names::LANGUAGE_DOES.get(), &[], menu));
     let mut entries = vec![
-        entry(Action::Undo, names::UNDO.get(), names::UNDO_DOES.get(), undo, menu),
-        entry(Action::Redo, names::REDO.get(), names::REDO_DOES.get(), redo, menu),
-        entry(Action::Light(false), names::DARK.get(), names::DARK_DOES.get(), &[], menu),
-        entry(Action::Light(true), names::LIGHT.get(), names::LIGHT_DOES.get(), &[], menu),
-        entry(Action::Larger, names::LARGER.get(), names::LARGER_DOES.get(), larger, Place::Keys),
-        entry(Action::Smaller, names::SMALLER.get(), names::SMALLER_DOES.get(), smaller, Place::Keys),
+        entry(Action::Undo, names::UNDO, undo, menu),
+        entry(Action::Redo, names::REDO, redo, menu),
+        entry(Action::Light(false), names::DARK, &[], menu),
+        entry(Action::Light(true), names::LIGHT, &[], menu),
+        entry(Action::Larger, names::LARGER, larger, Place::Keys),
+        entry(Action::Smaller, names::SMALLER, smaller, Place::Keys),
     ];
     entries.extend(
         SIZES_PERCENT
-            .map(|percent| entry(Action::Size(percent), names::size(percent), names::SIZE_DOES.get(), &[], menu)),
+            .map(|percent| named(Action::Size(percent), names::size(percent), names::SIZE_DOES.get(), &[], menu)),
     );
     entries.extend(languages);
     entries.extend(
-        Panel::ALL.map(|panel| entry(Action::Panel(panel), names::panel(panel.title()), panel.meaning(), &[], menu)),
+        Panel::ALL.map(|panel| named(Action::Panel(panel), names::panel(panel.title()), panel.meaning(), &[], menu)),
     );
-    let reset = (names::RESET_LAYOUT.get(), text::menu::RESET_LAYOUT_HOVER.get());
-    let (plain, plain_does) = (text::menu::PICTURE_PLAIN.get(), text::menu::PICTURE_PLAIN_HOVER.get());
-    let (now, now_does) = (text::menu::FORCES_OF_NOW.get(), text::menu::FORCES_OF_NOW_HOVER.get());
-    let (records, records_does) = (text::menu::RECORDS_PICTURE.get(), text::menu::RECORDS_PICTURE_HOVER.get());
     entries.extend([
-        entry(Action::ResetLayout, reset.0, reset.1, &[], menu),
-        entry(Action::Sound, text::menu::SOUND.get(), text::menu::SOUND_HOVER.get(), &[], menu),
-        entry(Action::ForcesOfNow, now, now_does, &[], menu),
-        entry(Action::PlainPicture, plain, plain_does, &[], menu),
-        entry(Action::RecordsPicture, records, records_does, &[], menu),
+        entry(Action::ResetLayout, (names::RESET_LAYOUT, text::menu::RESET_LAYOUT_HOVER), &[], menu),
+        entry(Action::Sound, (text::menu::SOUND, text::menu::SOUND_HOVER), &[], menu),
+        entry(Action::ForcesOfNow, (text::menu::FORCES_OF_NOW, text::menu::FORCES_OF_NOW_HOVER), &[], menu),
+        entry(Action::PlainPicture, (text::menu::PICTURE_PLAIN, text::menu::PICTURE_PLAIN_HOVER), &[], menu),
+        entry(Action::RecordsPicture, (text::menu::RECORDS_PICTURE, text::menu::RECORDS_PICTURE_HOVER), &[], menu),
     ]);
     entries
 }
 
 fn calibration() -> Vec<Entry> {
     let at = Place::Calibration;
-    let (back, back_does) = (text::calibrations::CLOSE_WIZARD.get(), text::calibrations::CLOSE_WIZARD_HOVER.get());
     let mut entries = vec![
-        entry(Action::Check, text::ready::OPEN.get(), text::ready::MEANING.get(), &[], at),
-        entry(Action::Calibrations, text::overview::OPEN.get(), text::overview::MEANING.get(), &[], at),
+        entry(Action::Check, (text::ready::OPEN, text::ready::MEANING), &[], at),
+        entry(Action::Calibrations, (text::overview::OPEN, text::overview::MEANING), &[], at),
     ];
     entries.extend(Which::ALL.map(|which| {
         let title = text::calibrations::calibrate(&within(which.name()));
-        entry(Action::Calibrate(which), title, which.meaning(), &[], at)
+        named(Action::Calibrate(which), title, which.meaning(), &[], at)
     }));
-    entries.push(entry(Action::CloseWizard, back, back_does, &[], at));
+    entries.push(entry(
+        Action::CloseWizard,
+        (text::calibrations::CLOSE_WIZARD, text::calibrations::CLOSE_WIZARD_HOVER),
+        &[],
+        at,
+    ));
     entries
 }
 
 fn traces_and_field() -> Vec<Entry> {
-    let (last, last_does) = (text::forces::LAST_TEN_SECONDS.get(), text::forces::LAST_TEN_SECONDS_HOVER.get());
     let mut entries = vec![
-        entry(Action::Mark, names::MARK.get(), names::MARK_DOES.get(), key!(E), Place::ViewMenu),
-        entry(Action::Keep, names::KEEP.get(), names::KEEP_DOES.get(), key!(K), Place::Bar),
-        entry(Action::Pause, names::PAUSE.get(), text::forces::PAUSE_HOVER.get(), &[], Place::Traces),
-        entry(Action::LastTenSeconds, last, last_does, &[], Place::Traces),
+        entry(Action::Mark, names::MARK, key!(E), Place::ViewMenu),
+        entry(Action::Keep, names::KEEP, key!(K), Place::Bar),
+        entry(Action::Pause, (names::PAUSE, text::forces::PAUSE_HOVER), &[], Place::Traces),
+        entry(
+            Action::LastTenSeconds,
+            (text::forces::LAST_TEN_SECONDS, text::forces::LAST_TEN_SECONDS_HOVER),
+            &[],
+            Place::Traces,
+        ),
     ];
     entries.extend(
-        Switch::ALL.map(|switch| entry(Action::Draws(switch), switch.name(), switch.meaning(), &[], Place::Field)),
+        Switch::ALL.map(|switch| named(Action::Draws(switch), switch.name(), switch.meaning(), &[], Place::Field)),
     );
     entries.extend([
-        entry(Action::Drive, names::DRIVE.get(), names::DRIVE_DOES.get(), key!(M), Place::Field),
-        entry(Action::OtherHand, names::OTHER_HAND.get(), names::OTHER_HAND_DOES.get(), key!(H), Place::Field),
-        entry(Action::Jaws, names::JAWS.get(), names::JAWS_DOES.get(), key!(G), Place::Field),
-        entry(Action::MarkPlace, names::MARK_PLACE.get(), names::MARK_PLACE_DOES.get(), key!(X), Place::Field),
-        entry(Action::EndTrial, names::END_TRIAL.get(), names::END_TRIAL_DOES.get(), key!(D), Place::Field),
-        entry(Action::BeginTrial, names::BEGIN_TRIAL.get(), names::BEGIN_TRIAL_DOES.get(), key!(N), Place::Field),
-        entry(Action::HideForces, names::HIDE_FORCES.get(), names::HIDE_FORCES_DOES.get(), key!(O), Place::Picture),
-        entry(Action::Lens, names::LENS.get(), names::LENS_DOES.get(), key!(V), Place::Picture),
+        entry(Action::Drive, names::DRIVE, key!(M), Place::Field),
+        entry(Action::OtherHand, names::OTHER_HAND, key!(H), Place::Field),
+        entry(Action::Jaws, names::JAWS, key!(G), Place::Field),
+        entry(Action::MarkPlace, names::MARK_PLACE, key!(X), Place::Field),
+        entry(Action::EndTrial, names::END_TRIAL, key!(D), Place::Field),
+        entry(Action::BeginTrial, names::BEGIN_TRIAL, key!(N), Place::Field),
+        entry(Action::HideForces, names::HIDE_FORCES, key!(O), Place::Picture),
+        entry(Action::Lens, names::LENS, key!(V), Place::Picture),
     ]);
     entries
 }
@@ -149,12 +158,12 @@ fn past() -> Vec<Entry> {
         [&[Stroke { key: Key::ArrowLeft, with: With::Shift }], &[Stroke { key: Key::ArrowRight, with: With::Shift }]];
     let at = Place::Past;
     vec![
-        entry(Action::LeavePast, names::LEAVE_PAST.get(), names::LEAVE_PAST_DOES.get(), key!(L), at),
-        entry(Action::Play, names::PLAY.get(), names::PLAY_DOES.get(), key!(P), at),
-        entry(Action::Step(-1000), names::BACK.get(), names::PLAY_DOES.get(), key!(ArrowLeft), at),
-        entry(Action::Step(1000), names::ON.get(), names::PLAY_DOES.get(), key!(ArrowRight), at),
-        entry(Action::Step(-10), names::BACK_FINE.get(), names::PLAY_DOES.get(), FINE[0], at),
-        entry(Action::Step(10), names::ON_FINE.get(), names::PLAY_DOES.get(), FINE[1], at),
+        entry(Action::LeavePast, names::LEAVE_PAST, key!(L), at),
+        entry(Action::Play, (names::PLAY, names::PLAY_DOES), key!(P), at),
+        entry(Action::Step(-1000), (names::BACK, names::PLAY_DOES), key!(ArrowLeft), at),
+        entry(Action::Step(1000), (names::ON, names::PLAY_DOES), key!(ArrowRight), at),
+        entry(Action::Step(-10), (names::BACK_FINE, names::PLAY_DOES), FINE[0], at),
+        entry(Action::Step(10), (names::ON_FINE, names::PLAY_DOES), FINE[1], at),
     ]
 }
 
@@ -162,10 +171,10 @@ fn past() -> Vec<Entry> {
 fn machine() -> Vec<Entry> {
     const STOP: Keys = &[Stroke::plain(Key::Space), Stroke::plain(Key::Escape)];
     vec![
-        entry(Action::Acknowledge, names::ACKNOWLEDGE.get(), names::ACKNOWLEDGE_DOES.get(), key!(A), Place::Alarms),
-        entry(Action::Stop, names::STOP.get(), names::STOP_DOES.get(), STOP, Place::Bar),
-        entry(Action::Release, names::RELEASE.get(), names::RELEASE_DOES.get(), &[], Place::Bar),
-        entry(Action::Engage, names::ENGAGE.get(), names::ENGAGE_DOES.get(), &[], Place::Bar),
+        entry(Action::Acknowledge, names::ACKNOWLEDGE, key!(A), Place::Alarms),
+        entry(Action::Stop, names::STOP, STOP, Place::Bar),
+        entry(Action::Release, names::RELEASE, &[], Place::Bar),
+        entry(Action::Engage, names::ENGAGE, &[], Place::Bar),
     ]
 }
 

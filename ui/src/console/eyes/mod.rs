@@ -5,7 +5,7 @@ mod aim;
 mod corner;
 mod halves;
 mod hidden;
-pub(in crate::console) mod mount;
+mod mount;
 mod overlay;
 mod place;
 mod plate;

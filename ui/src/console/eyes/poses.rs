@@ -6,12 +6,13 @@ use std::{
 };
 
 use nalgebra::{Isometry3, Vector3};
+use nima_camera::steadied;
 use nima_machine::{
     messages::Tick,
     rig::{SIDES, Side},
 };
 
-use super::mount::{STEADY_S, steadied};
+use super::mount::STEADY_S;
 
 /// A marker that was last seen so long ago may be anywhere, s: some pictures of a tracker.
 const UNSEEN_S: f64 = 0.2;

@@ -11,6 +11,7 @@ use std::{
 };
 
 use nalgebra::Isometry3;
+use nima_camera::steadied;
 use nima_endoscope::{Damage, FROZEN, Look, Picture, Standing, Tone, Wrong, h264, jpeg};
 use nima_machine::rig::{SIDES, Side};
 use nima_session::{
@@ -18,10 +19,7 @@ use nima_session::{
     plotted::{self, PlottedError},
 };
 
-use super::{
-    mount::{STEADY_S, steadied},
-    poses::Pose,
-};
+use super::{mount::STEADY_S, poses::Pose};
 use crate::console::{chain, text};
 use crate::language;
 

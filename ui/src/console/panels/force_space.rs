@@ -8,7 +8,7 @@ use egui::{Align2, Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2, 
 use nalgebra::Vector3;
 use nima_machine::rig::Side;
 
-use super::forces::stepped;
+use super::forces_state::stepped;
 use crate::console::{
     cloud::{Ellipsoid, SECONDS},
     live::Live,

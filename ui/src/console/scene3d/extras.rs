@@ -10,8 +10,9 @@ use nalgebra::Vector3;
 use nima_world::scene::Scene;
 
 use super::{
-    Camera, label,
+    Camera,
     stage::{self, Arm},
+    written::label,
 };
 use crate::console::{text, theme};
 use crate::language::Text;

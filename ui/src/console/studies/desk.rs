@@ -124,7 +124,7 @@ impl Desk {
                     Some(questions::Done::Submit(answers)) => {
                         let kept = self.study.answer(&self.chosen, answers, false, &utc_now());
                         self.sheet = None;
-                        self.after(kept, text::studies::SUBMITTED.get());
+                        self.after(kept, text::questionnaires::SUBMITTED.get());
                         self.ask();
                     }
                     None => {}

@@ -174,7 +174,7 @@ impl Draft {
     pub(super) fn add(&mut self) {
         let delay_ms = self.file.conditions.iter().find_map(|condition| condition.delay_ms).or(Some(0.0));
         self.file.conditions.push(Condition {
-            name: text::studies::NEW_CONDITION.get().to_owned(),
+            name: text::study_form::NEW_CONDITION.get().to_owned(),
             no_force: false,
             mode: Some(Mode::Best),
             gain: Some(1.0),

@@ -71,10 +71,10 @@ impl Form {
     fn foot_ui(&mut self, ui: &mut Ui, data: Option<&Path>) -> Option<Done> {
         let mut done = None;
         ui.horizontal(|ui| {
-            let name = RichText::new(text::studies::MAKE.get()).font(theme::strong(17.0));
+            let name = RichText::new(text::study_form::MAKE.get()).font(theme::strong(17.0));
             let make =
                 ui.add_enabled(data.is_some(), next_button(name, true).min_size(vec2(160.0, theme::STOP_SIZE.y)));
-            let make = make.on_hover_text(text::studies::MAKE_HOVER.get());
+            let make = make.on_hover_text(text::study_form::MAKE_HOVER.get());
             if make.on_disabled_hover_text(text::studies::NO_FOLDER.get()).clicked()
                 && let Some(data) = data
             {
@@ -85,7 +85,7 @@ impl Form {
             }
             ScrollArea::vertical().id_salt("mistakes").max_height(FOOT - 12.0).auto_shrink(false).show(ui, |ui| {
                 ui.vertical(|ui| {
-                    let place = data.map(|data| text::studies::place(&self.draft.place(data)));
+                    let place = data.map(|data| text::study_form::place(&self.draft.place(data)));
                     if self.told.is_empty() {
                         ui.add(Label::new(small(place.unwrap_or_default())).wrap());
                     }
@@ -116,9 +116,9 @@ impl Form {
 }
 
 fn ready_ui(ui: &mut Ui, draft: &mut Draft) {
-    card(ui, text::studies::READY.get(), text::studies::READY_HOVER.get(), |ui| {
+    card(ui, text::study_form::READY.get(), text::study_form::READY_HOVER.get(), |ui| {
         for ready in READY {
-            let [name, about] = text::studies::ready(ready);
+            let [name, about] = text::study_form::ready(ready);
             let button = Button::selectable(draft.ready == ready, name).frame_when_inactive(true);
             let clicked = ui.add(button.min_size(vec2(ui.available_width(), 30.0))).clicked();
             ui.add(Label::new(small(about)).wrap());
@@ -131,54 +131,54 @@ fn ready_ui(ui: &mut Ui, draft: &mut Draft) {
 
 fn what_ui(ui: &mut Ui, draft: &mut Draft) {
     let file = &mut draft.file;
-    card(ui, text::studies::WHAT.get(), text::studies::WHAT_HOVER.get(), |ui| {
-        field_ui(ui, text::studies::NAME.get(), &mut file.name);
-        field_ui(ui, text::studies::RIG.get(), &mut file.rig);
+    card(ui, text::study_form::WHAT.get(), text::study_form::WHAT_HOVER.get(), |ui| {
+        field_ui(ui, text::study_form::NAME.get(), &mut file.name);
+        field_ui(ui, text::study_form::RIG.get(), &mut file.rig);
         Grid::new("figures").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
-            whole_ui(ui, text::studies::PARTICIPANTS.get(), &mut file.participants, 0..=200);
-            whole_ui(ui, text::studies::TRIALS.get(), &mut file.trials, 0..=100);
-            whole_ui(ui, text::studies::ATTEMPTS.get(), &mut file.attempts, 0..=10);
+            whole_ui(ui, text::study_form::PARTICIPANTS.get(), &mut file.participants, 0..=200);
+            whole_ui(ui, text::study_form::TRIALS.get(), &mut file.trials, 0..=100);
+            whole_ui(ui, text::study_form::ATTEMPTS.get(), &mut file.attempts, 0..=10);
         });
         let rows = order::williams(file.conditions.len()).len();
-        ui.label(small(text::studies::balance(file.participants as usize, rows)));
+        ui.label(small(text::study_form::balance(file.participants as usize, rows)));
         ui.horizontal_wrapped(|ui| {
-            ui.label(text::studies::INTERRUPTED.get());
+            ui.label(text::study_form::INTERRUPTED.get());
             either_ui(
                 ui,
                 &mut file.interrupted,
                 [
-                    (Interrupted::Repeat, text::studies::REPEATED.get()),
-                    (Interrupted::Resume, text::studies::SKIPPED.get()),
+                    (Interrupted::Repeat, text::study_form::REPEATED.get()),
+                    (Interrupted::Resume, text::study_form::SKIPPED.get()),
                 ],
             );
         });
-        ui.checkbox(&mut file.blind, text::studies::BLIND.get());
-        ui.checkbox(&mut file.record, text::studies::RECORD.get());
+        ui.checkbox(&mut file.blind, text::study_form::BLIND.get());
+        ui.checkbox(&mut file.record, text::study_form::RECORD.get());
     });
 }
 
 fn practice_ui(ui: &mut Ui, draft: &mut Draft) {
     let names: Vec<String> = draft.file.conditions.iter().map(|condition| condition.name.clone()).collect();
-    card(ui, text::studies::PRACTICE.get(), text::studies::PRACTICE_HOVER.get(), |ui| {
-        ui.checkbox(&mut draft.practises, text::studies::PRACTISES.get());
+    card(ui, text::study_form::PRACTICE.get(), text::study_form::PRACTICE_HOVER.get(), |ui| {
+        ui.checkbox(&mut draft.practises, text::study_form::PRACTISES.get());
         let criterion = &mut draft.practice.criterion;
         ui.add_enabled_ui(draft.practises, |ui| {
             Grid::new("practice").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
-                seconds_ui(ui, text::studies::TIME.get(), &mut criterion.time_s, 0.0..=1200.0);
-                whole_ui(ui, text::studies::DROPS.get(), &mut criterion.drops_out_of_view, 0..=20);
-                whole_ui(ui, text::studies::IN_A_ROW.get(), &mut criterion.consecutive, 0..=50);
-                whole_ui(ui, text::studies::MORE.get(), &mut criterion.additional, 0..=50);
-                whole_ui(ui, text::studies::MOST.get(), &mut criterion.max_trials, 0..=200);
-                choice_ui(ui, text::studies::UNDER.get(), &mut draft.under, &names, text::studies::IN_TURN.get());
+                seconds_ui(ui, text::study_form::TIME.get(), &mut criterion.time_s, 0.0..=1200.0);
+                whole_ui(ui, text::study_form::DROPS.get(), &mut criterion.drops_out_of_view, 0..=20);
+                whole_ui(ui, text::study_form::IN_A_ROW.get(), &mut criterion.consecutive, 0..=50);
+                whole_ui(ui, text::study_form::MORE.get(), &mut criterion.additional, 0..=50);
+                whole_ui(ui, text::study_form::MOST.get(), &mut criterion.max_trials, 0..=200);
+                choice_ui(ui, text::study_form::UNDER.get(), &mut draft.under, &names, text::study_form::IN_TURN.get());
             });
             ui.horizontal_wrapped(|ui| {
-                ui.label(text::studies::NOT_REACHED.get());
+                ui.label(text::study_form::NOT_REACHED.get());
                 either_ui(
                     ui,
                     &mut draft.practice.not_reached,
                     [
-                        (NotReached::GoOn, text::studies::GOES_ON.get()),
-                        (NotReached::Exclude, text::studies::EXCLUDED.get()),
+                        (NotReached::GoOn, text::study_form::GOES_ON.get()),
+                        (NotReached::Exclude, text::study_form::EXCLUDED.get()),
                     ],
                 );
             });
@@ -188,22 +188,22 @@ fn practice_ui(ui: &mut Ui, draft: &mut Draft) {
 
 fn conditions_ui(ui: &mut Ui, draft: &mut Draft) {
     let mut gone = None;
-    card(ui, text::studies::CONDITIONS.get(), text::studies::CONDITIONS_HOVER.get(), |ui| {
+    card(ui, text::study_form::CONDITIONS.get(), text::study_form::CONDITIONS_HOVER.get(), |ui| {
         let few = draft.file.conditions.len() <= 2;
         Grid::new("conditions-table").num_columns(5).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
             for head in [
-                text::studies::NAME.get(),
-                text::studies::FEEDBACK.get(),
-                text::studies::GAIN.get(),
-                text::studies::DELAY.get(),
+                text::study_form::NAME.get(),
+                text::study_form::FEEDBACK.get(),
+                text::study_form::GAIN.get(),
+                text::study_form::DELAY.get(),
             ] {
                 ui.label(small(head));
             }
             ui.end_row();
             for (condition, number) in draft.file.conditions.iter_mut().zip(1..) {
                 condition_ui(ui, condition, number);
-                let remove = ui.add_enabled(!few, Button::new(text::studies::REMOVE.get()));
-                let name = text::studies::of_condition(text::studies::REMOVE.get(), number);
+                let remove = ui.add_enabled(!few, Button::new(text::study_form::REMOVE.get()));
+                let name = text::study_form::of_condition(text::study_form::REMOVE.get(), number);
                 remove.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, !few, &name));
                 if remove.clicked() {
                     gone = Some(number - 1);
@@ -213,15 +213,15 @@ fn conditions_ui(ui: &mut Ui, draft: &mut Draft) {
         });
         let names: Vec<String> = draft.file.conditions.iter().map(|condition| condition.name.clone()).collect();
         ui.horizontal(|ui| {
-            if ui.add(Button::new(text::studies::ADD.get()).min_size(vec2(140.0, 28.0))).clicked() {
+            if ui.add(Button::new(text::study_form::ADD.get()).min_size(vec2(140.0, 28.0))).clicked() {
                 draft.add();
             }
             choice_ui(
                 ui,
-                text::studies::REFERENCE.get(),
+                text::study_form::REFERENCE.get(),
                 &mut draft.reference,
                 &names,
-                text::studies::FIRST_LABEL.get(),
+                text::study_form::FIRST_LABEL.get(),
             );
         });
     });
@@ -231,10 +231,10 @@ fn conditions_ui(ui: &mut Ui, draft: &mut Draft) {
 }
 
 fn condition_ui(ui: &mut Ui, condition: &mut Condition, number: usize) {
-    let named = |what: &str| text::studies::of_condition(what, number);
+    let named = |what: &str| text::study_form::of_condition(what, number);
     let name = ui.add_sized(vec2(150.0, 22.0), TextEdit::singleline(&mut condition.name).char_limit(60));
-    name.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, named(text::studies::NAME.get())));
-    let shown = condition.mode.map_or(text::studies::NO_FORCE.get(), mode_name);
+    name.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, named(text::study_form::NAME.get())));
+    let shown = condition.mode.map_or(text::study_form::NO_FORCE.get(), mode_name);
     let combo = ComboBox::from_id_salt(("force", number)).width(128.0).selected_text(shown).show_ui(ui, |ui| {
         for mode in Mode::ALL {
             let chosen = condition.mode == Some(mode);
@@ -242,37 +242,39 @@ fn condition_ui(ui: &mut Ui, condition: &mut Condition, number: usize) {
                 with_mode(condition, mode);
             }
         }
-        if ui.selectable_label(condition.no_force, text::studies::NO_FORCE.get()).clicked() {
+        if ui.selectable_label(condition.no_force, text::study_form::NO_FORCE.get()).clicked() {
             without_force(condition);
         }
     });
-    let of = named(text::studies::FEEDBACK.get());
+    let of = named(text::study_form::FEEDBACK.get());
     combo.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &of));
     if condition.no_force {
-        ui.label(weak(text::studies::NO_GAIN.get()));
+        ui.label(weak(text::study_form::NO_GAIN.get()));
     } else {
         let mut gain = condition.gain.unwrap_or(1.0);
         let drag = ui.add(DragValue::new(&mut gain).range(0.01..=1.0).speed(0.01).fixed_decimals(2));
         if drag.changed() {
             condition.gain = Some(gain);
         }
-        drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, named(text::studies::GAIN.get())));
+        drag.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::SpinButton, true, named(text::study_form::GAIN.get()))
+        });
     }
     let mut delay_ms = condition.delay_ms.unwrap_or(0.0);
     let drag = ui.add(DragValue::new(&mut delay_ms).range(0.0..=2000.0).speed(1.0).suffix(" ms"));
     if drag.changed() {
         condition.delay_ms = Some(delay_ms);
     }
-    drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, named(text::studies::DELAY.get())));
+    drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, named(text::study_form::DELAY.get())));
 }
 
 fn breaks_ui(ui: &mut Ui, draft: &mut Draft) {
-    card(ui, text::studies::BREAKS.get(), text::studies::BREAKS_HOVER.get(), |ui| {
-        ui.checkbox(&mut draft.rests, text::studies::RESTS.get());
+    card(ui, text::study_form::BREAKS.get(), text::study_form::BREAKS_HOVER.get(), |ui| {
+        ui.checkbox(&mut draft.rests, text::study_form::RESTS.get());
         ui.add_enabled_ui(draft.rests, |ui| {
             Grid::new("breaks").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
-                whole_ui(ui, text::studies::EVERY.get(), &mut draft.breaks.after_trials, 0..=1000);
-                seconds_ui(ui, text::studies::LEAST.get(), &mut draft.breaks.least_s, 0.0..=7200.0);
+                whole_ui(ui, text::study_form::EVERY.get(), &mut draft.breaks.after_trials, 0..=1000);
+                seconds_ui(ui, text::study_form::LEAST.get(), &mut draft.breaks.least_s, 0.0..=7200.0);
             });
         });
     });
@@ -280,18 +282,18 @@ fn breaks_ui(ui: &mut Ui, draft: &mut Draft) {
 
 fn questionnaires_ui(ui: &mut Ui, draft: &mut Draft) {
     let asked = &mut draft.file.questionnaires;
-    card(ui, text::studies::QUESTIONNAIRES.get(), text::studies::QUESTIONNAIRES_HOVER.get(), |ui| {
+    card(ui, text::study_form::QUESTIONNAIRES.get(), text::study_form::QUESTIONNAIRES_HOVER.get(), |ui| {
         Grid::new("questionnaires").num_columns(3).spacing(vec2(16.0, 4.0)).show(ui, |ui| {
             ui.label("");
-            ui.label(small(text::studies::AFTER_EACH.get()));
-            ui.label(small(text::studies::AT_END.get()));
+            ui.label(small(text::study_form::AFTER_EACH.get()));
+            ui.label(small(text::study_form::AT_END.get()));
             ui.end_row();
             for which in Questionnaire::ALL {
-                let name = text::studies::questionnaire(which);
+                let name = text::questionnaires::questionnaire(which);
                 ui.label(name);
                 for (all, when) in [
-                    (&mut asked.after_condition, text::studies::AFTER_EACH.get()),
-                    (&mut asked.at_end, text::studies::AT_END.get()),
+                    (&mut asked.after_condition, text::study_form::AFTER_EACH.get()),
+                    (&mut asked.at_end, text::study_form::AT_END.get()),
                 ] {
                     let mut on = all.contains(&which);
                     let response = ui.checkbox(&mut on, "");

@@ -102,7 +102,7 @@ impl List {
             column(ui, "new", vec2(0.38 * room.x, room.y), |ui| {
                 let name = RichText::new(text::studies::NEW.get()).font(theme::strong(17.0));
                 let button = next_button(name, self.rows.is_empty()).min_size(vec2(ui.available_width(), 44.0));
-                if ui.add(button).on_hover_text(text::studies::READY_HOVER.get()).clicked() {
+                if ui.add(button).on_hover_text(text::study_form::READY_HOVER.get()).clicked() {
                     done = Some(Done::New);
                 }
                 ui.add_space(theme::GAP);

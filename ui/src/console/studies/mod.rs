@@ -110,7 +110,7 @@ impl Studies {
                     match form.ui(ui, room.folder) {
                         Some(form::Done::Back) => self.form = None,
                         Some(form::Done::Made(study)) => {
-                            let told = text::studies::made(study.folder());
+                            let told = text::study_form::made(study.folder());
                             self.take_study(*study, Some(told), &mut room);
                         }
                         None => {}

@@ -83,7 +83,7 @@ impl Sheet {
             Questionnaire::NasaTlxWeighted => {
                 let mut wrong = unrated();
                 let pairs = self.chosen.iter().filter(|one| one.is_none()).count();
-                wrong.extend((pairs > 0).then(|| text::studies::missing_pairs(pairs)));
+                wrong.extend((pairs > 0).then(|| text::questionnaires::missing_pairs(pairs)));
                 let chosen = self.chosen.map(|one| one.unwrap_or(TlxScale::Mental));
                 match all(&self.ratings) {
                     Some(ratings) if wrong.is_empty() => {
@@ -94,10 +94,10 @@ impl Sheet {
             }
             Questionnaire::Sus => all(&self.items).map(Answers::Sus).ok_or_else(|| {
                 let open = self.items.iter().zip(1..).filter(|(item, _)| item.is_none());
-                missing(&mut open.map(|(_, number)| text::studies::statement(number)))
+                missing(&mut open.map(|(_, number)| text::questionnaires::statement(number)))
             }),
             Questionnaire::Realism => {
-                self.realism.map(Answers::Realism).ok_or_else(|| vec![text::studies::statement(1)])
+                self.realism.map(Answers::Realism).ok_or_else(|| vec![text::questionnaires::statement(1)])
             }
             Questionnaire::FreeText => Ok(Answers::FreeText(self.text.trim().to_owned())),
         }
@@ -106,7 +106,7 @@ impl Sheet {
     /// Draws the page.
     pub(super) fn ui(&mut self, ui: &mut Ui) -> Option<Done> {
         let mut done = None;
-        let title = text::studies::asked(self.which, &self.participant, self.after);
+        let title = text::questionnaires::asked(self.which, &self.participant, self.after);
         ui.label(RichText::new(title).font(theme::strong(19.0)));
         ui.add_space(6.0);
         let height = ui.available_height() - 66.0;
@@ -126,7 +126,7 @@ impl Sheet {
         ui.add_space(6.0);
         ui.horizontal(|ui| {
             let answers = self.answers();
-            let name = RichText::new(text::studies::SUBMIT.get()).font(theme::strong(17.0));
+            let name = RichText::new(text::questionnaires::SUBMIT.get()).font(theme::strong(17.0));
             let button = next_button(name, answers.is_ok()).min_size(theme::STOP_SIZE);
             let clicked = ui.add_enabled(answers.is_ok(), button).clicked();
             if ui.add(Button::new(text::studies::BACK.get()).min_size(theme::STOP_SIZE)).clicked() {
@@ -136,7 +136,7 @@ impl Sheet {
                 Ok(answers) if clicked => done = Some(Done::Submit(answers)),
                 Ok(_) => {}
                 Err(what) => {
-                    ui.add(Label::new(weak(text::studies::missing(&what))).wrap());
+                    ui.add(Label::new(weak(text::questionnaires::missing(&what))).wrap());
                 }
             }
         });
@@ -144,7 +144,7 @@ impl Sheet {
     }
 
     fn ratings_ui(&mut self, ui: &mut Ui) {
-        ui.label(small(text::studies::RATE.get()));
+        ui.label(small(text::questionnaires::RATE.get()));
         for ((_, name, question), rating) in TLX_SCALES.iter().zip(&mut self.ratings) {
             ui.add_space(4.0);
             let label = ui.add(Label::new(RichText::new(sentence(name)).font(theme::strong(15.0))));
@@ -170,8 +170,8 @@ impl Sheet {
                 if value.is_finite() {
                     *rating = Some((STEP * (value / STEP).round()) as u8);
                 }
-                let shown =
-                    rating.map_or_else(|| text::studies::NOT_ANSWERED.get().to_owned(), |rating| rating.to_string());
+                let shown = rating
+                    .map_or_else(|| text::questionnaires::NOT_ANSWERED.get().to_owned(), |rating| rating.to_string());
                 ui.label(weak(shown));
             });
         }
@@ -179,7 +179,7 @@ impl Sheet {
 
     fn pairs_ui(&mut self, ui: &mut Ui) {
         ui.add_space(10.0);
-        ui.label(RichText::new(text::studies::PAIRS.get()).font(theme::strong(15.0)));
+        ui.label(RichText::new(text::questionnaires::PAIRS.get()).font(theme::strong(15.0)));
         ui.columns(2, |columns| {
             for (at, ((one, other), chosen)) in PAIRS.iter().zip(&mut self.chosen).enumerate() {
                 columns[at / PAIRS.len().div_ceil(2)].horizontal(|ui| {
@@ -202,13 +202,20 @@ impl Sheet {
 
     fn sus_ui(&mut self, ui: &mut Ui) {
         for ((statement, item), number) in SUS_ITEMS.iter().zip(&mut self.items).zip(1..) {
-            numbered_ui(ui, &format!("{number}. {statement}"), item, 5, number, text::studies::AGREE.map(Text::get));
+            numbered_ui(
+                ui,
+                &format!("{number}. {statement}"),
+                item,
+                5,
+                number,
+                text::questionnaires::AGREE.map(Text::get),
+            );
         }
     }
 
     fn text_ui(&mut self, ui: &mut Ui) {
-        let label = ui.label(RichText::new(text::studies::FREE_TEXT.get()).font(theme::strong(15.0)));
-        ui.label(small(text::studies::FREE_TEXT_HINT.get()));
+        let label = ui.label(RichText::new(text::questionnaires::FREE_TEXT.get()).font(theme::strong(15.0)));
+        ui.label(small(text::questionnaires::FREE_TEXT_HINT.get()));
         let field = TextEdit::multiline(&mut self.text).desired_rows(8).desired_width(f32::INFINITY).char_limit(4000);
         ui.add(field).labelled_by(label.id);
     }

@@ -2,126 +2,160 @@
 
 use crate::language::{Text, told};
 
-pub(in crate::console) const STOP: Text = Text::of("Stop", "Halt");
-pub(in crate::console) const STOP_DOES: Text = Text::of(
-    "No force, no motion, in every view. While you type, only Escape does it.",
-    "Keine Kraft, keine Bewegung, in jeder Ansicht. Beim Tippen nur mit Escape.",
+/// Name and meaning of each command.
+pub(in crate::console) const STOP: (Text, Text) = (
+    Text::of("Stop", "Halt"),
+    Text::of(
+        "No force, no motion, in every view. While you type, only Escape does it.",
+        "Keine Kraft, keine Bewegung, in jeder Ansicht. Beim Tippen nur mit Escape.",
+    ),
 );
-pub(in crate::console) const ENGAGE: Text = Text::of("Engage", "Koppeln");
-pub(in crate::console) const ENGAGE_DOES: Text =
-    Text::of("Starts motion and force feedback", "Startet Bewegung und Kraftrückkopplung");
-pub(in crate::console) const RELEASE: Text = Text::of("Release stop", "Halt lösen");
-pub(in crate::console) const RELEASE_DOES: Text = Text::of(
-    "Returns from a stop or a fault to idle, still without force",
-    "Von Halt oder Störung zurück in den Leerlauf, noch ohne Kraft",
+pub(in crate::console) const ENGAGE: (Text, Text) = (
+    Text::of("Engage", "Koppeln"),
+    Text::of("Starts motion and force feedback", "Startet Bewegung und Kraftrückkopplung"),
 );
-pub(in crate::console) const RIG: Text = Text::of("Rig and scene", "Aufbau und Szene");
-pub(in crate::console) const RIG_DOES: Text = Text::of(
-    "The page on which a rig and a scene are chosen and made",
-    "Seite zum Wählen und Anlegen von Aufbau und Szene",
+pub(in crate::console) const RELEASE: (Text, Text) = (
+    Text::of("Release stop", "Halt lösen"),
+    Text::of(
+        "Returns from a stop or a fault to idle, still without force",
+        "Von Halt oder Störung zurück in den Leerlauf, noch ohne Kraft",
+    ),
 );
-pub(in crate::console) const SESSIONS: Text = Text::of("Recorded sessions", "Aufgezeichnete Sitzungen");
-pub(in crate::console) const SESSIONS_DOES: Text = Text::of(
-    "The list of recorded sessions: look at one, keep it, report on it",
-    "Liste der Sitzungen: ansehen, sichern, Bericht erstellen",
+pub(in crate::console) const RIG: (Text, Text) = (
+    Text::of("Rig and scene", "Aufbau und Szene"),
+    Text::of(
+        "The page on which a rig and a scene are chosen and made",
+        "Seite zum Wählen und Anlegen von Aufbau und Szene",
+    ),
 );
-pub(in crate::console) const STUDIES: Text = Text::of("User studies", "Nutzerstudien");
-pub(in crate::console) const STUDIES_DOES: Text =
-    Text::of("The page on which studies are made and gone on with", "Seite zum Anlegen und Fortsetzen von Studien");
-pub(in crate::console) const ALARMS: Text = Text::of("Alarms", "Alarme");
-pub(in crate::console) const ALARMS_DOES: Text = Text::of("The list of the last alarms", "Liste der letzten Alarme");
-pub(in crate::console) const GLOSSARY: Text = Text::of("Glossary", "Glossar");
-pub(in crate::console) const GLOSSARY_DOES: Text =
-    Text::of("This list of keys and terms", "Diese Liste der Tasten und Begriffe");
-pub(in crate::console) const TOUR: Text = Text::of("Tour", "Rundgang");
-pub(in crate::console) const TOUR_DOES: Text =
-    Text::of("Four steps through the screen", "Vier Schritte durch die Anzeige");
-pub(in crate::console) const PALETTE: Text = Text::of("All commands", "Alle Befehle");
-pub(in crate::console) const PALETTE_DOES: Text =
-    Text::of("Finds a command by its name and does it", "Findet einen Befehl über den Namen und führt ihn aus");
-pub(in crate::console) const ACKNOWLEDGE: Text = Text::of("Acknowledge the alarms", "Alarme quittieren");
-pub(in crate::console) const ACKNOWLEDGE_DOES: Text = Text::of(
-    "Ends flashing and sound; an alarm stays while its cause does",
-    "Beendet Blinken und Ton; ein Alarm bleibt, solange seine Ursache besteht",
+pub(in crate::console) const SESSIONS: (Text, Text) = (
+    Text::of("Recorded sessions", "Aufgezeichnete Sitzungen"),
+    Text::of(
+        "The list of recorded sessions: look at one, keep it, report on it",
+        "Liste der Sitzungen: ansehen, sichern, Bericht erstellen",
+    ),
 );
-pub(in crate::console) const MARK: Text = Text::of("Mark this moment", "Moment markieren");
-pub(in crate::console) const MARK_DOES: Text = Text::of(
-    "In the traces and in the session that is being recorded",
-    "In den Verläufen und in der laufenden Sitzung",
+pub(in crate::console) const STUDIES: (Text, Text) = (
+    Text::of("User studies", "Nutzerstudien"),
+    Text::of("The page on which studies are made and gone on with", "Seite zum Anlegen und Fortsetzen von Studien"),
 );
-pub(in crate::console) const KEEP: Text = Text::of("Keep the session", "Sitzung sichern");
-pub(in crate::console) const KEEP_DOES: Text = Text::of(
-    "The session that is being recorded is kept, or no longer",
-    "Die laufende Sitzung wird gesichert oder nicht mehr",
+pub(in crate::console) const ALARMS: (Text, Text) =
+    (Text::of("Alarms", "Alarme"), Text::of("The list of the last alarms", "Liste der letzten Alarme"));
+pub(in crate::console) const GLOSSARY: (Text, Text) =
+    (Text::of("Glossary", "Glossar"), Text::of("This list of keys and terms", "Diese Liste der Tasten und Begriffe"));
+pub(in crate::console) const TOUR: (Text, Text) =
+    (Text::of("Tour", "Rundgang"), Text::of("Four steps through the screen", "Vier Schritte durch die Anzeige"));
+pub(in crate::console) const PALETTE: (Text, Text) = (
+    Text::of("All commands", "Alle Befehle"),
+    Text::of("Finds a command by its name and does it", "Findet einen Befehl über den Namen und führt ihn aus"),
 );
-pub(in crate::console) const UNDO: Text = Text::of("Undo", "Rückgängig");
-pub(in crate::console) const UNDO_DOES: Text = Text::of(
-    "Takes back the last change of the arrangement or the look of the screen, nothing else",
-    "Nimmt die letzte Änderung an Anordnung oder Aussehen der Anzeige zurück, sonst nichts",
+pub(in crate::console) const ACKNOWLEDGE: (Text, Text) = (
+    Text::of("Acknowledge the alarms", "Alarme quittieren"),
+    Text::of(
+        "Ends flashing and sound; an alarm stays while its cause does",
+        "Beendet Blinken und Ton; ein Alarm bleibt, solange seine Ursache besteht",
+    ),
 );
-pub(in crate::console) const REDO: Text = Text::of("Redo", "Wiederherstellen");
-pub(in crate::console) const REDO_DOES: Text =
-    Text::of("Makes again what was taken back", "Stellt das Zurückgenommene wieder her");
-pub(in crate::console) const DARK: Text = Text::of("Dark colours", "Dunkle Farben");
-pub(in crate::console) const DARK_DOES: Text = Text::of("For a dark room", "Für dunkle Räume");
-pub(in crate::console) const LIGHT: Text = Text::of("Light colours", "Helle Farben");
-pub(in crate::console) const LIGHT_DOES: Text =
-    Text::of("For a bright room and for printing", "Für helle Räume und zum Drucken");
+pub(in crate::console) const MARK: (Text, Text) = (
+    Text::of("Mark this moment", "Moment markieren"),
+    Text::of(
+        "In the traces and in the session that is being recorded",
+        "In den Verläufen und in der laufenden Sitzung",
+    ),
+);
+pub(in crate::console) const KEEP: (Text, Text) = (
+    Text::of("Keep the session", "Sitzung sichern"),
+    Text::of(
+        "The session that is being recorded is kept, or no longer",
+        "Die laufende Sitzung wird gesichert oder nicht mehr",
+    ),
+);
+pub(in crate::console) const UNDO: (Text, Text) = (
+    Text::of("Undo", "Rückgängig"),
+    Text::of(
+        "Takes back the last change of the arrangement or the look of the screen, nothing else",
+        "Nimmt die letzte Änderung an Anordnung oder Aussehen der Anzeige zurück, sonst nichts",
+    ),
+);
+pub(in crate::console) const REDO: (Text, Text) = (
+    Text::of("Redo", "Wiederherstellen"),
+    Text::of("Makes again what was taken back", "Stellt das Zurückgenommene wieder her"),
+);
+pub(in crate::console) const DARK: (Text, Text) =
+    (Text::of("Dark colours", "Dunkle Farben"), Text::of("For a dark room", "Für dunkle Räume"));
+pub(in crate::console) const LIGHT: (Text, Text) = (
+    Text::of("Light colours", "Helle Farben"),
+    Text::of("For a bright room and for printing", "Für helle Räume und zum Drucken"),
+);
 pub(in crate::console) const LANGUAGE_DOES: Text = Text::of(
     "The language of the window. The command line and what is written into files stay English.",
     "Die Sprache des Fensters. Die Befehlszeile und alles, was in Dateien geschrieben wird, bleiben Englisch.",
 );
-pub(in crate::console) const LARGER: Text = Text::of("Larger", "Größer");
-pub(in crate::console) const LARGER_DOES: Text = Text::of(
-    "Makes everything larger, as far as the window has room",
-    "Vergrößert alles, soweit das Fenster Platz hat",
+pub(in crate::console) const LARGER: (Text, Text) = (
+    Text::of("Larger", "Größer"),
+    Text::of(
+        "Makes everything larger, as far as the window has room",
+        "Vergrößert alles, soweit das Fenster Platz hat",
+    ),
 );
-pub(in crate::console) const SMALLER: Text = Text::of("Smaller", "Kleiner");
-pub(in crate::console) const SMALLER_DOES: Text = Text::of("Makes everything smaller", "Verkleinert alles");
+pub(in crate::console) const SMALLER: (Text, Text) =
+    (Text::of("Smaller", "Kleiner"), Text::of("Makes everything smaller", "Verkleinert alles"));
 pub(in crate::console) const SIZE_DOES: Text = Text::of(
     "Size of texts and controls, as far as the window has room",
     "Größe von Texten und Bedienelementen, soweit das Fenster Platz hat",
 );
 pub(in crate::console) const RESET_LAYOUT: Text = Text::of("Reset the layout", "Layout zurücksetzen");
 pub(in crate::console) const PAUSE: Text = Text::of("Hold the traces, or go on", "Verläufe anhalten oder fortsetzen");
-pub(in crate::console) const DRIVE: Text = Text::of("Drive by mouse, or let go", "Mit Maus steuern oder loslassen");
-pub(in crate::console) const DRIVE_DOES: Text =
-    Text::of("Mouse and keys move the instrument", "Maus und Tasten bewegen das Instrument");
-pub(in crate::console) const OTHER_HAND: Text = Text::of("Drive the other instrument", "Anderes Instrument steuern");
-pub(in crate::console) const OTHER_HAND_DOES: Text = Text::of(
-    "While you drive: the one before stays where it is and holds what it holds",
-    "Beim Steuern: das bisherige bleibt stehen und hält, was es hält",
+pub(in crate::console) const DRIVE: (Text, Text) = (
+    Text::of("Drive by mouse, or let go", "Mit Maus steuern oder loslassen"),
+    Text::of("Mouse and keys move the instrument", "Maus und Tasten bewegen das Instrument"),
 );
-pub(in crate::console) const JAWS: Text = Text::of("Open or close the jaws", "Backen öffnen oder schließen");
-pub(in crate::console) const JAWS_DOES: Text = Text::of(
-    "In a scene with rings, of the instrument that you drive",
-    "In einer Szene mit Ringen, am gesteuerten Instrument",
+pub(in crate::console) const OTHER_HAND: (Text, Text) = (
+    Text::of("Drive the other instrument", "Anderes Instrument steuern"),
+    Text::of(
+        "While you drive: the one before stays where it is and holds what it holds",
+        "Beim Steuern: das bisherige bleibt stehen und hält, was es hält",
+    ),
 );
-pub(in crate::console) const MARK_PLACE: Text =
-    Text::of("Mark the place under the tip", "Stelle unter der Spitze markieren");
-pub(in crate::console) const MARK_PLACE_DOES: Text =
-    Text::of("In a palpation, of the instrument that you drive", "Bei einer Palpation, am gesteuerten Instrument");
-pub(in crate::console) const END_TRIAL: Text = Text::of("End the trial", "Versuch beenden");
-pub(in crate::console) const END_TRIAL_DOES: Text =
-    Text::of("In a palpation: the result is told", "Bei einer Palpation: zeigt das Ergebnis");
-pub(in crate::console) const BEGIN_TRIAL: Text = Text::of("Begin the trial anew", "Versuch neu beginnen");
-pub(in crate::console) const BEGIN_TRIAL_DOES: Text =
-    Text::of("In a palpation or on a wire", "Bei einer Palpation oder am Draht");
-pub(in crate::console) const HIDE_FORCES: Text =
-    Text::of("Forces in the endoscope's picture", "Kräfte im Endoskopbild");
-pub(in crate::console) const HIDE_FORCES_DOES: Text = Text::of(
-    "Draws the forces into the endoscope's picture, or hides them",
-    "Blendet Kräfte im Endoskopbild ein oder aus",
+pub(in crate::console) const JAWS: (Text, Text) = (
+    Text::of("Open or close the jaws", "Backen öffnen oder schließen"),
+    Text::of(
+        "In a scene with rings, of the instrument that you drive",
+        "In einer Szene mit Ringen, am gesteuerten Instrument",
+    ),
 );
-pub(in crate::console) const LENS: Text = Text::of("The other lens", "Anderes Objektiv");
-pub(in crate::console) const LENS_DOES: Text = Text::of(
-    "Of an endoscope with two lenses: shows the left picture, the right one, or both",
-    "Bei einem Endoskop mit zwei Objektiven: zeigt linkes, rechtes oder beide Bilder",
+pub(in crate::console) const MARK_PLACE: (Text, Text) = (
+    Text::of("Mark the place under the tip", "Stelle unter der Spitze markieren"),
+    Text::of("In a palpation, of the instrument that you drive", "Bei einer Palpation, am gesteuerten Instrument"),
 );
-pub(in crate::console) const LEAVE_PAST: Text = Text::of("Live again", "Wieder live");
-pub(in crate::console) const LEAVE_PAST_DOES: Text = Text::of(
-    "Leaves the recorded session: the screen shows the machine again",
-    "Verlässt die aufgezeichnete Sitzung: die Anzeige zeigt wieder die Maschine",
+pub(in crate::console) const END_TRIAL: (Text, Text) = (
+    Text::of("End the trial", "Versuch beenden"),
+    Text::of("In a palpation: the result is told", "Bei einer Palpation: zeigt das Ergebnis"),
+);
+pub(in crate::console) const BEGIN_TRIAL: (Text, Text) = (
+    Text::of("Begin the trial anew", "Versuch neu beginnen"),
+    Text::of("In a palpation or on a wire", "Bei einer Palpation oder am Draht"),
+);
+pub(in crate::console) const HIDE_FORCES: (Text, Text) = (
+    Text::of("Forces in the endoscope's picture", "Kräfte im Endoskopbild"),
+    Text::of(
+        "Draws the forces into the endoscope's picture, or hides them",
+        "Blendet Kräfte im Endoskopbild ein oder aus",
+    ),
+);
+pub(in crate::console) const LENS: (Text, Text) = (
+    Text::of("The other lens", "Anderes Objektiv"),
+    Text::of(
+        "Of an endoscope with two lenses: shows the left picture, the right one, or both",
+        "Bei einem Endoskop mit zwei Objektiven: zeigt linkes, rechtes oder beide Bilder",
+    ),
+);
+pub(in crate::console) const LEAVE_PAST: (Text, Text) = (
+    Text::of("Live again", "Wieder live"),
+    Text::of(
+        "Leaves the recorded session: the screen shows the machine again",
+        "Verlässt die aufgezeichnete Sitzung: die Anzeige zeigt wieder die Maschine",
+    ),
 );
 pub(in crate::console) const PLAY: Text = Text::of("Play or hold the session", "Sitzung abspielen oder anhalten");
 pub(in crate::console) const PLAY_DOES: Text = Text::of("In a recorded session", "In einer aufgezeichneten Sitzung");

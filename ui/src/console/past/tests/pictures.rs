@@ -123,6 +123,28 @@ fn behind_s(past: &mut Past, begin_ns: u64) -> Option<f64> {
     Some(past.shown_s() - (code_of(&picture) as f64 - begin_ns as f64 / 1e3) / 1e6)
 }
 
+/// No picture is older than its frame, at these moments (s) and in a second that is played.
+fn in_time_at_each_and_while_played(past: &mut Past, begin_ns: u64, moments_s: &[f64]) {
+    let frame_s = PERIOD_NS as f64 / 1e9;
+    let judge = |past: &mut Past| {
+        let behind_s = behind_s(past, begin_ns).unwrap();
+        let is_in_time = (-1e-5..frame_s + 1e-5).contains(&behind_s);
+        assert!(is_in_time, "at {} s the picture is {behind_s} s old", past.shown_s());
+    };
+    for t_s in moments_s {
+        settled(past, *t_s);
+        judge(past);
+    }
+    settled(past, 2.5);
+    past.toggle();
+    for _ in 0..50 {
+        let before = past.shown_s();
+        past.step(0.02, false);
+        until(past, "went on", |past| past.shown_s() > before);
+        judge(past);
+    }
+}
+
 #[test]
 fn the_picture_of_a_moment_is_that_of_the_frame_before_it_also_while_it_is_played() {
     let folder = tempfile::tempdir().unwrap();
@@ -132,24 +154,10 @@ fn the_picture_of_a_moment_is_that_of_the_frame_before_it_also_while_it_is_playe
     let mut past = open(&filmed);
     until(&mut past, "read", |past| past.read_share() > 0.999);
     assert!(past.panels.eyes.is_on());
-    let frame_s = PERIOD_NS as f64 / 1e9;
-    let is_in_time = |behind_s: f64| (-1e-5..frame_s + 1e-5).contains(&behind_s);
-    for t_s in [3.9, 0.005, 0.8, 2.0005, 1.234, 0.039, 3.0] {
-        settled(&mut past, t_s);
-        let behind_s = behind_s(&mut past, begin_ns).unwrap();
-        assert!(is_in_time(behind_s), "at {t_s} s the picture is {behind_s} s old");
-    }
-    settled(&mut past, 2.5);
-    past.toggle();
-    for _ in 0..50 {
-        let before = past.shown_s();
-        past.step(0.02, false);
-        until(&mut past, "went on", |past| past.shown_s() > before);
-        let behind_s = behind_s(&mut past, begin_ns).unwrap();
-        assert!(is_in_time(behind_s), "at {} s the picture is {behind_s} s old", past.shown_s());
-    }
+    in_time_at_each_and_while_played(&mut past, begin_ns, &[3.9, 0.005, 0.8, 2.0005, 1.234, 0.039, 3.0]);
     past.toggle();
     // A damaged one is told, and the last whole one stays.
+    let frame_s = PERIOD_NS as f64 / 1e9;
     settled(&mut past, 0.005 + 45.5 * frame_s);
     let behind_s = behind_s(&mut past, begin_ns).unwrap();
     assert!((frame_s..2.0 * frame_s).contains(&behind_s), "{behind_s} s");
@@ -180,22 +188,7 @@ fn a_recorded_stream_is_shown_at_every_moment_and_while_it_is_played() {
     };
     let (mut past, begin_ns) = streamed(folder.path(), coded);
     assert!(past.panels.eyes.is_on());
-    let frame_s = PERIOD_NS as f64 / 1e9;
-    let is_in_time = |behind_s: f64| (-1e-5..frame_s + 1e-5).contains(&behind_s);
-    for t_s in [3.9, 0.8, 0.805, 2.0005, 0.039, 0.09, 3.0, 2.96, 3.95] {
-        settled(&mut past, t_s);
-        let behind_s = behind_s(&mut past, begin_ns).unwrap();
-        assert!(is_in_time(behind_s), "at {t_s} s the picture is {behind_s} s old");
-    }
-    settled(&mut past, 2.5);
-    past.toggle();
-    for _ in 0..50 {
-        let before = past.shown_s();
-        past.step(0.02, false);
-        until(&mut past, "went on", |past| past.shown_s() > before);
-        let behind_s = behind_s(&mut past, begin_ns).unwrap();
-        assert!(is_in_time(behind_s), "at {} s the picture is {behind_s} s old", past.shown_s());
-    }
+    in_time_at_each_and_while_played(&mut past, begin_ns, &[3.9, 0.8, 0.805, 2.0005, 0.039, 0.09, 3.0, 2.96, 3.95]);
 }
 
 #[cfg(not(feature = "h264"))]

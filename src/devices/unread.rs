@@ -1,0 +1,105 @@
+//! Bytes of a stream that no message was made of yet: what all decoders of streams stand on.
+
+/// A fixed memory for them; nothing but [`with_room`](Self::with_room) allocates. Write into [`room`](Self::room), report the number with
+/// [`filled`](Self::filled), look at [`bytes`](Self::bytes), and [`pass`](Self::pass) over what is decoded or refused.
+#[derive(Debug)]
+pub(crate) struct Unread {
+    memory: Box<[u8]>,
+    begin: usize,
+    end: usize,
+}
+
+impl Unread {
+    /// Empty, for so many bytes at the most.
+    pub(crate) fn with_room(most: usize) -> Self {
+        Self { memory: vec![0; most].into_boxed_slice(), begin: 0, end: 0 }
+    }
+
+    /// Place for new bytes; empty only while every byte of the memory is unread.
+    pub(crate) fn room(&mut self) -> &mut [u8] {
+        if self.begin > 0 {
+            self.memory.copy_within(self.begin..self.end, 0);
+            (self.begin, self.end) = (0, self.end - self.begin);
+        }
+        &mut self.memory[self.end..]
+    }
+
+    /// Reports that `count` bytes were written into the room.
+    pub(crate) fn filled(&mut self, count: usize) {
+        self.end = self.end.saturating_add(count).min(self.memory.len());
+    }
+
+    /// Takes as many of these bytes as there is room for, and returns their number.
+    pub(crate) fn feed(&mut self, bytes: &[u8]) -> usize {
+        let room = self.room();
+        let count = bytes.len().min(room.len());
+        room[..count].copy_from_slice(&bytes[..count]);
+        self.filled(count);
+        count
+    }
+
+    /// All that is unread, the oldest first.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.memory[self.begin..self.end]
+    }
+
+    /// Whether nothing is.
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.begin == self.end
+    }
+
+    /// Whether there is no room for another byte.
+    pub(crate) fn is_full(&self) -> bool {
+        self.bytes().len() == self.memory.len()
+    }
+
+    /// The first `count` bytes are read; returns them.
+    pub(crate) fn pass(&mut self, count: usize) -> &[u8] {
+        let from = self.begin;
+        self.begin = from.saturating_add(count).min(self.end);
+        &self.memory[from..self.begin]
+    }
+
+    /// Discards all, and returns the number.
+    pub(crate) const fn clear(&mut self) -> usize {
+        let count = self.end - self.begin;
+        (self.begin, self.end) = (0, 0);
+        count
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_read_in_order_whatever_the_pieces() {
+        let mut random = fastrand::Rng::with_seed(11);
+        let (mut unread, mut next_in, mut next_out) = (Unread::with_room(16), 0_u8, 0_u8);
+        for _ in 0..2000 {
+            let fed: Vec<u8> = (0..random.u8(0..12)).map(|ahead| next_in.wrapping_add(ahead)).collect();
+            let before = unread.bytes().len();
+            let taken = unread.feed(&fed);
+            assert_eq!(taken, fed.len().min(16 - before), "as many as there is room for");
+            next_in = next_in.wrapping_add(taken as u8);
+            for byte in unread.pass(random.usize(0..20)) {
+                assert_eq!(*byte, next_out);
+                next_out = next_out.wrapping_add(1);
+            }
+            assert_eq!(unread.bytes().len(), usize::from(next_in.wrapping_sub(next_out)));
+        }
+    }
+
+    #[test]
+    fn what_is_full_takes_nothing_until_something_is_passed() {
+        let mut unread = Unread::with_room(4);
+        assert!(unread.is_empty() && unread.feed(b"abcdef") == 4 && unread.is_full());
+        assert!(unread.room().is_empty() && unread.feed(b"e") == 0);
+        assert_eq!(unread.pass(1), b"a");
+        assert!(!unread.is_full() && unread.feed(b"ef") == 1);
+        assert_eq!(unread.bytes(), b"bcde");
+        assert_eq!((unread.clear(), unread.clear(), unread.room().len()), (4, 0, 4));
+        unread.filled(usize::MAX);
+        assert_eq!(unread.bytes().len(), 4, "never more than there is");
+    }
+}

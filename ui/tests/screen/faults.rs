@@ -1,0 +1,194 @@
+//! What is wrong with a screen: texts that are cut or lie on another, controls that overlap or leave the window, a stop that is not where a
+//! hand looks for it.
+
+use egui::{Pos2, Rect, Shape, accesskit};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use nima_console::{
+    console::{ConsoleApp, roles::Role},
+    language::{Language, pseudo},
+};
+
+/// What rounding may cost, points.
+const SLACK: f32 = 1.5;
+/// The texts of a button may come this close to its edge, points.
+const EDGE: f32 = 0.5;
+
+/// A text on the screen: its words, its place, and where it is allowed to be seen.
+pub(crate) struct Text {
+    words: String,
+    place: Rect,
+    clip: Rect,
+    cut: bool,
+}
+
+/// All texts in what was drawn last.
+pub(crate) fn texts<A>(harness: &Harness<'_, A>) -> Vec<Text> {
+    fn add(shape: &Shape, clip: Rect, texts: &mut Vec<Text>) {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| add(shape, clip, texts)),
+            Shape::Text(text) if text.angle == 0.0 && !text.galley.text().trim().is_empty() => texts.push(Text {
+                words: text.galley.text().to_owned(),
+                place: text.galley.mesh_bounds.translate(text.pos.to_vec2()),
+                clip,
+                cut: text.galley.elided,
+            }),
+            _ => {}
+        }
+    }
+    let mut texts = Vec::new();
+    for clipped in &harness.output().shapes {
+        add(&clipped.shape, clipped.clip_rect, &mut texts);
+    }
+    texts
+}
+
+/// What is wrong with the texts of this picture; `field` is the operating field, where labels ride on moving things.
+pub(crate) fn faults_of_texts(
+    texts: &[Text],
+    window: Rect,
+    field: Option<Rect>,
+    scrolls: bool,
+    overlaid: bool,
+) -> Vec<String> {
+    let mut faults = Vec::new();
+    let seen = |text: &Text| text.place.intersect(text.clip).intersect(window).is_positive();
+    let on_field = |text: &Text| {
+        field.is_some_and(|field| {
+            (text.clip.min - field.min).length() < SLACK && (text.clip.max - field.max).length() < SLACK
+        })
+    };
+    let texts: Vec<&Text> = texts.iter().filter(|text| seen(text) && !on_field(text)).collect();
+    for text in &texts {
+        let room = text.clip.intersect(window).expand(SLACK);
+        let sideways = text.place.left() < room.left() || text.place.right() > room.right();
+        let up_or_down = text.place.top() < room.top() || text.place.bottom() > room.bottom();
+        // A long column is scrolled; what is half seen at its end is seen whole a moment later.
+        if text.cut || sideways || (up_or_down && !scrolls) {
+            faults.push(format!("cut: \"{}\" at {:?}", text.words, text.place));
+        }
+    }
+    for (i, one) in texts.iter().enumerate().filter(|_| !overlaid) {
+        for other in &texts[i + 1..] {
+            let shared = one.place.intersect(one.clip).intersect(other.place.intersect(other.clip)).shrink(SLACK);
+            if shared.is_positive() {
+                faults.push(format!("\"{}\" lies on \"{}\" at {:?}", one.words, other.words, shared.center()));
+            }
+        }
+    }
+    faults
+}
+
+/// Where a row of tabs that is longer than its group is scrolled sideways: what is cut there is a press away.
+fn scrolled_tabs<A>(harness: &Harness<'_, A>) -> Vec<Rect> {
+    let is_arrow = |name: Option<String>| name.is_some_and(|name| name.starts_with("Scroll tabs"));
+    harness.query_all_by(move |node| is_arrow(node.label())).map(|node| node.rect()).collect()
+}
+
+/// Whether this is in one of these rows of tabs.
+fn is_among(rows: &[Rect], place: Rect) -> bool {
+    rows.iter().any(|row| row.y_range().contains(place.center().y))
+}
+
+/// Controls that overlap, or that leave the window sideways. A control that is scrolled away is known by its words.
+pub(crate) fn faults_of_controls<A>(harness: &Harness<'_, A>, texts: &[Text], window: Rect) -> Vec<String> {
+    let seen = |name: &str, place: Rect| {
+        let words = texts.iter().find(|text| text.words.trim() == name && place.contains(text.place.center()));
+        words.map_or(place, |words| place.intersect(words.clip))
+    };
+    let is_control = |role: accesskit::Role| {
+        use accesskit::Role;
+        matches!(role, Role::Button | Role::CheckBox | Role::SpinButton | Role::TextInput | Role::RadioButton)
+    };
+    let scrolled = scrolled_tabs(harness);
+    let controls: Vec<(String, Rect)> = harness
+        .query_all_by(move |node| is_control(node.role()))
+        .map(|node| (node.accesskit_node().label().unwrap_or_default(), node.rect()))
+        .map(|(name, place)| (name.clone(), seen(&name, place)))
+        .filter(|(_, place)| place.is_positive() && !is_among(&scrolled, *place))
+        .collect();
+    let mut faults = Vec::new();
+    for (i, (name, place)) in controls.iter().enumerate() {
+        if place.left() < -SLACK || place.right() > window.right() + SLACK {
+            faults.push(format!("\"{name}\" leaves the window: {place:?}"));
+        }
+        for (other, there) in &controls[i + 1..] {
+            if place.intersect(*there).shrink(SLACK).is_positive() {
+                faults.push(format!("\"{name}\" overlaps \"{other}\" at {place:?}"));
+            }
+        }
+    }
+    faults
+}
+
+/// Buttons whose words are wider than they are.
+pub(crate) fn too_wide<A>(harness: &Harness<'_, A>) -> Vec<String> {
+    let buttons = harness.query_all_by(|node| node.role() == accesskit::Role::Button);
+    let buttons: Vec<(String, Rect)> =
+        buttons.filter_map(|node| Some((node.accesskit_node().label()?, node.rect()))).collect();
+    let leaves = |Text { words, place, .. }: &Text| {
+        let words = words.trim();
+        let (_, button) = buttons.iter().find(|(name, button)| name == words && button.intersects(*place))?;
+        let beyond = place.left() < button.left() - EDGE || place.right() > button.right() + EDGE;
+        beyond.then(|| format!("\"{words}\" is wider than its button: {place:?} in {button:?}"))
+    };
+    texts(harness).iter().filter_map(leaves).collect()
+}
+
+/// How a page is looked at.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Page {
+    /// Everything must be seen.
+    Whole,
+    /// A long column may be scrolled.
+    Scrolls,
+    /// Controls may be scrolled away too, and lie nowhere then.
+    Form,
+    /// It lies over something else.
+    Over,
+}
+
+impl Page {
+    /// How a view is looked at: the technician's panels scroll.
+    pub(crate) fn of_view(role: Role) -> Self {
+        if role == Role::Technician { Self::Scrolls } else { Self::Whole }
+    }
+}
+
+/// Everything that is wrong in a window of this size.
+pub(crate) fn faults(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2], page: Page) -> Vec<String> {
+    let (texts, window, field) = seen(harness, size);
+    let mut faults = faults_of_texts(&texts, window, field, page != Page::Whole, page == Page::Over);
+    if matches!(page, Page::Whole | Page::Scrolls) {
+        faults.extend(faults_of_controls(harness, &texts, window));
+    }
+    faults
+}
+
+/// What is seen in a window of this size: its texts, the window, the operating field.
+fn seen(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> (Vec<Text>, Rect, Option<Rect>) {
+    harness.set_size(size.into());
+    // Sizes settle within some frames.
+    harness.run_steps(4);
+    harness.check_accessibility();
+    let window = Rect::from_min_size(Pos2::ZERO, size.into());
+    let [stop, field] = match harness.state_mut().settings_mut().language {
+        Language::English => ["Stop", "Operating field"].map(str::to_owned),
+        Language::German => ["Halt", "OP-Feld"].map(str::to_owned),
+        Language::Pseudo => ["Stop", "Operating field"].map(pseudo),
+    };
+    let stop = harness.get_by_role_and_label(accesskit::Role::Button, &stop).rect();
+    assert!(stop.width() >= 48.0 && stop.height() >= 48.0 && window.contains_rect(stop), "{stop:?}");
+    let field = harness.query_by_label(&field).map(|field| field.rect());
+    let scrolled = scrolled_tabs(harness);
+    let mut texts = texts(harness);
+    texts.retain(|text| !is_among(&scrolled, text.place));
+    (texts, window, field)
+}
+
+/// Fails with the faults, if there are any.
+pub(crate) fn none(faults: &[String]) {
+    assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
+}

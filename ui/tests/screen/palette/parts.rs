@@ -1,0 +1,84 @@
+//! What belongs to a part of the window: the endoscope's picture, a recorded session.
+
+use egui::Key;
+use nima_console::console::{commands::Action, wizards::Which};
+use nima_machine::config::{Endoscope, StereoView};
+
+use super::{
+    SIZE, alike, by_key, choose, entry, rows,
+    wizards::{back, open_pages},
+};
+use crate::{
+    bench::{Console, TIMEOUT, comes, console_of, pick, shows, wait},
+    eyes, past,
+};
+
+#[test]
+fn the_endoscope_has_its_commands_where_its_picture_is() {
+    let (_serving, endoscope) = eyes::lenses(Some(0.004));
+    let endoscope = Endoscope { view: Some(StereoView::Left), baseline_m: Some(0.004), ..endoscope };
+    let mut console = eyes::surgeon(endoscope, [1280.0, 720.0]);
+    eyes::told(&mut console, "Endoscope's picture: live");
+    let is = |console: &mut Console, words: &str| {
+        assert!(comes(console, TIMEOUT, |console| eyes::is_painted(console, words)), "never painted: {words}");
+    };
+    is(&mut console, "Left half");
+    choose(&mut console, Action::Lens);
+    is(&mut console, "Right half");
+    by_key(&mut console, Action::Lens);
+    is(&mut console, "Both halves");
+    is(&mut console, "O hides them");
+    choose(&mut console, Action::HideForces);
+    is(&mut console, "O draws the forces at the tips");
+    by_key(&mut console, Action::HideForces);
+    is(&mut console, "O hides them");
+    console.key_press(Key::F2);
+    console.run_steps(3);
+    let camera = Action::Calibrate(Which::Camera);
+    let title = &entry(camera).title;
+    let opened = |console: &mut Console| {
+        pick(console, "Calibration");
+        pick(console, title);
+    };
+    alike(&mut console, camera, back, opened, open_pages);
+    let rows = rows(&mut console);
+    assert!(rows.iter().all(|(title, _)| *title != entry(Action::Lens).title), "the technician has no picture");
+}
+
+#[test]
+fn the_past_is_played_and_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    past::record(&path, "peg_transfer", "6");
+    let mut console = console_of("peg_transfer", SIZE, move |app| app.with_session(&path));
+    past::until_whole(&mut console);
+    let shown_ms = |console: &mut Console| console.state().past().map(|(_, t_s)| (t_s * 1e3).round() as i64);
+    let at_three = |console: &mut Console| {
+        console.state_mut().show_past(3.0);
+        console.step();
+        past::until_whole(console);
+    };
+    for ms in [-1000, 1000, -10, 10] {
+        for by_palette in [true, false] {
+            at_three(&mut console);
+            let action = Action::Step(ms);
+            if by_palette {
+                choose(&mut console, action);
+            } else {
+                by_key(&mut console, action);
+            }
+            past::until_whole(&mut console);
+            assert_eq!(shown_ms(&mut console), Some(3000 + i64::from(ms)), "{action:?} {by_palette}");
+        }
+    }
+    at_three(&mut console);
+    choose(&mut console, Action::Play);
+    wait(&mut console, "it plays", |console| shows(console, "Pause") && console.state().past().unwrap().1 > 3.05);
+    by_key(&mut console, Action::Play);
+    let greyed = rows(&mut console);
+    for blocked in [Action::Mark, Action::Rig, Action::Sessions, Action::Check] {
+        assert!(greyed.contains(&(entry(blocked).title.clone(), false)), "{blocked:?}: {greyed:?}");
+    }
+    choose(&mut console, Action::LeavePast);
+    assert!(console.state().past().is_none());
+}

@@ -173,7 +173,7 @@ fn read<T: DeserializeOwned>(path: &Path, cure: &'static str) -> Result<T, Depar
         Err(error) if error.kind() == std::io::ErrorKind::InvalidData => Err(not_one(path, &error)),
         read => {
             let text = read.map_err(DepartmentError::of_file(path))?;
-            toml::from_str(&text).map_err(|error| not_one(path, &error.message()))
+            nima_files::from_toml(&text).map_err(|misfit| not_one(path, &misfit.message()))
         }
     }
 }

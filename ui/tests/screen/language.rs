@@ -6,7 +6,7 @@ use std::{fs, path::Path};
 use egui::{Key, Modifiers, Rect, vec2};
 use egui_kittest::Harness;
 use nima_console::{
-    console::{Options, desk::Layout, roles::Role, settings::Kept, wizards::Which},
+    console::{Options, desk::Layout, roles::Role, settings::Kept, theme, wizards::Which},
     language::{self, Language, pseudo},
 };
 use nima_machine::messages::LoopState;
@@ -222,7 +222,7 @@ fn the_past_and_the_list_of_sessions_fit() {
 /// A window with one planted fault, and how many are found.
 fn planted(draw: impl FnMut(&mut egui::Ui) + 'static) -> usize {
     let size = [400.0, 300.0];
-    let mut harness = Harness::builder().with_size(size).build_ui(draw);
+    let mut harness = Harness::builder().with_size(size).with_context_setup(theme::apply).build_ui(draw);
     harness.run_steps(2);
     let window = Rect::from_min_size(egui::Pos2::ZERO, size.into());
     let texts = texts(&harness);

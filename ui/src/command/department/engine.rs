@@ -213,7 +213,8 @@ fn listen_to(rig: &Rig, teller: &Teller) -> anyhow::Result<()> {
                 Heard::Rests
             } else {
                 let rig: RigConfig = nima_files::from_toml(&about.rig).context("the rig's file cannot be read here")?;
-                let scene: Scene = nima_files::from_toml(&about.scene).context("the rig's scene cannot be read here")?;
+                let scene: Scene =
+                    nima_files::from_toml(&about.scene).context("the rig's scene cannot be read here")?;
                 Heard::Runs(Box::new(rig), Box::new(scene))
             };
             if !teller.tell(heard) {

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
+import threading
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any, Callable, Iterator
 
 import numpy as np
 import pytest
@@ -71,3 +73,22 @@ def recording(write: Callable[..., Path], name: str, samples: int, seed: int = 1
     axes = {f"{axis}_m": positions_m[:, i] for i, axis in enumerate("xyz")}
     forces = {f"f{axis}_n": forces_n[:, i] for i, axis in enumerate("xyz")}
     return write(name, t_s=times_s, **axes, **forces)
+
+
+@pytest.fixture
+def running(program: Program, tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str, Path]]:
+    """A run that a client may watch: its process, its address and its session."""
+    path = tmp_path / "run.mcap"
+    command = [program.path, "run", "--igtl", "127.0.0.1:0", "--record", path, "--scene", "bimanual", "--seconds", "6"]
+    with subprocess.Popen([*map(str, command)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        for line in process.stderr:
+            found = re.search(r"OpenIGTLink at (\S+):", line)
+            if found:
+                # What it says later must not fill the line.
+                threading.Thread(target=process.stderr.read, daemon=True).start()
+                yield process, found.group(1), path
+                break
+        else:
+            pytest.fail("it ended before it listened")
+        process.kill()

@@ -2,36 +2,12 @@
 
 from __future__ import annotations
 
-import re
 import socket
-import subprocess
-import threading
-from pathlib import Path
-from typing import Iterator
 
 import numpy as np
 import pytest
 
 import nima
-from conftest import Program
-
-
-@pytest.fixture
-def running(program: Program, tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str, Path]]:
-    path = tmp_path / "run.mcap"
-    command = [program.path, "run", "--igtl", "127.0.0.1:0", "--record", path, "--scene", "bimanual", "--seconds", "6"]
-    with subprocess.Popen([*map(str, command)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
-        assert process.stderr is not None
-        for line in process.stderr:
-            found = re.search(r"OpenIGTLink at (\S+):", line)
-            if found:
-                # What it says later must not fill the line.
-                threading.Thread(target=process.stderr.read, daemon=True).start()
-                yield process, found.group(1), path
-                break
-        else:
-            pytest.fail("it ended before it listened")
-        process.kill()
 
 
 def test_ticks_are_those_of_the_session_and_end_with_the_program(running):

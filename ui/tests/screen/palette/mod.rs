@@ -19,6 +19,7 @@ use nima_console::console::{
 use nima_machine::messages::LoopState;
 
 use crate::bench::{Console, console_of, press, shows, texts, toured, until, write_into};
+
 pub(super) const SIZE: [f32; 2] = [1600.0, 1000.0];
 pub(super) const FIELD: &str = "Find a command";
 
@@ -115,11 +116,10 @@ pub(super) fn begin(folder: &Path, scene: &str) -> Console {
 
 /// The commands that are tried there are all done.
 pub(super) fn expect(done: &[Action], there: &str) {
-    let missing: Vec<&str> = table()
-        .iter()
-        .filter(|entry| tried_in(entry.action) == there && !done.contains(&entry.action))
-        .map(|entry| entry.title.as_str())
-        .collect();
+    let all = table().iter().filter(|entry| tried_in(entry.action) == there);
+    assert!(all.clone().next().is_some(), "nothing is tried in {there}");
+    let missing: Vec<&str> =
+        all.filter(|entry| !done.contains(&entry.action)).map(|entry| entry.title.as_str()).collect();
     assert!(missing.is_empty(), "not tried: {missing:?}");
 }
 

@@ -1,6 +1,9 @@
 # Judges the packages, and installs them in minimal systems as a newcomer would. Sourced by build.sh; needs root for its systems, and deletes them.
 # shellcheck shell=bash
 
+# shellcheck source=assets/package/wine.sh
+source assets/package/wine.sh
+
 try_tools=(debootstrap lintian appstream desktop-file-utils xvfb xdotool imagemagick)
 try_suites=(bookworm trixie bullseye)
 
@@ -181,30 +184,20 @@ try_rpm() {
 
 # The packages for Windows under wine: what Windows itself does is not known by that.
 try_windows() {
-  local out=$1 deb=$2 work=$target/try-windows status=0
+  local out=$1 deb=$2 work=$target/try-windows lacks status=0
   [ -e "$(echo "$out"/*-windows.zip)" ] || return 0
-  if ! command -v wine >/dev/null && ! need wine wine64; then
-    leave_out "the packages for Windows were not tried: wine is missing"
+  lacks=$(wine_lacks)
+  if [ -n "$lacks" ]; then
+    leave_out "the packages for Windows were not tried: $lacks"
     return 0
   fi
   rm -rf "$work"
   mkdir -p "$work"
   walk_through_windows "$out" "$deb" "$work" || status=1
-  in_wine "$work" wine wineboot --kill || true
+  end_wine "$work"
   rm -rf "$work"
   leave_out "the packages for Windows were not tried on Windows, only under wine"
   return $status
-}
-
-# Wine before version 9 lacks a library that Rust's programs ask for random numbers.
-lend_random_numbers() {
-  local work=$1 library=$1/wine/drive_c/windows/system32/bcryptprimitives.dll
-  [ ! -e "$library" ] || return 0
-  x86_64-w64-mingw32-gcc -O2 -shared -o "$library" -xc - -ladvapi32 <<'C'
-#include <windows.h>
-BOOLEAN NTAPI SystemFunction036(PVOID, ULONG);
-__declspec(dllexport) BOOL WINAPI ProcessPrng(PBYTE to, SIZE_T count) { return SystemFunction036(to, (ULONG)count); }
-C
 }
 
 # The console as a newcomer starts it, and when its force came.
@@ -213,7 +206,7 @@ window_in_wine() {
   Xvfb :97 -screen 0 1600x1000x24 -nolisten tcp -noreset -ac >/dev/null 2>&1 &
   screen=$!
   # What wine started without a display knows none.
-  in_wine "$work" wine wineboot --kill || true
+  end_wine "$work"
   sleep 3
   try_display=:97 in_wine "$work" wine "$nima" console --exit-after 8 --frames frames.json --screenshot window.png || status=1
   kill "$screen"
@@ -222,17 +215,9 @@ window_in_wine() {
   return $status
 }
 
-# Without asking for what wine would fetch.
-in_wine() {
-  local work=$1
-  shift
-  (cd "$work" && env DISPLAY="${try_display:-}" WINEPREFIX="$work/wine" WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml=' timeout 300 "$@")
-}
-
 walk_through_windows() {
   local out=$1 deb=$2 work=$3 nima installed
-  in_wine "$work" wine wineboot --init || return
-  lend_random_numbers "$work" || return
+  start_wine "$work" || return
   python3 -m zipfile -e "$out"/*-windows.zip "$work" || return
   nima=$(echo "$work"/nima-console-*-windows/nima.exe)
   say "wine: $(in_wine "$work" wine "$nima" --version | tr -d '\r')"

@@ -2,20 +2,27 @@
 # shellcheck shell=bash
 
 windows_target=x86_64-pc-windows-gnu
-windows_tools=(gcc-mingw-w64-x86-64 zip nsis)
+windows_compiler=(gcc-mingw-w64-x86-64)
+windows_tools=("${windows_compiler[@]}" zip nsis)
 
 # Rust's library for that system, where rustup can bring it.
 fetch_windows_target() {
   [ -d "$(rustc --print sysroot)/lib/rustlib/$windows_target" ] || { command -v rustup >/dev/null && rustup target add "$windows_target" >&2; } || true
 }
 
-# Why it cannot be built here; nothing when it can.
+# Why programs for it cannot be built here; nothing when they can.
+windows_compiler_lacks() {
+  command -v x86_64-w64-mingw32-gcc >/dev/null || { echo "x86_64-w64-mingw32-gcc is missing (Debian's package ${windows_compiler[*]})"; return; }
+  [ -d "$(rustc --print sysroot)/lib/rustlib/$windows_target" ] || echo "Rust's target $windows_target is missing (rustup target add $windows_target)"
+}
+
+# The same for the packages.
 windows_lacks() {
   local tool
-  for tool in x86_64-w64-mingw32-gcc zip makensis; do
+  for tool in zip makensis; do
     command -v "$tool" >/dev/null || { echo "$tool is missing (Debian's packages ${windows_tools[*]})"; return; }
   done
-  [ -d "$(rustc --print sysroot)/lib/rustlib/$windows_target" ] || echo "Rust's target $windows_target is missing (rustup target add $windows_target)"
+  windows_compiler_lacks
 }
 
 # As build_program, by mingw's linker, which would note the time.

@@ -212,6 +212,5 @@ pub(super) fn refusal(words: &str) -> io::Error {
 }
 
 #[cfg(test)]
-#[cfg(unix)]
 #[path = "input_tests.rs"]
 mod tests;

@@ -6,9 +6,19 @@ use std::{
     path::{Path, PathBuf},
 };
 
+#[cfg(windows)]
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
+
 use tempfile::NamedTempFile;
 
 use super::input::{open, refusal, what_it_is};
+
+/// Another program may have a file open for so long before it cannot be replaced.
+#[cfg(windows)]
+const HELD_MAX: Duration = Duration::from_millis(500);
 
 /// Writes `path` by `fill`; on any error the old file (or none) stays as it was.
 ///
@@ -132,9 +142,33 @@ impl Target {
         buffer.flush()?;
         drop(buffer);
         like.map_or(Ok(()), |like| keep(file.as_file(), like))?;
-        file.persist(&self.path).map_err(|error| error.error)?;
-        Ok(())
+        put(file, &self.path)
     }
+}
+
+#[cfg(not(windows))]
+fn put(file: NamedTempFile, path: &Path) -> io::Result<()> {
+    file.persist(path).map(drop).map_err(|error| error.error)
+}
+
+/// Who looks at a new file (a scanner for viruses, an indexer) or reads the old one may keep it from being replaced for a moment.
+#[cfg(windows)]
+fn put(file: NamedTempFile, path: &Path) -> io::Result<()> {
+    let file = file.into_temp_path();
+    let begin = Instant::now();
+    loop {
+        // Not by `persist`, which never replaces a file that somebody has open.
+        match fs::rename(&file, path) {
+            Err(error) if is_held(&error) && begin.elapsed() < HELD_MAX => thread::sleep(HELD_MAX / 50),
+            done => return done,
+        }
+    }
+}
+
+#[cfg(windows)]
+fn is_held(error: &io::Error) -> bool {
+    const SHARING_VIOLATION: i32 = 32;
+    error.kind() == io::ErrorKind::PermissionDenied || error.raw_os_error() == Some(SHARING_VIOLATION)
 }
 
 /// For others as unreadable as what it is like, from the beginning; else as any new file, by the user's umask.
@@ -159,9 +193,10 @@ fn keep(file: &File, like: &Metadata) -> io::Result<()> {
     file.set_permissions(fs::Permissions::from_mode(mode))
 }
 
+/// An ordinary file: one that is marked as temporary would stay so under its new name.
 #[cfg(not(unix))]
 fn temporary(folder: &Path, _: Option<&Metadata>) -> io::Result<NamedTempFile> {
-    NamedTempFile::new_in(folder)
+    tempfile::Builder::new().make_in(folder, |path| File::options().read(true).write(true).create_new(true).open(path))
 }
 
 #[cfg(not(unix))]

@@ -15,6 +15,49 @@ fn a_failure_leaves_the_old_file_and_nothing_else() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
+#[test]
+fn a_folder_is_refused_and_an_input_is_found_however_it_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = folder.path().join("poses.csv");
+    fs::write(&input, "x").unwrap();
+    let refused = |path: &Path| check_output(path, &[&input]).unwrap_err().to_string();
+    assert!(refused(folder.path()).contains("a folder is there"));
+    assert!(write(folder.path(), "x").is_err());
+    fs::create_dir(folder.path().join("sub")).unwrap();
+    assert!(refused(&folder.path().join("sub/../poses.csv")).contains("is the input"));
+    assert!(!cfg!(windows) || refused(&folder.path().join("Poses.CSV")).contains("is the input"));
+    check_output(&folder.path().join("other.csv"), &[&input]).unwrap();
+    check_output(&folder.path().join("no/such/folder/new"), &[&input]).unwrap_err();
+    assert_eq!(fs::read_to_string(&input).unwrap(), "x");
+}
+
+#[test]
+fn a_file_is_replaced_when_its_reader_has_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.csv");
+    write(&path, "old").unwrap();
+    let reader = File::open(&path).unwrap();
+    let ends = std::thread::spawn(move || {
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        io::read_to_string(reader)
+    });
+    write(&path, "new").unwrap();
+    assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+    assert_eq!(ends.join().unwrap().unwrap(), "old");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_file_is_replaced_beside_its_reader() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.csv");
+    write(&path, "old").unwrap();
+    let reader = File::open(&path).unwrap();
+    write(&path, "new").unwrap();
+    assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+    assert_eq!(io::read_to_string(reader).unwrap(), "old");
+}
+
 #[cfg(unix)]
 mod unix {
     use std::{

@@ -102,7 +102,7 @@ impl Shelf {
                     // Where that cannot be known, what was written to lately may be.
                     let lately = || written.elapsed().is_ok_and(|since| since < IN_USE);
                     let writing = is_being_written(&path)
-                        .map_or_else(|_| lately(), |writes| writes || cfg!(not(unix)) && lately());
+                        .map_or_else(|_| lately(), |writes| writes || cfg!(not(any(unix, windows))) && lately());
                     all.push(Shelved { bytes: taken(&about), written, kept, writing, path });
                 }
             }
@@ -174,8 +174,29 @@ pub fn free_bytes(folder: &Path) -> Option<u64> {
     Some(disk.f_bavail.saturating_mul(disk.f_frsize))
 }
 
+/// As on Unix.
+#[cfg(windows)]
+#[expect(unsafe_code, reason = "std does not ask for the room on a disk")]
+pub fn free_bytes(folder: &Path) -> Option<u64> {
+    use std::os::windows::ffi::OsStrExt as _;
+
+    let mut name: Vec<u16> = folder.as_os_str().encode_wide().collect();
+    name.push(0);
+    let mut free = 0;
+    // SAFETY: the name ends with a zero, and what is written to lives through the call; what is not wanted may be null.
+    let told = unsafe {
+        windows_sys::Win32::Storage::FileSystem::GetDiskFreeSpaceExW(
+            name.as_ptr(),
+            &raw mut free,
+            std::ptr::null_mut(),
+            std::ptr::null_mut(),
+        )
+    };
+    (told != 0).then_some(free)
+}
+
 /// As on Unix; not known here.
-#[cfg(not(unix))]
+#[cfg(not(any(unix, windows)))]
 pub const fn free_bytes(_: &Path) -> Option<u64> {
     None
 }

@@ -57,21 +57,18 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Contents, StudyError> {
 impl Journal {
     /// Makes an empty one.
     pub(crate) fn create(path: &Path) -> Result<Self, StudyError> {
-        let file =
-            OpenOptions::new().read(true).write(true).create_new(true).open(path).map_err(StudyError::io(path))?;
-        lock(&file, path)?;
+        let file = alone(OpenOptions::new().create_new(true), path)?;
         Ok(Self { path: path.to_owned(), file, entries: 0, end: 0 })
     }
 
     /// Opens it for this program alone. A torn last line is cut off and told by an entry, which the caller finds among the contents.
     pub(crate) fn open(path: &Path, at: &str) -> Result<(Self, Vec<Entry>), StudyError> {
-        let mut file = OpenOptions::new().read(true).write(true).open(path).map_err(StudyError::io(path))?;
+        let mut file = alone(&mut OpenOptions::new(), path)?;
         let about = file.metadata().map_err(StudyError::io(path))?;
         if !about.is_file() || about.len() > MOST {
             let why = "it is no journal: no regular file, or too large".to_owned();
             return Err(StudyError::Damaged { path: path.to_owned(), why });
         }
-        lock(&file, path)?;
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(StudyError::io(path))?;
         let Contents { mut entries, torn, end } = parse(path, &bytes)?;
@@ -106,12 +103,31 @@ impl Journal {
     }
 }
 
-fn lock(file: &File, path: &Path) -> Result<(), StudyError> {
-    match file.try_lock() {
-        Ok(()) => Ok(()),
-        Err(TryLockError::WouldBlock) => {
-            Err(StudyError::InUse { folder: path.parent().unwrap_or_else(|| Path::new(".")).to_owned() })
-        }
+/// Opened to be written by this program alone; others may read it.
+fn alone(options: &mut OpenOptions, path: &Path) -> Result<File, StudyError> {
+    let in_use = || StudyError::InUse { folder: path.parent().unwrap_or_else(|| Path::new(".")).to_owned() };
+    match lock(options.read(true).write(true), path) {
+        Ok(file) => Ok(file),
+        Err(TryLockError::WouldBlock) => Err(in_use()),
         Err(TryLockError::Error(source)) => Err(StudyError::Io { path: path.to_owned(), source }),
     }
+}
+
+#[cfg(not(windows))]
+fn lock(options: &OpenOptions, path: &Path) -> Result<File, TryLockError> {
+    let file = options.open(path).map_err(TryLockError::Error)?;
+    file.try_lock().map(|()| file)
+}
+
+/// A lock would keep others from reading: nobody else may open it to write instead.
+#[cfg(windows)]
+fn lock(options: &mut OpenOptions, path: &Path) -> Result<File, TryLockError> {
+    // Of the Windows API.
+    const SHARE_READ: u32 = 1;
+    const SHARING_VIOLATION: i32 = 32;
+    let opened = std::os::windows::fs::OpenOptionsExt::share_mode(options, SHARE_READ).open(path);
+    opened.map_err(|error| match error.raw_os_error() {
+        Some(SHARING_VIOLATION) => TryLockError::WouldBlock,
+        _ => TryLockError::Error(error),
+    })
 }

@@ -6,13 +6,11 @@
 #![warn(missing_docs)]
 
 mod carrying;
-#[cfg(unix)]
 mod desk;
 pub mod emulated;
 pub mod emulators;
 mod feeling;
 mod hand;
-#[cfg(unix)]
 mod held;
 mod person;
 mod plan;
@@ -30,7 +28,6 @@ mod world;
 mod worlds;
 mod wrist;
 
-#[cfg(unix)]
 pub use desk::Desk;
 pub use hand::Hand;
 pub use plan::{Plan, run_virtual, start, start_on, start_simulated, start_watched};

@@ -9,9 +9,7 @@ use nima_machine::{
     teleop::{Calibrations, Loop, Origin},
 };
 
-#[cfg(unix)]
-use crate::Desk;
-use crate::{Watched, Worlds, scene::Scene};
+use crate::{Desk, Watched, Worlds, scene::Scene};
 
 /// Where a simulated rig tells of the objects of its scene, if there are any.
 type Objects = Option<Watched>;
@@ -105,7 +103,6 @@ impl Plan {
     /// Creates the rig and the list of its devices.
     fn rig(&self) -> Result<(Box<dyn Rig>, Roster, Objects), RigError> {
         let worlds = || Worlds::watched(&self.scene, self.rig.rate_hz);
-        #[cfg(unix)]
         if let Some(desk) = &self.rig.desk {
             let (worlds, watched) = worlds();
             let (desk, roster) = Desk::start(desk, worlds)?;

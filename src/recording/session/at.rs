@@ -1,6 +1,26 @@
 //! Reading and writing at a place of a file, whatever its cursor.
 
-use std::{fs::File, io};
+use std::{fs::File, io, path::Path};
+#[cfg(windows)]
+use std::{fs::OpenOptions, os::windows::fs::OpenOptionsExt as _, time::Duration};
+
+// Of the Windows API.
+#[cfg(windows)]
+const SHARE_READ: u32 = 1;
+#[cfg(windows)]
+const SHARE_WRITE: u32 = 2;
+#[cfg(windows)]
+const SHARE_DELETE: u32 = 4;
+/// The right to delete.
+#[cfg(windows)]
+const DELETE: u32 = 0x1_0000;
+#[cfg(windows)]
+const SHARING_VIOLATION: i32 = 32;
+
+#[cfg(windows)]
+const GUARD_ATTEMPTS: u32 = 5;
+#[cfg(windows)]
+const GUARD_NAP: Duration = Duration::from_millis(2);
 
 #[cfg(unix)]
 pub(super) fn write_all(file: &File, bytes: &[u8], at: u64) -> io::Result<()> {
@@ -45,18 +65,46 @@ pub(super) fn lock(file: &File) {
 #[cfg(not(unix))]
 pub(super) fn lock(_: &File) {}
 
-/// Whether another open file holds the lock.
+/// What else shows that the file of this name is being written, for as long as it is kept. A lock keeps others from reading on Windows: there it is
+/// a second handle, beside which nobody deletes or renames the file.
+#[cfg(windows)]
+pub(super) fn guard(path: &Path) -> Option<File> {
+    let mut open = OpenOptions::new();
+    open.read(true).share_mode(SHARE_READ | SHARE_WRITE);
+    // Another program may just be looking whether the file is being written.
+    (0..GUARD_ATTEMPTS).find_map(|attempt| {
+        std::thread::sleep(GUARD_NAP * attempt);
+        open.open(path).ok()
+    })
+}
+
+#[cfg(not(windows))]
+pub(super) const fn guard(_: &Path) -> Option<File> {
+    None
+}
+
+/// Whether somebody holds the lock of this file.
 #[cfg(unix)]
-pub(super) fn is_locked(file: &File) -> io::Result<bool> {
-    match file.try_lock_shared() {
+pub(super) fn is_locked(path: &Path) -> io::Result<bool> {
+    match File::open(path)?.try_lock_shared() {
         Ok(()) => Ok(false),
         Err(std::fs::TryLockError::WouldBlock) => Ok(true),
         Err(std::fs::TryLockError::Error(error)) => Err(error),
     }
 }
 
-#[cfg(not(unix))]
-pub(super) fn is_locked(_: &File) -> io::Result<bool> {
+/// Whether somebody holds its guard: then it cannot be opened to be deleted.
+#[cfg(windows)]
+pub(super) fn is_locked(path: &Path) -> io::Result<bool> {
+    match OpenOptions::new().access_mode(DELETE).share_mode(SHARE_READ | SHARE_WRITE | SHARE_DELETE).open(path) {
+        Ok(_) => Ok(false),
+        Err(error) if error.raw_os_error() == Some(SHARING_VIOLATION) => Ok(true),
+        Err(error) => Err(error),
+    }
+}
+
+#[cfg(not(any(unix, windows)))]
+pub(super) fn is_locked(_: &Path) -> io::Result<bool> {
     Ok(false)
 }
 
@@ -66,6 +114,7 @@ pub(super) fn is_deleted(file: &File) -> io::Result<bool> {
     Ok(std::os::unix::fs::MetadataExt::nlink(&file.metadata()?) == 0)
 }
 
+/// On Windows its guard keeps it.
 #[cfg(not(unix))]
 pub(super) fn is_deleted(_: &File) -> io::Result<bool> {
     Ok(false)

@@ -73,6 +73,8 @@ pub struct Encoding {
 pub struct Writer {
     path: PathBuf,
     layout: Layout,
+    /// Kept for as long as it is written; see [`at::guard`].
+    _guard: Option<File>,
     summary: Summary,
     /// The summary in the file lacks more than can be appended.
     summary_changed: bool,
@@ -130,6 +132,7 @@ impl Writer {
         Ok(Self {
             path: path.to_owned(),
             layout,
+            _guard: at::guard(path),
             summary,
             summary_changed: false,
             numbers: Lane::new(Chunk::compressed()),
@@ -365,12 +368,13 @@ impl Writer {
     }
 }
 
-/// Whether a process is writing this session now: it holds a lock on the file, which the system takes from it however it ends.
+/// Whether a process is writing this session now: it holds a lock on the file (on Windows, keeps others from deleting it), which the system takes
+/// from it however it ends.
 ///
 /// # Errors
 /// I/O errors of the file.
 pub fn is_being_written(path: &Path) -> io::Result<bool> {
-    at::is_locked(&File::open(path)?)
+    at::is_locked(path)
 }
 
 fn is_picture(encoding: &Encoding) -> bool {

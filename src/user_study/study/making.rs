@@ -33,6 +33,10 @@ impl Study {
         journal.append(at, Event::StudyMade { commitment })?;
         drop(journal);
         synced(made.path()).map_err(StudyError::io(folder))?;
+        // Elsewhere an empty folder is replaced.
+        if cfg!(windows) && folder.exists() {
+            fs::remove_dir(folder).map_err(StudyError::io(folder))?;
+        }
         fs::rename(made.path(), folder).map_err(StudyError::io(folder))?;
         synced(parent).map_err(StudyError::io(parent))?;
         Self::open(folder, at)
@@ -51,7 +55,8 @@ fn fill(folder: &Path, file: &StudyFile, scene: &str) -> io::Result<String> {
     {
         let path = folder.join(name);
         nima_files::write_atomically(&path, |file| file.write_all(text.as_bytes()))?;
-        File::open(path)?.sync_all()?;
+        // Windows writes out only what may be written to.
+        File::options().write(true).open(path)?.sync_all()?;
     }
     nima_files::write_private(&folder.join(KEY), &(key.to_hex() + "\n"))?;
     Ok(commitment)

@@ -163,6 +163,10 @@ fn a_folder_with_something_in_it_is_left_alone() {
     assert!(matches!(told, StudyError::Exists { .. }), "{told}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     assert!(Study::read(folder.path()).unwrap_err().to_string().contains("study.toml"));
+    let empty = folder.path().join("empty");
+    fs::create_dir(&empty).unwrap();
+    Study::create(&empty, &file(TWO), "", AT).unwrap();
+    Study::read(&empty).unwrap();
 }
 
 #[test]

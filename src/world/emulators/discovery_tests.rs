@@ -2,20 +2,23 @@
 
 use std::{
     collections::BTreeSet,
-    io::Write as _,
     net::TcpListener,
+    time::{Duration, Instant},
+};
+#[cfg(unix)]
+use std::{
+    io::Write as _,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
     },
-    time::{Duration, Instant},
 };
 
 use nima_devices::{
     Device, Health, Identity, Loss, Stamped, Standing, Trouble,
     discovery::{
-        DeviceProbe, Diagnosis, Found, Outcome, Plugged, Probe, SerialPort, SerialProbe, Speaks, TIMEOUT, TcpProbe,
-        diagnose, frames, probe_named, rules,
+        DeviceProbe, Diagnosis, Found, Outcome, Probe, SerialProbe, Speaks, TIMEOUT, TcpProbe, diagnose, frames,
+        probe_named, rules,
     },
     force_dimension,
 };
@@ -92,8 +95,10 @@ fn talking(frame: impl FnMut() -> Vec<u8> + Send + 'static) -> (String, Stop) {
     (name, Stop(stop, Some(thread)))
 }
 
+#[cfg(unix)]
 struct Stop(Arc<AtomicBool>, Option<std::thread::JoinHandle<()>>);
 
+#[cfg(unix)]
 impl Drop for Stop {
     fn drop(&mut self) {
         self.0.store(true, Ordering::Release);
@@ -322,6 +327,9 @@ fn rules_name_every_device_of_the_project_and_the_kernels_keys() {
 #[test]
 fn what_is_plugged_in_is_read_from_the_kernels_files() {
     use std::os::unix::fs::symlink;
+
+    use nima_devices::discovery::{Plugged, SerialPort};
+
     let folder = tempfile::tempdir().unwrap();
     let sys = folder.path();
     let put = |path: &str, text: &str| {

@@ -26,11 +26,11 @@ fn open_with(opener: &[&str], path: &Path) -> bool {
     command.status().is_ok_and(|status| status.success())
 }
 
-#[cfg(test)]
+// With a program that every Unix has.
+#[cfg(all(test, unix))]
 mod tests {
     use super::*;
 
-    #[cfg(unix)]
     #[test]
     fn an_opener_gets_the_file_and_one_that_is_not_there_or_fails_is_told() {
         let folder = tempfile::tempdir().unwrap();

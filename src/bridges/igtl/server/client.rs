@@ -28,6 +28,8 @@ use super::{
 
 /// A client that takes nothing for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(2);
+/// How often its reader looks whether the connection has ended: on Windows ending it does not wake who waits for a request.
+const LOOK_EVERY: Duration = Duration::from_millis(250);
 /// Bytes on their way, at most: little, so that a slow client gets what is new.
 const SEND_BUFFER: usize = 1 << 16;
 /// So much is read of a client in this time, at most: 200 kB/s, more than 3000 requests a second. The rest waits on its side.
@@ -47,6 +49,7 @@ impl Client {
     pub(super) fn new(stream: TcpStream) -> io::Result<Self> {
         stream.set_nonblocking(false)?;
         stream.set_nodelay(true)?;
+        stream.set_read_timeout(Some(LOOK_EVERY))?;
         stream.set_write_timeout(Some(PATIENCE))?;
         SockRef::from(&stream).set_send_buffer_size(SEND_BUFFER)?;
         Ok(Self { stream, mailbox: Mailbox::default(), wants: Mutex::default(), gone: AtomicBool::new(false) })
@@ -91,7 +94,7 @@ impl Client {
                     }
                     sleep(READ_EVERY);
                 }
-                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) if is_nothing_yet(error.kind()) => {}
                 Ok(_) | Err(_) => break,
             }
         }
@@ -138,6 +141,11 @@ impl Client {
     fn answer(&self, content: Content) {
         self.mailbox.tell(Message::new(BUNDLE, now_ns(), content).encode());
     }
+}
+
+/// Whether the connection goes on.
+const fn is_nothing_yet(error: ErrorKind) -> bool {
+    matches!(error, ErrorKind::Interrupted | ErrorKind::WouldBlock | ErrorKind::TimedOut)
 }
 
 impl fmt::Debug for Client {

@@ -28,7 +28,8 @@ pub(in crate::force_dimension) fn is_ending() -> bool {
 }
 
 /// Ensures that brakes are engaged even if the program ends without dropping its devices (a call of `exit`). The
-/// threads that own the devices do this themselves; the exit handler only waits for them.
+/// threads that own the devices do this themselves; the exit handler only waits for them. On Windows it is called when `main` has
+/// returned, and not by [`std::process::exit`], which ends all threads first: a program with devices must not call that.
 pub(super) fn call_before_exit() {
     extern "C" fn release_all() {
         ENDING.store(true, Ordering::Release);
@@ -37,7 +38,7 @@ pub(super) fn call_before_exit() {
             std::thread::sleep(Duration::from_millis(1));
         }
     }
-    #[cfg(unix)]
+    #[cfg(any(unix, windows))]
     {
         static ONCE: std::sync::Once = std::sync::Once::new();
         // SAFETY: the function is static, does not unwind, and uses only statics without destructors.
@@ -45,6 +46,6 @@ pub(super) fn call_before_exit() {
             libc::atexit(release_all);
         });
     }
-    #[cfg(not(unix))]
+    #[cfg(not(any(unix, windows)))]
     let _ = release_all;
 }

@@ -1,5 +1,4 @@
 //! The driver against the emulator over TCP and a pseudo-terminal: readings, line speeds, every trouble that can be had here.
-#![cfg(unix)]
 
 use std::{
     io::{Read as _, Write as _},

@@ -1,5 +1,4 @@
 //! Every emulated fault, on the driver in its slot: what it does, and that the tracker comes back without a restart.
-#![cfg(unix)]
 
 use std::time::Instant;
 

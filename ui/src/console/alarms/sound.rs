@@ -36,7 +36,7 @@ pub struct Sound {
 
 impl Sound {
     /// Searches the players in these folders instead of the search path.
-    #[cfg(test)]
+    #[cfg(all(test, unix))]
     fn of(folders: &[&Path]) -> Self {
         let mut sound = Self::default();
         sound.player = find(folders.iter().map(|folder| folder.to_path_buf()));
@@ -209,6 +209,7 @@ mod tests {
         }
     }
 
+    // The player is a script.
     #[cfg(unix)]
     #[test]
     fn a_burst_is_played_when_due_and_silence_or_failure_is_told() {

@@ -1,5 +1,5 @@
-# Tries the .rpm where rpm, dnf and zypper alone manage the system. Fedora's archive cannot be reached from everywhere; so its libraries are Debian's, turned into .rpm
-# packages whose provides and requires rpm finds as it does on Fedora. Not Fedora itself. Sourced by try.sh; needs root.
+# Tries the .rpm where rpm, dnf and zypper alone manage the system, with its dependencies. The system's libraries are Debian's, from the archive that the other
+# systems come from too, turned into .rpm packages; what they provide and require rpm finds as it does on Fedora. It is not Fedora. Sourced by try.sh; needs root.
 # shellcheck shell=bash
 
 rpm_root_tools=(debootstrap dnf createrepo-c rpm dpkg xvfb xdotool imagemagick)
@@ -8,13 +8,13 @@ rpm_root_system=(bash dash coreutils findutils grep sed mawk util-linux login pa
 
 try_rpm_root() {
   local rpm=$1 work=$target/try-rpm status=0 tool
+  [ -e "$rpm" ] || { leave_out "the .rpm was not tried in a root managed by dnf: there is none"; return 0; }
+  [ "$(id -u)" -eq 0 ] || { leave_out "the .rpm was not tried in a root managed by dnf: that needs root"; return 0; }
   need "${rpm_root_tools[@]}" || true
   need zypper || true
   for tool in debootstrap dnf createrepo_c rpmbuild Xvfb; do
     command -v "$tool" >/dev/null || { leave_out "the .rpm was not tried in a root managed by dnf: $tool is missing"; return 0; }
   done
-  [ -e "$rpm" ] || { leave_out "the .rpm was not tried in a root managed by dnf: there is none"; return 0; }
-  [ "$(id -u)" -eq 0 ] || { leave_out "the .rpm was not tried in a root managed by dnf: that needs root"; return 0; }
   rm -rf --one-file-system "$work"
   mkdir -p "$work"
   say "a root managed by dnf and rpm, of Debian's libraries turned into .rpm packages; not Fedora itself"
@@ -31,6 +31,7 @@ walk_through_rpm() {
   settle_newcomer "$root" || return
   packages=$(in_rpm "$work" -qa | sort) files=$(files_of_rpm_root "$root")
   say "rpm root: $(wc -l <<<"$packages") packages, of $(find "$work/repository" -name '*.rpm' | wc -l) that can be had; the .rpm asks for $(names_of_rpm "$rpm" | wc -l) names, of which they lack $(nobody_provides "$work" "$rpm" | wc -l)"
+  without_a_window "$work" "$root" "$rpm" || return
   at_a_screen newcomer_with_rpm dnf "$work" "$root" "$rpm" || return
   with_dnf "$work" remove nima-console || return
   nothing_left "$root" || return
@@ -47,6 +48,15 @@ walk_through_rpm() {
 # Without what is the user's, and what dnf and rpm note for themselves.
 files_of_rpm_root() {
   find "$1" -xdev \( -path "$1/home/person" -o -path "$1/var/cache/dnf" -o -path "$1/var/lib/dnf" -o -path "$1/var/lib/rpm" -o -path "$1/var/log" \) -prune -o ! -type d -printf '%P\n' | sort
+}
+
+# With what is required alone, for a computer without a screen: the loop runs.
+without_a_window() {
+  local work=$1 root=$2 rpm=$3
+  with_dnf "$work" install --setopt=install_weak_deps=False "$rpm" || return
+  as_person "$root" nima run --virtual --seconds 5 --json >"$target/try-rpm.json" || return
+  say "rpm root: without what it recommends $(in_rpm "$work" -qa | wc -l) packages, and $(grep -m 1 -o '"final_state": "[a-z]*"' "$target/try-rpm.json")"
+  with_dnf "$work" remove nima-console
 }
 
 newcomer_with_rpm() {

@@ -2,6 +2,7 @@
 #   ./dev package           all packages into target/packages
 #   ./dev package --twice   and again from another folder; fails where a byte differs
 #   ./dev package --try     and installs them in minimal systems, as a newcomer would (assets/package/try.sh)
+#   ./dev package --try-rpm and the .rpm that lies there, in the system of dnf and rpm alone; builds nothing
 #   ./dev package --sizes   what the program is made of
 # shellcheck shell=bash
 
@@ -15,6 +16,10 @@ zig_version=0.15.2
 # What was not made or not tried, told at the end.
 declare -a package_left_out=()
 leave_out() { package_left_out+=("$1"); }
+tell_left_out() {
+  say "left out: ${#package_left_out[@]}"
+  printf '   %s\n' "${package_left_out[@]}" >&2
+}
 
 # One word of the manifest.
 package_version() { sed -n '/^\[workspace.package\]/,/^\[/s/^version = "\(.*\)"$/\1/p' Cargo.toml; }
@@ -211,12 +216,20 @@ make_packages_again() {
 
 package() {
   local version target=${CARGO_TARGET_DIR:-$PWD/target} out what=${1:-} status=0
-  case $what in '' | --twice | --try | --sizes) ;; *) say "give nothing, --twice, --try or --sizes"; exit 2 ;; esac
+  case $what in '' | --twice | --try | --try-rpm | --sizes) ;; *) say "give nothing, --twice, --try, --try-rpm or --sizes"; exit 2 ;; esac
+  # shellcheck source=assets/package/try.sh
+  source assets/package/try.sh
+  out=$target/packages
+  if [ "$what" = --try-rpm ]; then
+    try_rpm_root "$(echo "$out"/*.rpm)" || { say "FAILED: the root managed by dnf and rpm"; status=1; }
+    tell_left_out
+    return $status
+  fi
   need_cargo
   need "${build_packages[@]}" "${package_tools[@]}" || exit 1
   need rpm "${windows_tools[@]}" || true
   fetch_windows_target
-  version=$(package_version) out=$target/packages
+  version=$(package_version)
   SOURCE_DATE_EPOCH=$(package_epoch)
   export SOURCE_DATE_EPOCH LC_ALL=C.UTF-8 TZ=UTC
   fetch_zig "$target/tools"
@@ -232,15 +245,10 @@ package() {
   leave_out "macOS and 64-bit ARM: not built, nothing here could run them"
   case $what in
     --twice) make_packages_again "$target/tools" "$out" ;;
-    --try)
-      # shellcheck source=assets/package/try.sh
-      source assets/package/try.sh
-      try_packages "$out" || status=1
-      ;;
+    --try) try_packages "$out" || status=1 ;;
     *) leave_out "not tried in other systems: ./dev package --try" ;;
   esac
   say "packages are in $out"
-  say "left out: ${#package_left_out[@]}"
-  printf '   %s\n' "${package_left_out[@]}" >&2
+  tell_left_out
   return $status
 }

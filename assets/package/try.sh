@@ -3,6 +3,8 @@
 
 # shellcheck source=assets/package/wine.sh
 source assets/package/wine.sh
+# shellcheck source=assets/package/rpm/root.sh
+source assets/package/rpm/root.sh
 
 try_tools=(debootstrap lintian appstream desktop-file-utils xvfb xdotool imagemagick)
 try_suites=(bookworm trixie bullseye)
@@ -14,6 +16,7 @@ try_packages() {
   judge_files "$out" "$deb" || failed=1
   judge_rpm "$rpm" || failed=1
   try_windows "$out" "$deb" || { say "FAILED: Windows"; failed=1; }
+  try_rpm_root "$rpm" || { say "FAILED: the root managed by dnf and rpm"; failed=1; }
   if [ "$(id -u)" -ne 0 ] || ! command -v debootstrap >/dev/null; then
     leave_out "not tried in ${try_suites[*]}: that needs root and debootstrap"
     return $failed
@@ -21,7 +24,6 @@ try_packages() {
   for suite in "${try_suites[@]}"; do
     try_in "$suite" "$deb" "$rpm" "$archive" || { say "FAILED: Debian $suite"; failed=1; }
   done
-  leave_out "not tried on a Fedora, RHEL or openSUSE system: their archives are not Debian's, from which the roots here come; the .rpm was installed by rpm in a Debian root"
   leave_out "not tried on a real screen or with real devices"
   return $failed
 }
@@ -103,61 +105,91 @@ try_in() {
 }
 
 walk_through() {
-  local suite=$1 deb=$2 rpm=$3 archive=$4 root=$target/try-$1 screen try_display=:97 status=0
+  local suite=$1 deb=$2 rpm=$3 archive=$4 root=$target/try-$1
   cp "$deb" "$root/tmp/nima-console.deb"
-  cp assets/package/newcomer.sh "$root/usr/local/bin/newcomer"
-  chmod 755 "$root/usr/local/bin/newcomer"
-  inside "$root" useradd --create-home --shell /bin/sh person || return
+  settle_newcomer "$root" || return
   inside "$root" apt-get update -q >>"$target/try-$suite.log" 2>&1 || return
+  at_a_screen try_all_in "$@"
+}
+
+try_all_in() {
+  local suite=$1 rpm=$3 archive=$4 root=$target/try-$1
+  try_deb "$suite" "$root" && try_archive "$root" "$archive" && try_rpm "$root" "$rpm"
+}
+
+# The ordinary user, and what that one will do.
+settle_newcomer() {
+  local root=$1
+  install -D -m 755 assets/package/newcomer.sh "$root/usr/local/bin/newcomer"
+  inside "$root" useradd --create-home --shell /bin/sh person
+}
+
+# Runs a command while there is a display, which the systems here reach too.
+at_a_screen() {
+  local try_display=:97 screen status=0
   Xvfb "$try_display" -screen 0 1600x1000x24 -nolisten tcp -noreset -ac >/dev/null 2>&1 &
   screen=$!
-  try_deb "$suite" "$root" && try_archive "$root" "$archive" && try_rpm "$root" "$rpm" || status=1
+  "$@" || status=1
   kill "$screen"
   wait "$screen" 2>/dev/null || true
   return $status
 }
 
 try_deb() {
-  local suite=$1 root=$2 began=$SECONDS installed
+  local suite=$1 root=$2 began=$SECONDS
   inside "$root" apt-get install -y -q /tmp/nima-console.deb >>"$target/try-$suite.log" 2>&1 || { tail -n 20 "$target/try-$suite.log"; return 1; }
-  installed=$((SECONDS - began))
-  picture "$suite" &
-  as_person "$root" newcomer || return
-  wait $! || true
-  cp "$root/home/person/window.png" "$target/try-$suite-window.png"
-  say "Debian $suite: installed in $installed s (with what a window needs, from the archive), the window's start-up: $(tr -d ' \n' <"$root/home/person/frames.json" | head -c 400)"
-  inside "$root" usermod -aG realtime person || return
-  limits_of_realtime "$suite" "$root" || return
-  inside "$root" gpasswd --delete person realtime >/dev/null || return
+  say "Debian $suite: installed in $((SECONDS - began)) s (with what a window needs, from the archive)"
+  first_minutes "Debian $suite" "$suite" "$root" "$began" || return
   inside "$root" apt-get purge -y -q nima-console >>"$target/try-$suite.log" 2>&1 || return
   nothing_left "$root"
 }
 
+# The newcomer's walk while the screen is watched, and the real-time limits. What is told of it begins with the system's name; seconds count from when the
+# installation began.
+first_minutes() {
+  local system=$1 kept=$target/try-$2 root=$3 began=$4 watching=
+  if command -v xdotool >/dev/null && command -v import >/dev/null; then
+    picture "$system" "$kept" "$began" &
+    watching=$!
+  else
+    leave_out "$system: nobody looked at the window, xdotool or imagemagick is missing"
+  fi
+  as_person "$root" newcomer || return
+  [ -z "$watching" ] || wait "$watching" || { say "$system: no window came, or nothing moved in it"; return 1; }
+  cp "$root/home/person/window.png" "$kept-window.png"
+  say "$system: the window's start-up: $(tr -d ' \n' <"$root/home/person/frames.json" | head -c 400)"
+  inside "$root" usermod -aG realtime person || return
+  limits_of_realtime "$system" "$root" || return
+  inside "$root" gpasswd --delete person realtime >/dev/null
+}
+
 # Raising a limit takes a capability (CAP_SYS_RESOURCE, number 24) that root has not in every container.
 limits_of_realtime() {
-  local suite=$1 root=$2 capabilities priority
+  local system=$1 root=$2 capabilities priority
   capabilities=$(sed -n 's/^CapEff:\t//p' /proc/self/status)
   if [ $((0x$capabilities >> 24 & 1)) -eq 0 ]; then
-    leave_out "Debian $suite: real-time limits were not judged, root may not raise limits on this machine"
+    leave_out "$system: real-time limits were not judged, root may not raise limits on this machine"
     return 0
   fi
   priority=$(as_person "$root" ulimit -r)
-  say "Debian $suite: a member of realtime may ask for priority $priority"
+  say "$system: a member of realtime may ask for priority $priority"
   [ "$priority" -eq 95 ]
 }
 
 # Two pictures of the screen, a second apart, while the window is open: it shows something, and that moves.
 picture() {
-  local suite=$1 differ tries
-  for tries in $(seq 120); do
-    ! DISPLAY=$try_display xdotool search --name 'NIMA Console' >/dev/null 2>&1 || break
+  local system=$1 kept=$2 began=$3 differ tries=0
+  until DISPLAY=$try_display xdotool search --name 'NIMA Console' >/dev/null 2>&1; do
+    tries=$((tries + 1))
+    [ "$tries" -lt 120 ] || return
     sleep 0.5
   done
-  say "Debian $suite: the window is there ${tries} half seconds after the newcomer began"
+  say "$system: the window is there $((SECONDS - began)) s after the installation began"
   sleep 2
-  import -display "$try_display" -window root "$target/try-$suite-1.png" && sleep 1 && import -display "$try_display" -window root "$target/try-$suite-2.png" || return
-  differ=$(compare -metric AE "$target/try-$suite-1.png" "$target/try-$suite-2.png" null: 2>&1 || true)
-  say "Debian $suite: $differ pixels of the screen changed within a second"
+  import -display "$try_display" -window root "$kept-1.png" && sleep 1 && import -display "$try_display" -window root "$kept-2.png" || return
+  differ=$(compare -metric AE "$kept-1.png" "$kept-2.png" null: 2>&1 || true)
+  say "$system: $differ pixels of the screen changed within a second"
+  [[ $differ =~ ^[1-9] ]]
 }
 
 # Unpacked in the home of the user, nothing installed.

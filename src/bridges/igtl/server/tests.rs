@@ -172,7 +172,11 @@ fn a_client_gets_tips_handles_forces_and_states_of_the_same_tick_without_asking(
         (engaged.device.as_str(), status.code, status.text.as_str()),
         ("right.state", StatusCode::OK, "it is Engaged")
     );
-    let tip = peer.of_device("right.tip", Kind::Transform);
+    // A state goes before a bundle that waits, which may be of an earlier tick.
+    let tip = peer.find(|message| {
+        let is_later = message.device == "right.tip" && message.time_ns >= engaged.time_ns;
+        (is_later && message.content.kind() == Kind::Transform.name()).then(|| message.clone())
+    });
     let Content::Transform(leader) = peer.of_device("right.leader", Kind::Transform).content else { unreachable!() };
     let bundle = peer.of_device("nima", Kind::Tracking);
     let Content::Sensor(measured) = peer.of_device("right.measured", Kind::Sensor).content else { unreachable!() };

@@ -6,6 +6,8 @@
 //! The real-time thread owns the rig and the loop. It never waits for a receiver: if a queue is full, the item is
 //! dropped and counted.
 
+mod clock_profile;
+mod jitter;
 mod os;
 mod phase;
 mod summary;
@@ -15,11 +17,12 @@ mod thread;
 mod virtual_clock;
 mod wrists;
 
+pub use clock_profile::{ClockProfile, ParseClockProfileError, TickTime, TickTimes, VirtualClock};
 pub use summary::{ArmEnd, CauseAndCure, CpuShare, DeviceFigures, Histograms, ModeError, Summary};
 pub use supervisor::STALL_MAX_S;
 pub use tap::{Entry, Next, Operation, Passed, Stepped, TICKS_TAPPED_MAX, Tap, TapEnd, tap};
 pub use thread::{Ender, Handle, StartError, TICKS_WAITING_MAX, start};
-pub use virtual_clock::{run_virtual, tick};
+pub use virtual_clock::{run_virtual, run_virtual_on, tick};
 pub use wrists::WristChange;
 
 use crate::{

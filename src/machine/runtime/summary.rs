@@ -124,7 +124,7 @@ pub struct Summary {
     pub seconds: f64,
     /// Loop time per wall time: above 1 is faster than real time.
     pub speed: f64,
-    /// Lateness of wake-ups, us (zero on the virtual clock).
+    /// Lateness of wake-ups, us (zero on a virtual clock that is perfect).
     pub wake_us: Quantiles,
     /// Work of one tick of the loop, without rig and queues, us.
     pub work_us: Quantiles,

@@ -11,7 +11,9 @@ use nima_core::impedance::SettingsError;
 use nima_devices::Identity;
 
 use super::{
-    Assembly, Clock, Summary, os,
+    Assembly, Clock, Summary,
+    clock_profile::{TickTime, skip},
+    os,
     phase::Phase,
     summary::{CpuShare, DeviceFigures, Meters},
     supervisor::{Pulse, Supervisor},
@@ -274,11 +276,11 @@ impl Realtime {
             os::sleep_until_ns(deadline_ns);
             let woke_ns = os::monotonic_ns();
             let late_ns = woke_ns.saturating_sub(deadline_ns);
-            // Missed periods are counted and skipped. Executing them late would be a burst of ticks.
-            timing.missed_now = late_ns / self.period_ns;
-            deadline_ns += timing.missed_now * self.period_ns;
-            timing.now_s = (deadline_ns - start_ns) as f64 * 1e-9;
-            timing.wake_s = late_ns as f64 * 1e-9;
+            let (missed, rest_ns) = skip(late_ns, self.period_ns);
+            deadline_ns += missed * self.period_ns;
+            // The devices are read and the force is given now, not at the deadline.
+            let now_s = (deadline_ns + rest_ns - start_ns) as f64 * 1e-9;
+            TickTime { now_s, wake_s: late_ns as f64 * 1e-9, missed }.enter(timing);
             self.tick(timing, woke_ns);
         }
     }

@@ -4,7 +4,9 @@ use std::time::Instant;
 
 use super::{
     Assembly, Summary,
+    clock_profile::{TickTime, VirtualClock},
     summary::Meters,
+    supervisor::STALL_MAX_S,
     tap::{Operation, Tap},
     thread::tell,
 };
@@ -16,42 +18,66 @@ use crate::{
 
 /// Runs the loop for `seconds` of loop time. `each` is called with every tick of every side; it may return a command
 /// for the next tick, and ends the run by returning [`Command::Shutdown`].
-pub fn run_virtual(assembly: Assembly, seconds: f64, mut each: impl FnMut(&Tick) -> Option<Command>) -> Summary {
-    run(assembly, seconds, &mut each)
+pub fn run_virtual(assembly: Assembly, seconds: f64, each: impl FnMut(&Tick) -> Option<Command>) -> Summary {
+    run_virtual_on(VirtualClock::PERFECT, assembly, seconds, each)
+}
+
+/// The same with late ticks, as this clock has them.
+pub fn run_virtual_on(
+    clock: VirtualClock,
+    assembly: Assembly,
+    seconds: f64,
+    mut each: impl FnMut(&Tick) -> Option<Command>,
+) -> Summary {
+    run(clock, assembly, seconds, &mut each)
 }
 
 /// Built once, here, whatever is called with each tick.
-fn run(assembly: Assembly, seconds: f64, each: &mut dyn FnMut(&Tick) -> Option<Command>) -> Summary {
+fn run(
+    clock: VirtualClock,
+    assembly: Assembly,
+    seconds: f64,
+    each: &mut dyn FnMut(&Tick) -> Option<Command>,
+) -> Summary {
     let Assembly { mut control, mut rig, rate_hz, engage, tap, .. } = assembly;
     let mut tap = tap.map(Tap::waiting);
-    let period_s = 1.0 / rate_hz;
-    let ticks = (seconds * rate_hz).round() as u64;
-    let mut meters = Meters::default();
+    let (mut times, mut drives) = (clock.tick_times(rate_hz), Drives::default());
+    // Half a period before the end: times are rounded.
+    let end_s = ((seconds * rate_hz).round() - 0.5) / rate_hz;
+    let (mut meters, mut missed) = (Meters::default(), 0);
     let mut command = engage.then_some(Command::Engage);
-    let mut work_s = 0.0;
+    let mut timing = Timing::default();
     let start = Instant::now();
-    while meters.ticks < ticks && command != Some(Command::Shutdown) {
-        let now_s = meters.ticks as f64 * period_s;
+    while command != Some(Command::Shutdown) {
+        let time = times.advance();
+        if time.now_s > end_s {
+            break;
+        }
+        missed += time.missed;
+        time.enter(&mut timing);
+        let now_s = time.now_s;
         let before = Instant::now();
         let inputs = rig.read(now_s);
         let read = Instant::now();
         control.clear_events();
-        if let Some(command) = command.take() {
+        if let Some(silent_s) = drives.stalled_s(&time) {
+            tell(&mut tap, Operation::Stall { silent_s, t_s: now_s });
+            control.notice_stall(silent_s, now_s);
+        }
+        for command in command.take().into_iter().chain(std::iter::from_fn(|| rig.command())) {
             tell(&mut tap, Operation::Command { command, t_s: now_s });
             control.obey(command, now_s);
         }
-        while let Some(command) = rig.command() {
-            tell(&mut tap, Operation::Command { command, t_s: now_s });
-            control.obey(command, now_s);
-        }
-        let timing = Timing { now_s, work_s, ..Timing::default() };
         let (outputs, ticks) = control.step(inputs, &timing);
-        work_s = read.elapsed().as_secs_f64();
+        let work_s = read.elapsed().as_secs_f64();
         rig.write(now_s, &outputs);
         rig.hear(now_s, &control.bulletins());
+        drives.beat(now_s, outputs.iter().any(|outputs| outputs.drives));
         if let Some(tap) = &mut tap {
             tap.tick(control.events(), &timing, &inputs, &outputs, &ticks);
         }
+        timing.work_s = work_s;
+        meters.wake.record(timing.wake_s);
         meters.rig.record((read - before).as_secs_f64());
         meters.work.record(work_s);
         meters.ticks += 1;
@@ -59,23 +85,43 @@ fn run(assembly: Assembly, seconds: f64, each: &mut dyn FnMut(&Tick) -> Option<C
             command = each(tick).or(command);
         }
     }
-    let loop_s = meters.ticks as f64 * period_s;
+    let loop_s = (meters.ticks + missed) as f64 / rate_hz;
     meters.summary("virtual", &control, loop_s, start.elapsed().as_secs_f64(), Scheduling::default())
 }
 
-/// One tick of a loop with its rig at `now_s`, for several loops on one clock. Its events stay in the loop until the next one.
+/// Stands for the supervisor of the real clock: a loop that was silent for too long with its drives on has lost them.
+#[derive(Debug, Default)]
+struct Drives {
+    driven_at_s: Option<f64>,
+}
+
+impl Drives {
+    fn beat(&mut self, now_s: f64, driven: bool) {
+        self.driven_at_s = driven.then_some(now_s);
+    }
+
+    /// How long the loop was silent, s, if it missed periods for too long.
+    fn stalled_s(&self, time: &TickTime) -> Option<f64> {
+        let silent_s = self.driven_at_s.filter(|_| time.missed > 0).map(|at_s| time.now_s - at_s);
+        silent_s.filter(|silent_s| *silent_s > STALL_MAX_S)
+    }
+}
+
+/// One tick of a loop with its rig at this time, for several loops on one clock. Its events stay in the loop until the next one.
 pub fn tick<L: Link>(
     control: &mut Loop<L>,
     rig: &mut impl Rig,
-    now_s: f64,
+    time: impl Into<TickTime>,
     command: Option<Command>,
 ) -> [Option<Tick>; SIDES] {
+    let timing = Timing::from(time.into());
+    let now_s = timing.now_s;
     let inputs = rig.read(now_s);
     control.clear_events();
     for command in command.into_iter().chain(std::iter::from_fn(|| rig.command())) {
         control.obey(command, now_s);
     }
-    let (outputs, ticks) = control.step(inputs, &Timing { now_s, ..Timing::default() });
+    let (outputs, ticks) = control.step(inputs, &timing);
     rig.write(now_s, &outputs);
     rig.hear(now_s, &control.bulletins());
     ticks

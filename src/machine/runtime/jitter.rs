@@ -1,0 +1,103 @@
+//! Recorded lateness of wake-ups: how late the loop wakes after its deadlines, as compact tables.
+//!
+//! A [`JitterProfile`] is a model of two states, because late ticks come in clusters: a process that takes the processor
+//! once soon takes it again. In each state the lateness is drawn from the quantiles recorded in that state, linearly
+//! interpolated. `docs/timing.md` says how the tables were recorded and how a new one is made.
+
+use nima_core::noise::Noise;
+
+/// Distribution of the lateness of wake-ups: its quantiles in two states, and how long each state lasts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct JitterProfile {
+    /// The usual state, and the one in which late ticks cluster.
+    states: [JitterState; 2],
+}
+
+/// One state of a [`JitterProfile`].
+#[derive(Clone, Copy, Debug)]
+struct JitterState {
+    /// Probability per tick of a change to the other state.
+    leave: f64,
+    /// Rising pairs of probability, from 0 to 1, and lateness, us.
+    late_us: &'static [[f64; 2]],
+}
+
+/// An ordinary thread while nothing else runs.
+pub(super) const QUIET: JitterProfile = JitterProfile {
+    states: [
+        JitterState {
+            leave: 0.0005,
+            late_us: &[
+                [0.0, 4.0],
+                [0.01, 45.0],
+                [0.5, 98.0],
+                [0.95, 125.0],
+                [0.99, 152.0],
+                [0.999, 400.0],
+                [1.0, 1300.0],
+            ],
+        },
+        JitterState { leave: 0.2, late_us: &[[0.0, 60.0], [0.5, 130.0], [0.7, 1000.0], [0.95, 3500.0], [1.0, 8000.0]] },
+    ],
+};
+
+/// An ordinary thread while two busy processes share two cores with it.
+pub(super) const BUSY: JitterProfile = JitterProfile {
+    states: [
+        JitterState {
+            leave: 0.002,
+            late_us: &[
+                [0.0, 4.0],
+                [0.01, 40.0],
+                [0.5, 67.0],
+                [0.95, 85.0],
+                [0.99, 100.0],
+                [0.999, 1500.0],
+                [1.0, 3500.0],
+            ],
+        },
+        JitterState {
+            leave: 0.05,
+            late_us: &[[0.0, 60.0], [0.6, 100.0], [0.7, 1000.0], [0.95, 3500.0], [1.0, 5000.0]],
+        },
+    ],
+};
+
+impl JitterProfile {
+    /// Draws the lateness of the next wake-up, ns. `state` is the present state, 0 or 1, and is updated.
+    pub(super) fn late_ns(&self, state: &mut usize, random: &mut Noise) -> u64 {
+        if random.uniform() < self.states[*state].leave {
+            *state = 1 - *state;
+        }
+        (1e3 * at(self.states[*state].late_us, random.uniform())).round() as u64
+    }
+}
+
+/// Value of a table of quantiles at this probability, linearly interpolated.
+fn at(quantiles: &[[f64; 2]], probability: f64) -> f64 {
+    let above = quantiles.partition_point(|[from, _]| *from <= probability).clamp(1, quantiles.len() - 1);
+    let ([from, low], [to, high]) = (quantiles[above - 1], quantiles[above]);
+    low + (high - low) * (probability - from) / (to - from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_table_rises_from_probability_0_to_1() {
+        for JitterState { leave, late_us } in [QUIET, BUSY].into_iter().flat_map(|profile| profile.states) {
+            assert!(leave > 0.0 && leave < 1.0 && late_us[0][1] >= 0.0, "{leave} {late_us:?}");
+            assert_eq!([late_us[0][0], late_us[late_us.len() - 1][0]], [0.0, 1.0]);
+            assert!(late_us.windows(2).all(|pair| pair[0][0] < pair[1][0] && pair[0][1] <= pair[1][1]), "{late_us:?}");
+        }
+    }
+
+    #[test]
+    fn the_drawn_lateness_has_the_quantiles_of_the_table() {
+        let table: &[[f64; 2]] = &[[0.0, 10.0], [0.5, 20.0], [0.9, 100.0], [1.0, 1000.0]];
+        for (probability, us) in [(0.0, 10.0), (0.25, 15.0), (0.5, 20.0), (0.7, 60.0), (0.95, 550.0), (1.0, 1000.0)] {
+            assert!((at(table, probability) - us).abs() < 1e-9, "{probability}");
+        }
+    }
+}

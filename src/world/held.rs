@@ -5,7 +5,10 @@
 //! once the handle has told that its force is.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::kinematics::Hand;
+use nima_core::{
+    kinematics::Hand,
+    safety::{Raw, RawReadings},
+};
 use nima_devices::{HandleReading, Health, Leader, Lever, Slot, Stamped, Standing};
 use nima_machine::rig::{GUIDE_MAX_M, Inputs, LeaderSettings, Outputs, RigError, RosterEntry};
 
@@ -61,7 +64,10 @@ impl Held {
         let turn = orientation.unwrap_or_else(UnitQuaternion::identity);
         let mut frames = inputs.frames;
         frames.leader_from_handle = Some(nalgebra::Isometry3::from_parts(position_m.into(), turn));
+        let Stamped { device_s, arrival_s, .. } = reading;
+        let handle = Some(Raw { channels: position_m.into(), device_s, arrival_s });
         Some(Inputs {
+            raw: RawReadings { handle, ..inputs.raw },
             hand: Hand { position_m, orientation },
             gripper_rad: gripper_rad.or(inputs.gripper_rad),
             frames,

@@ -26,7 +26,10 @@ pub use energy::{ALLOWANCE_J, Energy, LEAK_S, MOST_J};
 pub use gain::{Gain, MAX_GAIN};
 pub use governor::{Governed, Governor, Handle};
 pub use interlock::{Change, Interlock, Permits, READY_WITHIN_S, Refused, Seen, State, Why, Wish};
-pub use plausibility::{Admitted, CHANNELS, Fall, Frozen, Implausible, Leap, Observed, Opposed, Plausibility, Release};
+pub use plausibility::{
+    ARM_CHANNELS, Admitted, CHANNELS, Fall, HANDLE_CHANNELS, Implausible, Leap, Observed, Opposed, Plausibility, Raw,
+    RawReadings, Release,
+};
 pub use report::{GATES, Gate, GateCounts, GateReport, Reason};
 pub use settings::{ChainSettings, EnergyMode};
 pub use slew::Slew;

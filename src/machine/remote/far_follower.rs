@@ -3,6 +3,7 @@
 use nima_core::{
     calibration::frames::FrameSample,
     impedance::{Mode, Packed},
+    safety::RawReadings,
 };
 
 use super::{
@@ -148,6 +149,8 @@ impl<R: Rig, W: Wire> FarFollower<R, W> {
             obstacle: far.is_obstructed.then_some(Obstacle::FarEnd),
             age_s: here.age_s,
             silent_s: now_s - heard.at_s,
+            // The other machine judges its own devices.
+            raw: RawReadings { handle: here.raw.handle, ..RawReadings::NONE },
         })
     }
 }

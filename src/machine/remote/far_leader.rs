@@ -1,7 +1,7 @@
 //! The follower's rig: arm and sensor here, the hand at the other end of a network.
 
 use nalgebra::Vector3;
-use nima_core::{impedance::Packed, kinematics::Hand, safety::ChainSettings};
+use nima_core::{impedance::Packed, kinematics::Hand, safety::{ChainSettings, RawReadings}};
 
 use super::{
     GONE_AFTER_S, MESSAGE_MAX, Wire,
@@ -252,6 +252,7 @@ fn join(here: &Inputs, told: &LeaderSide, position_m: Vector3<f64>) -> Inputs {
         view: View::Fixed,
         // The follower moves only while the operator's pair is engaged; who holds the handle is judged there.
         switches: Switches { clutch: told.intent != Intent::Follow, presence: None },
+        raw: RawReadings { handle: None, ..here.raw },
         ..*here
     }
 }

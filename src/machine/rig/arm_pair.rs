@@ -1,27 +1,23 @@
 //! The devices of one side (handle, arm, force sensor, servos) and the kinematics between tip position (m) and joint
 //! angles (rad).
 
-mod inputs;
+mod measured;
 
 use nalgebra::{Isometry3, IsometryMatrix3, UnitQuaternion, Vector3};
-use nima_core::{
-    frames::from_roll_pitch_yaw_deg,
-    kinematics::{Arm, Inverse, JointLimits, Joints, Pose, Rcm, StartError},
-};
-use nima_devices::{
-    ArmReading, Follower, ForceReading, ForceSensor, HandleReading, Health, Leader, Lever, ServoReading, Slot, Stamped,
-    dynamixel,
-};
+use nima_core::kinematics::{Inverse, Joints};
+use nima_devices::{ArmReading, Follower, ForceSensor, Health, Leader, Lever, Slot, Stamped, dynamixel};
 
 use super::{
     ArmSet, Ends, Gauge, Part, RigError,
     devices::{OLDEST_S, is_there},
     jaws::JawsControl,
     known::{Known, ServosKnown},
-    obstacle::{Awaited, HandEye, Obstacle, Shown},
+    obstacle::{Awaited, Obstacle, Shown},
     starting::{servos_opener, start},
 };
-use crate::rig::{Outputs, Roster, Side, View};
+use crate::rig::{Inputs, Outputs, Roster, Side, View};
+
+pub use measured::{Delivering, Measured};
 
 /// Readings of the devices that both sides share.
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,28 +58,15 @@ pub struct ArmPair {
     follower: Option<FollowerSlots>,
     servos: Option<(Slot<dynamixel::Driver>, JawsControl)>,
     servos_known: ServosKnown,
-    hand: Option<Stamped<HandleReading>>,
-    joints: Option<Stamped<ArmReading>>,
-    force: Option<Stamped<ForceReading>>,
-    turned: Option<Stamped<ServoReading>>,
+    measured: Measured,
     /// What handle, arm, sensor and servos have delivered since this was last handed over.
     gauges: [Gauge; 4],
     /// Orientation in which the handle was first read.
     held_from: Option<UnitQuaternion<f64>>,
-    mount: Arm,
-    rcm: Rcm,
-    limits: JointLimits,
-    s1_from_m: Option<UnitQuaternion<f64>>,
-    hand_eye: Option<HandEye>,
-    at_wrist: bool,
     period_s: f64,
-    /// Pose of the instrument from the measured joint angles.
-    pose: Option<Pose>,
     inverse: Option<Inverse>,
-    obstacle: Option<Obstacle>,
     /// Whether the drives were permitted in the last tick.
     driven: bool,
-    force_is_on: bool,
 }
 
 impl ArmPair {
@@ -96,9 +79,7 @@ impl ArmPair {
         known: &Known,
         roster: &mut Roster,
     ) -> Result<Self, RigError> {
-        let word = side.word();
-        let mount = Arm::new(&set.mount).map_err(|source| RigError::Mount { side: word, source })?;
-        let rcm = Rcm::new(&set.rcm).map_err(|source| RigError::Rcm { side: word, source })?;
+        let measured = Measured::new(side, set, period_s, at_wrist)?;
         let levers = [Lever::default(), Lever::default()];
         let [of_handle, of_arm] = levers.clone();
         let leader = if known.has_both_sides() { set.handle.for_hand_of(side) } else { set.handle.clone() };
@@ -122,24 +103,12 @@ impl ArmPair {
             follower,
             servos: servos.transpose()?,
             servos_known: known.servos_of(side),
-            hand: None,
-            joints: None,
-            force: None,
-            turned: None,
+            measured,
             gauges: [Gauge::NONE; 4],
             held_from: None,
-            mount,
-            rcm,
-            limits: set.arm.joint_limits(),
-            s1_from_m: set.s1_from_m_deg.as_ref().map(from_roll_pitch_yaw_deg),
-            hand_eye: set.hand_eye().map(|[s1_from_m, base_from_c]| HandEye { s1_from_m, base_from_c }),
-            at_wrist,
             period_s,
-            pose: None,
             inverse: None,
-            obstacle: None,
             driven: false,
-            force_is_on: false,
         })
     }
 
@@ -149,22 +118,21 @@ impl ArmPair {
         if let Some(reading) = self.handle.as_mut().and_then(|slot| slot.poll(now_s)) {
             let from = self.held_from.get_or_insert(reading.value.orientation.unwrap_or_default());
             of_handle.handle(&reading.value, from);
-            self.hand = Some(reading);
+            self.measured.take_handle(reading);
         }
         if let Some(reading) = self.follower.as_mut().and_then(|slots| slots.arm.poll(now_s)) {
             of_arm.arm(&reading.value);
-            self.pose = Some(self.mount.pose(&Joints::from(reading.value.joint_rad)));
-            self.joints = Some(reading);
+            self.measured.take_arm(reading);
         }
         if let Some(reading) = self.follower.as_mut().and_then(|slots| slots.sensor.poll(now_s)) {
             of_sensor.sensor(&reading.value);
-            self.force = Some(reading).filter(|reading| reading.value.status.is_usable());
+            self.measured.take_force(reading);
         }
         if let Some((slot, _)) = &mut self.servos
             && let Some(reading) = slot.poll(now_s)
         {
             of_servos.servos(&reading.value);
-            self.turned = Some(reading);
+            self.measured.turned = Some(reading);
         }
         if let Some(handle) = &self.handle {
             of_handle.tick(handle.health(), now_s, self.period_s);
@@ -178,36 +146,39 @@ impl ArmPair {
         }
         if let Some(slot) = &mut self.handle {
             let changed = slot.device().and_then(|handle| handle.force_change());
-            self.force_is_on = changed.unwrap_or(self.force_is_on && is_there(slot));
+            self.measured.force_is_on = changed.unwrap_or(self.measured.force_is_on && is_there(slot));
         }
         if !self.driven {
-            let begin = |joints: Stamped<ArmReading>| self.begin(&joints.value.joint_rad.into()).err();
+            let begin = |joints: Stamped<ArmReading>| self.measured.begin(&joints.value.joint_rad.into()).err();
             let of_servos = self.servos.as_ref().and_then(|_| self.servos_known.obstacle());
-            self.obstacle = of_servos.or_else(|| self.joints.and_then(begin).map(Obstacle::Start));
+            self.measured.obstacle = of_servos.or_else(|| self.measured.joints.and_then(begin).map(Obstacle::Start));
         }
+    }
+
+    /// The measurements; `None` unless every device of the force path delivers and none of its readings is too old.
+    pub(in crate::rig) fn inputs(&self, now_s: f64, shared: &Shared) -> Option<Inputs> {
+        let follower = self.follower.as_ref().map(|slots| is_there(&slots.arm) && is_there(&slots.sensor));
+        let delivering = Delivering { handle: self.handle.as_ref().map(is_there), follower };
+        let jaws = self.servos.as_ref().map(|(slot, control)| (control, is_there(slot)));
+        self.measured.with(now_s, delivering, jaws, shared)
     }
 
     /// What arm and marker show while the drives are off; `c_from_m` is the marker as the tracker sees it.
     pub(super) fn shown(&self, c_from_m: Option<Isometry3<f64>>) -> Option<Shown> {
-        let joints = Joints::from(self.joints.filter(|_| !self.driven)?.value.joint_rad);
-        let base_from_s1 = rigid(&(self.mount.world_from_base().inverse() * self.mount.pose(&joints).world_from_s1));
-        let (mount, rcm, hand_eye) = (self.mount, self.rcm, self.hand_eye);
+        let Measured { mount, rcm, hand_eye, .. } = self.measured;
+        let joints = Joints::from(self.measured.joints.filter(|_| !self.driven)?.value.joint_rad);
+        let base_from_s1 = rigid(&(mount.world_from_base().inverse() * mount.pose(&joints).world_from_s1));
         Some(Shown { mount, rcm, joints, base_from_s1, hand_eye, c_from_m })
     }
 
     /// Nothing else objects, but this has not told its side yet.
     pub(super) fn wait_for(&mut self, awaited: Awaited) {
-        self.obstacle.get_or_insert(Obstacle::Waiting(awaited));
+        self.measured.obstacle.get_or_insert(Obstacle::Waiting(awaited));
     }
 
     /// Right and left are exchanged: that comes before any other reason.
     pub(super) const fn object(&mut self, obstacle: Obstacle) {
-        self.obstacle = Some(obstacle);
-    }
-
-    /// Starts the inverse kinematics at these joint angles (rad).
-    fn begin(&self, joint_rad: &Joints) -> Result<Inverse, StartError> {
-        Inverse::new(self.mount, self.rcm, self.period_s, joint_rad).map(|inverse| inverse.within(self.limits))
+        self.measured.obstacle = Some(obstacle);
     }
 
     /// Sends the loop's commands to the devices.
@@ -247,7 +218,7 @@ impl ArmPair {
     /// One step of the joints: towards the tip's target, or, without a target, braking along a path through the trocar.
     fn lead(&mut self, tip_command_m: Option<Vector3<f64>>) {
         let arm = self.follower.as_mut().and_then(|slots| slots.arm.device());
-        let (Some(arm), Some(joints)) = (arm, self.joints) else {
+        let (Some(arm), Some(joints)) = (arm, self.measured.joints) else {
             self.inverse = None;
             return;
         };
@@ -255,9 +226,9 @@ impl ArmPair {
         if self.inverse.is_none() && tip_command_m.is_some() {
             // Start from the commanded angles, so that the first command is not a step.
             let from_rad = if joints.value.servoing { Joints::from(arm.command_rad()) } else { measured_rad };
-            match self.begin(&from_rad) {
+            match self.measured.begin(&from_rad) {
                 Ok(inverse) => self.inverse = Some(inverse),
-                Err(obstacle) => self.obstacle = Some(Obstacle::Start(obstacle)),
+                Err(obstacle) => self.measured.obstacle = Some(Obstacle::Start(obstacle)),
             }
         }
         let Some(arm) = self.follower.as_mut().and_then(|slots| slots.arm.device()) else { return };
@@ -280,9 +251,9 @@ impl ArmPair {
     }
 
     fn turn(&mut self, now_s: f64, world_from_jaws: Option<UnitQuaternion<f64>>) {
-        let (Some(world_from_jaws), Some(pose)) = (world_from_jaws, &self.pose) else { return };
-        let Some(turned) = self.turned.filter(|turned| now_s - turned.arrival_s <= OLDEST_S) else { return };
-        let gripper_rad = self.hand.and_then(|hand| hand.value.gripper_rad);
+        let (Some(world_from_jaws), Some(pose)) = (world_from_jaws, &self.measured.pose) else { return };
+        let Some(turned) = self.measured.turned.filter(|turned| now_s - turned.arrival_s <= OLDEST_S) else { return };
+        let gripper_rad = self.measured.hand.and_then(|hand| hand.value.gripper_rad);
         let Some((slot, control)) = &mut self.servos else { return };
         let s1_from_jaws = pose.orientation().inverse() * world_from_jaws;
         let goals = control.goals(&s1_from_jaws, gripper_rad, &turned.value);
@@ -310,7 +281,7 @@ impl ArmPair {
 
     /// Why the arm cannot be engaged from its present position.
     pub(super) const fn obstacle(&self) -> Option<Obstacle> {
-        self.obstacle
+        self.measured.obstacle
     }
 
     /// What the devices have delivered, in the order of the roster; begins anew.

@@ -29,13 +29,13 @@ mod starting;
 mod watch;
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
-use nima_core::{calibration::frames::FrameSample, frames::WristSample, kinematics::Hand};
+use nima_core::{calibration::frames::FrameSample, frames::WristSample, kinematics::Hand, safety::RawReadings};
 use nima_devices::{ClearFaults, Health, Lever, SlotView, Standing};
 
 use crate::messages::{Bulletin, Command};
 
 pub use acts::{Act, Acts};
-pub use arm_pair::ArmPair;
+pub use arm_pair::{ArmPair, Delivering, Measured};
 pub use devices::{DeviceRig, RigError};
 pub use flaws::Flaws;
 pub use gauge::{AGES, CHANNELS, Gauge, Gauges, Spread};
@@ -156,6 +156,8 @@ pub struct Inputs {
     pub age_s: f64,
     /// Since something last came over the network that joins the two halves of the rig, s; zero for a rig in one place.
     pub silent_s: f64,
+    /// The readings of the devices that all of it was made of.
+    pub raw: RawReadings,
 }
 
 impl Inputs {
@@ -181,6 +183,7 @@ impl Inputs {
         obstacle: None,
         age_s: 0.0,
         silent_s: 0.0,
+        raw: RawReadings::NONE,
     };
 
     /// Whether every number in it is finite.
@@ -199,6 +202,7 @@ impl Inputs {
             && self.view.is_finite()
             && self.age_s.is_finite()
             && self.silent_s.is_finite()
+            && self.raw.is_finite()
     }
 }
 

@@ -165,7 +165,7 @@ impl<L: Link> Pair<L> {
             link,
             far: Far::none(),
             tracking: Tracking::new(rig.rate_hz),
-            plausibility: Plausibility::new(1.0 / rig.rate_hz),
+            plausibility: Plausibility::default(),
             chain: Chain::new(rig.gates, 1.0 / rig.rate_hz),
             hand_is_gone: false,
             gripper_chain: GripperChain::new(rig.gates.without_governor(), 1.0 / rig.rate_hz),

@@ -6,6 +6,7 @@ use nima_core::{
     frames::{Wrench, WristSample},
     impedance::{ModeSet, PACKED_MAX, Packed, SLOTS},
     kinematics::{Hand, StartError},
+    safety::{ARM_CHANNELS, CHANNELS, HANDLE_CHANNELS, Raw, RawReadings},
 };
 use nima_machine::{
     messages::{FarStop, ForceSource},
@@ -31,7 +32,17 @@ record!(Inputs {
     obstacle: Option<Obstacle>,
     age_s: f64,
     silent_s: f64,
+    raw: RawReadings,
 });
+
+record!(RawReadings {
+    handle: Option<Raw<HANDLE_CHANNELS>>,
+    arm: Option<Raw<ARM_CHANNELS>>,
+    sensor: Option<Raw<CHANNELS>>,
+});
+record!(Raw<HANDLE_CHANNELS> { channels: [f64; HANDLE_CHANNELS], device_s: Option<f64>, arrival_s: f64 });
+record!(Raw<ARM_CHANNELS> { channels: [f64; ARM_CHANNELS], device_s: Option<f64>, arrival_s: f64 });
+record!(Raw<CHANNELS> { channels: [f64; CHANNELS], device_s: Option<f64>, arrival_s: f64 });
 
 record!(Hand { position_m: Vector3<f64>, orientation: Option<UnitQuaternion<f64>> });
 record!(Switches { clutch: bool, presence: Option<bool> });

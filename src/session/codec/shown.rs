@@ -219,6 +219,10 @@ choice!(Implausible {
     5 => HandleFrozen {},
     6 => TipJumped {},
     7 => ArmAstray {},
+    8 => ForceSaturated {},
+    9 => ForceRepeats {},
+    10 => HandleRepeats {},
+    11 => ArmRepeats {},
 });
 
 choice!(Event {

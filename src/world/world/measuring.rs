@@ -1,8 +1,12 @@
 //! What a rig would measure in the world: force on the tip, wrist, handle and gripper.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::{calibration::frames::FrameSample, kinematics};
-use nima_machine::rig::{Inputs, Sensed};
+use nima_core::{
+    calibration::frames::FrameSample,
+    kinematics,
+    safety::{Raw, RawReadings},
+};
+use nima_machine::rig::{Identified, Inputs, Sensed};
 
 use super::{Touch, World};
 use crate::{
@@ -57,6 +61,23 @@ impl World {
         Sensed::AtTip(tip_n + noise_n)
     }
 
+    /// What the devices would read. This world's arm has no joints.
+    fn raw(&self, leader_m: &Vector3<f64>, sensed: &Sensed) -> RawReadings {
+        let parts = match sensed {
+            Sensed::AtTip(force_n) | Sensed::FarEnd(Identified { force_n, .. }) => [Some((*force_n).into()), None, None],
+            Sensed::AtWrist(sample) => [
+                Some(sample.raw.force_n.into()),
+                Some(sample.raw.torque_nm.into()),
+                sample.acceleration_m_s2.map(Into::into),
+            ],
+        };
+        RawReadings {
+            handle: Some(Raw { channels: (*leader_m).into(), device_s: None, arrival_s: self.time_s }),
+            arm: None,
+            sensor: Some(Raw::of_sensor(parts, None, self.time_s)),
+        }
+    }
+
     /// What a rig would measure now; once per step.
     pub(crate) fn measure(&mut self) -> Inputs {
         let sensed = self.sense();
@@ -67,6 +88,7 @@ impl World {
             .leader
             .map_or(hand_m, |Leader { resolution_m, .. }| hand_m.map(|x| (x / resolution_m).round() * resolution_m));
         Inputs {
+            raw: self.raw(&leader_m, &sensed),
             hand: kinematics::Hand::at(leader_m),
             gripper_rad: self.jaws.then(|| self.hand.grip_rad()),
             grip_n: self.jaws.then_some(self.loads.opening_n),

@@ -201,6 +201,14 @@ impl Remedy for Implausible {
                 "The force sensor repeats one reading, or is at the end of its range",
                 "Der Kraftsensor wiederholt einen Messwert oder ist am Ende seines Messbereichs",
             ),
+            Self::ForceSaturated => word(
+                "The readings of the force sensor are cut off at the end of its range",
+                "Die Messwerte des Kraftsensors sind am Ende seines Messbereichs abgeschnitten",
+            ),
+            Self::ForceRepeats => word(
+                "The force sensor repeats the same block of readings",
+                "Der Kraftsensor wiederholt dieselbe Folge von Messwerten",
+            ),
             Self::ForceJumped => word(
                 "The measured force jumped by more than any contact can cause",
                 "Die gemessene Kraft sprang stärker, als ein Kontakt bewirken kann",
@@ -221,6 +229,14 @@ impl Remedy for Implausible {
                 "The handle's position does not change although its force does",
                 "Die Position des Handgeräts ändert sich nicht, seine Kraft aber doch",
             ),
+            Self::HandleRepeats => word(
+                "The handle repeats the same block of positions",
+                "Das Handgerät wiederholt dieselbe Folge von Positionen",
+            ),
+            Self::ArmRepeats => word(
+                "The arm repeats the same block of joint readings",
+                "Der Arm wiederholt dieselbe Folge von Gelenkwerten",
+            ),
             Self::TipJumped => word(
                 "The arm's position jumped by more than the arm can move",
                 "Die Position des Arms sprang weiter, als der Arm sich bewegen kann",
@@ -231,7 +247,7 @@ impl Remedy for Implausible {
 
     fn cure(self) -> &'static str {
         match self {
-            Self::ForceFrozen => word(
+            Self::ForceFrozen | Self::ForceSaturated | Self::ForceRepeats => word(
                 "Unload the force sensor, or switch it off and on again; then release the stop and engage again",
                 "Kraftsensor entlasten oder aus- und einschalten; dann Halt lösen und neu koppeln",
             ),
@@ -249,12 +265,12 @@ impl Remedy for Implausible {
                 "Check the follower's computer and the link, then release the stop and engage again",
                 "Rechner des Folgearms und Verbindung prüfen, dann Halt lösen und neu koppeln",
             ),
-            Self::HandleJumped | Self::HandleFrozen => word(
+            Self::HandleJumped | Self::HandleFrozen | Self::HandleRepeats => word(
                 "Put the handle in its rest position and calibrate it (button on the device), then release the stop \
                  and engage again",
                 "Handgerät in Ruhestellung bringen und kalibrieren (Taste am Gerät), dann Halt lösen und neu koppeln",
             ),
-            Self::TipJumped => word(
+            Self::TipJumped | Self::ArmRepeats => word(
                 "Check the arm's connection and its joint readings, then release the stop and engage again",
                 "Anschluss und Gelenkwerte des Arms prüfen, dann Halt lösen und neu koppeln",
             ),

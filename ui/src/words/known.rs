@@ -104,15 +104,19 @@ const fn losses() -> [Loss; 5] {
     [Loss::Disconnected, Loss::Silent, Loss::Corrupt, Loss::Implausible, Loss::Device { code: 0 }]
 }
 
-const fn implausible() -> [Implausible; 8] {
+const fn implausible() -> [Implausible; 12] {
     [
         Implausible::ForceFrozen,
+        Implausible::ForceSaturated,
+        Implausible::ForceRepeats,
         Implausible::ForceJumped,
         Implausible::ForceAlong,
         Implausible::LinkFrozen,
         Implausible::HandleJumped,
         Implausible::HandleFrozen,
+        Implausible::HandleRepeats,
         Implausible::TipJumped,
+        Implausible::ArmRepeats,
         Implausible::ArmAstray,
     ]
 }

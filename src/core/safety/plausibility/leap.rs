@@ -28,9 +28,10 @@ impl<const D: usize> Default for Leap<D> {
 
 impl<const D: usize> Leap<D> {
     /// Gives the vector, or the last believed one in its place when it lies farther than `most` from it; and whether this is no spike
-    /// but a jump, or one spike too many. What has jumped is believed from then on.
-    pub fn admit(&mut self, now: &SVector<f64, D>, most: f64) -> (SVector<f64, D>, bool) {
-        self.admit_unless(now, most, |_, _, _| Fall::No)
+    /// but a jump, or one spike too many. What has jumped is believed from then on. Where it is made of the same reading as before
+    /// (not `is_new`), what lies too far is bridged, but is no further spike.
+    pub fn admit(&mut self, now: &SVector<f64, D>, most: f64, is_new: bool) -> (SVector<f64, D>, bool) {
+        self.admit_unless(now, most, is_new, |_, _, _| Fall::No)
     }
 
     /// The same with an excuse: what `falls` (from the believed vector, the new one, and whether that is far) is bridged until its end, which is
@@ -39,10 +40,14 @@ impl<const D: usize> Leap<D> {
         &mut self,
         now: &SVector<f64, D>,
         most: f64,
+        is_new: bool,
         falls: impl FnOnce(&SVector<f64, D>, &SVector<f64, D>, bool) -> Fall,
     ) -> (SVector<f64, D>, bool) {
         let last = self.last.unwrap_or(*now);
         let far = (now - last).norm() > most;
+        if !is_new {
+            return self.between(now, &last, far);
+        }
         let fall = falls(&last, now, far);
         self.level = match (far, fall) {
             (false, _) => (self.level - 1.0 / CALM).max(0.0),
@@ -58,6 +63,14 @@ impl<const D: usize> Leap<D> {
         self.moved = now - last;
         (self.last, self.in_a_row) = (Some(*now), 0);
         (*now, (far && fall != Fall::Over) || frequent)
+    }
+
+    /// Between two readings the vector changes only by what else it is made of.
+    fn between(&mut self, now: &SVector<f64, D>, last: &SVector<f64, D>, far: bool) -> (SVector<f64, D>, bool) {
+        let believed = if far || self.in_a_row > 0 { last } else { now };
+        self.moved = believed - last;
+        self.last = Some(*believed);
+        (*believed, self.level >= FREQUENT)
     }
 
     /// How far the believed vector went in the last step.

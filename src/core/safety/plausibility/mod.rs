@@ -1,23 +1,34 @@
 //! Plausibility: numbers that are finite and in time and still cannot be true.
 //!
-//! In: one exchange's measurements ([`Observed`]: m, N, workspace frame; time in s). Out: the same with single leaps taken out
-//! ([`Admitted`]), and what cannot be true ([`Implausible`]). Each look takes constant time and allocates nothing. What a limit is taken
-//! from stands beside it; all were tried against ten minutes of the ordinary scenes (`nima study faults`). Numbers that are
-//! not finite must be kept away before.
+//! In: one exchange's measurements ([`Observed`]: m, N, workspace frame; time in s) and the readings that they were made of
+//! ([`RawReadings`]: the devices' own frames, units and times). Out: the same with single leaps taken out ([`Admitted`]), and what cannot be
+//! true ([`Implausible`]). A reading that is looked at again is no new one: a device may be slower than the loop. Each look takes constant time
+//! and allocates nothing. What a limit is taken from stands beside it; all were tried against the ordinary scenes (`nima study faults`).
+//! Numbers that are not finite must be kept away before.
 //!
 //! What no look can tell: a bias that creeps, a gain that is wrong from the start, axes that are exchanged before a first
 //! contact. `docs/faults.md` says how large those errors become.
 
-mod frozen;
+mod channel;
+mod device;
 mod leap;
 mod opposed;
+mod raw;
 mod release;
+mod repeats;
+mod stuck;
 
 use nalgebra::{SVector, UnitQuaternion, Vector3};
 
-pub use frozen::{CHANNELS, Frozen};
+use self::{
+    channel::{Around, Wrong},
+    device::Device,
+    stuck::{HandleStuck, Stuck},
+};
+
 pub use leap::Leap;
 pub use opposed::Opposed;
+pub use raw::{ARM_CHANNELS, CHANNELS, HANDLE_CHANNELS, Raw, RawReadings};
 pub use release::{Fall, Release};
 
 /// A handle moves no faster than this, m/s: the fastest arm movements of people reach 2 to 3 m/s in throwing, not in operating.
@@ -32,30 +43,34 @@ const FORCE_SLACK_N: f64 = 0.5;
 const STIFFEST_N_M: f64 = 5e3;
 /// After a start or a gap the filters behind a force settle for so long: it may leap, s.
 const SETTLE_S: f64 = 0.05;
-/// A wrist turns by no more than this in a tick (length of the way of its axes): 50 rad/s at 1 kHz.
-const TURN_MAX: f64 = 0.1;
-/// The tip's way in one tick is the largest of so many ticks: arm and force sensor tick by their own clocks.
-const WAY_TICKS: usize = 4;
-/// A handle that stands to the last bit while its force changes by this much is stuck, N: a gripping hand of 900 N/m gives way by 0.8 mm.
-const STUCK_FORCE_N: f64 = 0.7;
-/// Or that stands so for [`UNMOVED_S`] under this force, N: a hand that grips trembles, one that is gone gives way.
-const UNMOVED_FORCE_N: f64 = 0.5;
-const UNMOVED_S: f64 = 0.1;
-/// That holds for a handle which has not stood for [`RESTFUL_S`] in this time, s: one that is led by a machine may stand.
-const TREMBLED_S: f64 = 10.0;
-const RESTFUL_S: f64 = 0.05;
+/// An arm's joints turn no faster than this together, rad/s: three times the fastest of a Gen3. So does its wrist (way of its axes).
+const TURN_MAX_RAD_S: f64 = 5.0;
+/// Where angles may differ for other reasons than motion, rad.
+const TURN_SLACK_RAD: f64 = 0.1;
+/// The tip's way between two readings of the arm is the largest of so many: arm and force sensor tick by their own clocks.
+const WAY_READINGS: usize = 4;
+/// A torque of the sensor divided by this is compared with forces, m: a force at the tip has the lever of the shaft.
+const LEVER_M: f64 = 0.5;
 /// A tip that stands to the last bit while its command goes this far does not follow, m.
 const STUCK_COMMAND_M: f64 = 0.5e-3;
-/// Shortest time to call something stuck, s.
-const STUCK_S: f64 = 0.015;
+/// A longer gap between two looks tells nothing of how far anything may have gone, s.
+const GAP_S: f64 = 0.015;
 /// A tip so far from its command has lost it, m: an arm of 60 ms lag at the fastest command.
 const ASTRAY_M: f64 = 0.02;
+/// Readings in a row that change as those of a block before: a force sensor's numbers are fine, and none of six comes twice. Whole counts of an
+/// encoder come and go, thirty times by chance once in 2^30.
+const SENSOR_BLOCK: u32 = 6;
+const ENCODER_BLOCK: u32 = 30;
 
 /// What cannot be true.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Implausible {
     /// A reading of the force sensor, or of the accelerometer in it, repeats itself to the last bit.
     ForceFrozen,
+    /// A number of the force sensor is cut off at the end of its range.
+    ForceSaturated,
+    /// The force sensor tells a block of readings that it has told before.
+    ForceRepeats,
     /// The force jumped farther than any contact can make it, and not to nothing as a contact that ends.
     ForceJumped,
     /// The force pushes along the motion into a contact.
@@ -66,8 +81,12 @@ pub enum Implausible {
     HandleJumped,
     /// The handle stands still to the last bit while its force changes.
     HandleFrozen,
-    /// The arm's tip jumped farther than the arm can move it.
+    /// The handle tells a block of readings that it has told before.
+    HandleRepeats,
+    /// The arm's tip or joints jumped farther than the arm can move them.
     TipJumped,
+    /// The arm tells a block of readings that it has told before.
+    ArmRepeats,
     /// The arm does not go where it is commanded.
     ArmAstray,
 }
@@ -77,10 +96,8 @@ pub enum Implausible {
 pub struct Observed {
     /// Loop time, s.
     pub t_s: f64,
-    /// Age of the oldest part of it, s.
-    pub age_s: f64,
-    /// The force sensor's numbers as they were read (force, torque, acceleration); NaN where there is none.
-    pub sensed: [f64; CHANNELS],
+    /// The readings of the devices that all of it was made of.
+    pub raw: RawReadings,
     /// Force at the tip made of them, N.
     pub force_n: Vector3<f64>,
     /// A force below this is none, N: what is made of a wrist sensor's reading errs by more than one at the tip does.
@@ -114,159 +131,184 @@ pub struct Admitted {
     pub hand_m: Vector3<f64>,
 }
 
-/// Something that stands to the last bit while something else moves.
-#[derive(Clone, Copy, Debug, Default)]
-struct Stuck {
-    at: Option<(Vector3<f64>, Vector3<f64>, f64)>,
-}
-
-impl Stuck {
-    /// `still` has not changed for [`STUCK_S`] while `moving` went farther than `most` from where it was then.
-    fn look(&mut self, still: &Vector3<f64>, moving: &Vector3<f64>, most: f64, t_s: f64) -> bool {
-        match self.at {
-            Some((was, from, since_s)) if was == *still => t_s - since_s > STUCK_S && (moving - from).norm() > most,
-            _ => {
-                self.at = Some((*still, *moving, t_s));
-                false
-            }
-        }
-    }
-}
-
 /// The looks and their memory.
 #[derive(Clone, Debug)]
 pub struct Plausibility {
-    period_s: f64,
-    frozen: Frozen<CHANNELS>,
-    link_frozen: Frozen<3>,
+    sensor: Device<CHANNELS>,
+    handle: Device<HANDLE_CHANNELS>,
+    arm: Device<ARM_CHANNELS>,
+    link: Device<3>,
+    moves: Moves,
+    handle_stuck: HandleStuck,
+    /// Way of the tip so far, m.
+    way_m: f64,
+    last_t_s: f64,
+    doubt: Option<Implausible>,
+}
+
+/// The memory of what moves between two looks; nothing is known of it after a gap.
+#[derive(Clone, Debug, Default)]
+struct Moves {
     force: Leap,
     release: Release,
+    load: Leap<6>,
     tip: Leap,
     hand: Leap,
+    joints: Leap<ARM_CHANNELS>,
     turn: Leap<6>,
     opposed: Opposed,
-    handle_stuck: Stuck,
     tip_stuck: Stuck,
-    hand_before_m: Option<Vector3<f64>>,
-    unmoved_since_s: f64,
-    /// Since when the handle has not stood for [`RESTFUL_S`], s.
-    trembles_since_s: f64,
-    ways_m: [f64; WAY_TICKS],
+    ways_m: [f64; WAY_READINGS],
+    /// Way of the tip since the newest reading of the force sensor, m.
+    unfelt_m: f64,
     /// How long tip and handle had been silent at the last look, s.
     silent_s: [f64; 2],
-    last_t_s: f64,
-    /// When this watch began, s; not known before the first look.
+    /// When this began, s; not known before the first look.
     began_s: Option<f64>,
-    doubt: Option<Implausible>,
-    link_doubt: bool,
+}
+
+impl Default for Plausibility {
+    fn default() -> Self {
+        Self {
+            sensor: Device::new(SENSOR_BLOCK),
+            handle: Device::new(ENCODER_BLOCK),
+            arm: Device::new(ENCODER_BLOCK),
+            link: Device::new(SENSOR_BLOCK),
+            moves: Moves::default(),
+            handle_stuck: HandleStuck::default(),
+            way_m: 0.0,
+            last_t_s: f64::NEG_INFINITY,
+            doubt: None,
+        }
+    }
 }
 
 impl Plausibility {
-    /// Nothing seen yet, for a loop of this period (s).
-    pub fn new(period_s: f64) -> Self {
-        Self {
-            period_s,
-            frozen: Frozen::default(),
-            link_frozen: Frozen::default(),
-            force: Leap::default(),
-            release: Release::default(),
-            tip: Leap::default(),
-            hand: Leap::default(),
-            turn: Leap::default(),
-            opposed: Opposed::new(period_s),
-            handle_stuck: Stuck::default(),
-            tip_stuck: Stuck::default(),
-            hand_before_m: None,
-            unmoved_since_s: f64::INFINITY,
-            trembles_since_s: f64::INFINITY,
-            ways_m: [0.0; WAY_TICKS],
-            silent_s: [0.0; 2],
-            last_t_s: f64::NEG_INFINITY,
-            began_s: None,
-            doubt: None,
-            link_doubt: false,
-        }
-    }
-
     /// What cannot be true of the newest look, if anything.
     pub fn doubt(&self) -> Option<Implausible> {
-        self.doubt.or_else(|| self.link_doubt.then_some(Implausible::LinkFrozen))
+        self.doubt.or_else(|| self.link.wrong().map(|_| Implausible::LinkFrozen))
     }
 
     /// A new engagement: what was commanded and felt before it counts no more.
     pub fn engage(&mut self) {
-        self.opposed = Opposed::new(self.period_s);
-        (self.handle_stuck, self.tip_stuck) = (Stuck::default(), Stuck::default());
+        self.moves.opposed = Opposed::default();
+        self.moves.tip_stuck = Stuck::default();
+        self.handle_stuck.engage();
     }
 
     /// The force is known from now on, or computed in another way: what it was before says nothing about a jump.
     pub fn force_is_new(&mut self) {
-        (self.force, self.release) = (Leap::default(), Release::default());
-        self.began_s = None;
+        let moves = &mut self.moves;
+        (moves.force, moves.release, moves.load) = (Leap::default(), Release::default(), Leap::default());
+        moves.began_s = None;
     }
 
     /// Takes one exchange in and gives what may be used of it.
     pub fn step(&mut self, seen: &Observed) -> Admitted {
-        let dt_s = seen.t_s - self.last_t_s;
-        // After a gap, or a clock that was set, nothing is known of how far anything may have gone.
-        if !(dt_s > 0.0 && dt_s <= STUCK_S) {
-            *self = Self::new(self.period_s);
-        }
-        self.last_t_s = seen.t_s;
-        let dt_s = if dt_s.is_finite() { dt_s.max(self.period_s) } else { self.period_s };
-        let [tip_s, hand_s] = self.silent_s.map(|silent_s| dt_s + silent_s);
-        self.silent_s = [seen.tip_silent_s, seen.hand_silent_s];
-        let (tip_m, tip_jumped) = self.tip.admit(&seen.tip_m, POSITION_SLACK_M + TIP_MAX_M_S * tip_s);
-        let (hand_m, hand_jumped) = self.hand.admit(&seen.hand_m, POSITION_SLACK_M + HAND_MAX_M_S * hand_s);
-        let way_m = self.tip.moved().norm();
-        self.ways_m.rotate_right(1);
-        self.ways_m[0] = way_m;
-        let widest_m = self.ways_m.iter().copied().fold(0.0, f64::max);
-        let settles = seen.t_s - *self.began_s.get_or_insert(seen.t_s) < SETTLE_S;
-        let most_n = if settles { f64::INFINITY } else { FORCE_SLACK_N + STIFFEST_N_M * widest_m };
-        let release = &mut self.release;
-        let falls = |believed_n: &Vector3<f64>, now_n: &Vector3<f64>, far| release.look(believed_n, now_n, far);
-        let (force_n, force_jumped) = self.force.admit_unless(&seen.force_n, most_n, falls);
-        // A sensor that sends nothing is late, not frozen: its last reading grows old, and other watches tell so.
-        let frozen = self.frozen.look(&seen.sensed, seen.t_s - seen.age_s);
-        let along = self.opposed.look(&force_n, seen.least_n, self.tip.moved(), seen.command_m.is_some());
-        let turned = seen.world_from_s1.is_some_and(|turn| self.turn.admit(&axes(&turn), TURN_MAX).1);
+        let dt_s = self.pass(seen.t_s);
+        let (tip_m, tip_jumped) = self.admit_tip(seen, dt_s);
+        let (hand_m, hand_jumped) = self.admit_hand(seen, dt_s);
+        let (force_n, force_jumped) = self.admit_force(seen);
+        self.moves.silent_s = [seen.tip_silent_s, seen.hand_silent_s];
+        let went_m = *self.moves.tip.moved();
+        let along = self.moves.opposed.look(dt_s, &force_n, seen.least_n, &went_m, seen.command_m.is_some());
+        let of_sensor = |wrong: Wrong| match wrong {
+            Wrong::Frozen => Implausible::ForceFrozen,
+            Wrong::Saturated => Implausible::ForceSaturated,
+            Wrong::Repeats => Implausible::ForceRepeats,
+        };
         let doubts = [
-            (force_jumped, Implausible::ForceJumped),
-            (frozen, Implausible::ForceFrozen),
-            (along, Implausible::ForceAlong),
-            (hand_jumped, Implausible::HandleJumped),
-            (tip_jumped || turned, Implausible::TipJumped),
-            (self.handle_is_stuck(seen), Implausible::HandleFrozen),
-            (self.arm_is_astray(seen), Implausible::ArmAstray),
+            force_jumped.then_some(Implausible::ForceJumped),
+            seen.raw.sensor.and(self.sensor.wrong()).map(of_sensor),
+            along.then_some(Implausible::ForceAlong),
+            hand_jumped.then_some(Implausible::HandleJumped),
+            seen.raw.handle.and(self.handle.wrong()).map(|_| Implausible::HandleRepeats),
+            tip_jumped.then_some(Implausible::TipJumped),
+            seen.raw.arm.and(self.arm.wrong()).map(|_| Implausible::ArmRepeats),
+            self.handle_stuck.is_stuck().then_some(Implausible::HandleFrozen),
+            self.arm_is_astray(seen).then_some(Implausible::ArmAstray),
         ];
-        self.doubt = doubts.into_iter().find_map(|(is, what)| is.then_some(what));
+        self.doubt = doubts.into_iter().flatten().next();
         Admitted { force_n, tip_m, hand_m }
     }
 
-    fn handle_is_stuck(&mut self, seen: &Observed) -> bool {
-        let stuck = self.handle_stuck.look(&seen.hand_m, &seen.hand_force_n, STUCK_FORCE_N, seen.t_s);
-        let pressed = !seen.guided && seen.hand_force_n.norm() >= UNMOVED_FORCE_N;
-        if self.hand_before_m != Some(seen.hand_m) {
-            self.unmoved_since_s = seen.t_s;
+    /// Time passes until this look, s.
+    fn pass(&mut self, t_s: f64) -> f64 {
+        let dt_s = t_s - self.last_t_s;
+        self.last_t_s = t_s;
+        if dt_s > 0.0 && dt_s <= GAP_S {
+            return dt_s;
         }
-        self.hand_before_m = Some(seen.hand_m);
-        self.trembles_since_s = self.trembles_since_s.min(seen.t_s);
-        let stood_s = seen.t_s - self.unmoved_since_s;
-        let trembled = self.unmoved_since_s - self.trembles_since_s >= TREMBLED_S;
-        if stood_s > RESTFUL_S && !(trembled && pressed) {
-            self.trembles_since_s = seen.t_s;
+        // After a gap, or a clock that was set, nothing is known of how far anything may have gone. What a device's numbers are like is.
+        (self.moves, self.handle_stuck) = (Moves::default(), HandleStuck::default());
+        0.0
+    }
+
+    fn admit_tip(&mut self, seen: &Observed, dt_s: f64) -> (Vector3<f64>, bool) {
+        let moves = &mut self.moves;
+        let moved_s = news(&mut self.arm, seen.raw.arm.as_ref(), dt_s + moves.silent_s[0]);
+        let most_m = POSITION_SLACK_M + TIP_MAX_M_S * moved_s.unwrap_or(dt_s);
+        let (tip_m, jumped) = moves.tip.admit(&seen.tip_m, most_m, moved_s.is_some());
+        let way_m = moves.tip.moved().norm();
+        self.way_m += way_m;
+        moves.unfelt_m += way_m;
+        let Some(moved_s) = moved_s else { return (tip_m, jumped) };
+        moves.ways_m.rotate_right(1);
+        moves.ways_m[0] = way_m;
+        if moved_s > 0.0 {
+            let t_s = seen.raw.arm.map_or(seen.t_s, |arm| arm.arrival_s);
+            moves.tip_stuck.look(&seen.tip_m, &seen.command_m.unwrap_or(seen.tip_m), STUCK_COMMAND_M, t_s);
         }
-        (stuck && !seen.guided) || (trembled && pressed && stood_s > UNMOVED_S)
+        let most_rad = TURN_SLACK_RAD + TURN_MAX_RAD_S * moved_s;
+        let turned = seen.world_from_s1.is_some_and(|turn| moves.turn.admit(&axes(&turn), most_rad, true).1);
+        let joints = seen.raw.arm.map(|arm| SVector::from(arm.channels));
+        let leapt = joints.is_some_and(|joints| moves.joints.admit(&joints, most_rad, true).1);
+        (tip_m, jumped || turned || leapt)
+    }
+
+    fn admit_hand(&mut self, seen: &Observed, dt_s: f64) -> (Vector3<f64>, bool) {
+        let moved_s = news(&mut self.handle, seen.raw.handle.as_ref(), dt_s + self.moves.silent_s[1]);
+        if moved_s.is_some() {
+            let t_s = seen.raw.handle.map_or(seen.t_s, |handle| handle.arrival_s);
+            self.handle_stuck.look(&seen.hand_m, &seen.hand_force_n, seen.guided, t_s);
+        }
+        let most_m = POSITION_SLACK_M + HAND_MAX_M_S * moved_s.unwrap_or(dt_s);
+        self.moves.hand.admit(&seen.hand_m, most_m, moved_s.is_some())
+    }
+
+    /// The force at the tip and what the sensor reads, which is more than that force at a wrist.
+    fn admit_force(&mut self, seen: &Observed) -> (Vector3<f64>, bool) {
+        let moves = &mut self.moves;
+        let settles = seen.t_s - *moves.began_s.get_or_insert(seen.t_s) < SETTLE_S;
+        let widest_m = moves.ways_m.iter().copied().fold(moves.unfelt_m, f64::max);
+        let most_n = if settles { f64::INFINITY } else { FORCE_SLACK_N + STIFFEST_N_M * widest_m };
+        let (way_m, is_at_tip) = (self.way_m, seen.world_from_s1.is_none());
+        let around = |place: usize| Around { way_m, is_load: place < LOADS, is_at_tip };
+        let raw = seen.raw.sensor.as_ref();
+        let step = raw.and_then(|raw| self.sensor.is_new(raw).map(|step| (raw, step)));
+        if let Some((raw, step)) = &step {
+            self.sensor.look_at_all(raw, step, around);
+        }
+        let is_new = raw.is_none() || step.is_some();
+        let (release, mut fall) = (&mut moves.release, Fall::No);
+        let (force_n, jumped) = moves.force.admit_unless(&seen.force_n, most_n, is_new, |believed_n, now_n, far| {
+            fall = release.look(believed_n, now_n, far);
+            fall
+        });
+        if is_new {
+            moves.unfelt_m = 0.0;
+        }
+        let load = step.map(|(raw, _)| load_of(&raw.channels));
+        let leapt = load.is_some_and(|load| moves.load.admit_unless(&load, most_n, true, |_, _, _| fall).1);
+        (force_n, jumped || leapt)
     }
 
     fn arm_is_astray(&mut self, seen: &Observed) -> bool {
         let Some(command_m) = seen.command_m else {
-            self.tip_stuck = Stuck::default();
+            self.moves.tip_stuck = Stuck::default();
             return false;
         };
-        let stuck = self.tip_stuck.look(&seen.tip_m, &command_m, STUCK_COMMAND_M, seen.t_s);
-        stuck || (command_m - seen.tip_m).norm() > ASTRAY_M
+        self.moves.tip_stuck.is_stuck() || (command_m - seen.tip_m).norm() > ASTRAY_M
     }
 
     /// Takes in the force that the link delivered, N, with its own time stamp, s.
@@ -274,8 +316,33 @@ impl Plausibility {
     /// No force at all is no number that repeats itself: before an instrument has moved, a network answers so for as long as it takes.
     pub fn delivered(&mut self, force_n: &Vector3<f64>, stamp_s: f64) {
         let told_n = if *force_n == Vector3::zeros() { Vector3::repeat(f64::NAN) } else { *force_n };
-        self.link_doubt = self.link_frozen.look(told_n.as_ref(), stamp_s);
+        let raw = Raw { channels: told_n.into(), device_s: None, arrival_s: stamp_s };
+        if let Some(step) = self.link.is_new(&raw) {
+            let around = Around { way_m: self.way_m, is_load: true, is_at_tip: true };
+            self.link.look_at_all(&raw, &step, |_| around);
+        }
     }
+}
+
+/// Numbers of a force sensor that are forces or torques; the others are accelerations.
+const LOADS: usize = 6;
+
+/// How long a device may have moved since its last reading, s; `None` if it tells nothing new. Of a device without readings of its own the look
+/// itself is one, `since_s` after the one before.
+fn news<const N: usize>(device: &mut Device<N>, raw: Option<&Raw<N>>, since_s: f64) -> Option<f64> {
+    let Some(raw) = raw else { return Some(since_s) };
+    let step = device.is_new(raw)?;
+    device.look_for_blocks(raw, &step);
+    Some(step.moved_s)
+}
+
+/// Force and torque of a reading as forces, N; 0 for what the sensor does not have.
+fn load_of(channels: &[f64; CHANNELS]) -> SVector<f64, LOADS> {
+    SVector::from_fn(|place, _| {
+        let number = channels[place];
+        let lever = if place < 3 { 1.0 } else { LEVER_M };
+        if number.is_nan() { 0.0 } else { number / lever }
+    })
 }
 
 /// Two axes of a frame, which tell it.
@@ -284,5 +351,7 @@ fn axes(turn: &UnitQuaternion<f64>) -> SVector<f64, 6> {
     SVector::from([x.x, x.y, x.z, z.x, z.y, z.z])
 }
 
+#[cfg(test)]
+mod raw_tests;
 #[cfg(test)]
 mod tests;

@@ -26,12 +26,8 @@ const MADE_M: f64 = 0.5e-3;
 const BEFORE_S: f64 = 0.1;
 
 /// The memory of one touch.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Opposed {
-    period_s: f64,
-    share: f64,
-    /// What remains of [`went_m`](Self::went_m) from one tick to the next.
-    remains: f64,
     /// How far the tip went lately, from where to where, m.
     went_m: Vector3<f64>,
     force_n: Vector3<f64>,
@@ -48,22 +44,14 @@ struct Touch {
 }
 
 impl Opposed {
-    /// Nothing touched, for a loop of this period (s).
-    pub fn new(period_s: f64) -> Self {
-        let share = -libm::expm1(-period_s / SMOOTHING_S);
-        let remains = libm::exp(-period_s / BEFORE_S);
-        let [went_m, force_n] = [Vector3::zeros(); 2];
-        Self { period_s, share, remains, went_m, force_n, free_s: 0.0, touch: None }
-    }
-
-    /// Takes the force (N) and the way of the tip since the last tick (m); `least_n`: a force below it is none; `led`: the tip is
-    /// commanded. Says whether a touch drives the tip into what it touches.
-    pub fn look(&mut self, force_n: &Vector3<f64>, least_n: f64, way_m: &Vector3<f64>, led: bool) -> bool {
-        self.force_n += (force_n - self.force_n) * self.share;
-        self.went_m = self.went_m * self.remains + way_m;
+    /// Takes the force (N) and the way of the tip (m) since the last look `dt_s` ago; `least_n`: a force below it is none; `led`: the tip
+    /// is commanded. Says whether a touch drives the tip into what it touches.
+    pub fn look(&mut self, dt_s: f64, force_n: &Vector3<f64>, least_n: f64, way_m: &Vector3<f64>, led: bool) -> bool {
+        self.force_n += (force_n - self.force_n) * -libm::expm1(-dt_s / SMOOTHING_S);
+        self.went_m = self.went_m * libm::exp(-dt_s / BEFORE_S) + way_m;
         let felt_n = self.force_n.norm();
         if felt_n < least_n || !led {
-            self.free_s = if led { self.free_s + self.period_s } else { 0.0 };
+            self.free_s = if led { self.free_s + dt_s } else { 0.0 };
             self.touch = None;
             return false;
         }
@@ -72,7 +60,7 @@ impl Opposed {
         }
         self.free_s = 0.0;
         let Some(touch) = &mut self.touch else { return false };
-        touch.seconds += self.period_s;
+        touch.seconds += dt_s;
         touch.way_m += way_m.norm();
         touch.work_j += self.force_n.dot(way_m);
         touch.most_j += felt_n * way_m.norm();

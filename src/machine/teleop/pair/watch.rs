@@ -4,7 +4,7 @@
 use nalgebra::Vector3;
 use nima_core::{
     impedance::Sample,
-    safety::{CHANNELS, Observed, Seen, Why},
+    safety::{Observed, Seen, Why},
 };
 
 use super::{AT_REST_M, LINK_SILENT_AFTER_S, Pair, STALLED_AFTER_S, Timing};
@@ -27,8 +27,7 @@ impl<L: Link> Pair<L> {
         }
         let admitted = self.plausibility.step(&Observed {
             t_s: now_s,
-            age_s: inputs.age_s,
-            sensed: numbers(&inputs.sensed),
+            raw: inputs.raw,
             force_n: self.force.tip_n,
             least_n: self.force.source.least_n(),
             world_from_s1: inputs.sensed.wrist().and_then(|sample| sample.world_from_s1),
@@ -159,22 +158,4 @@ impl<L: Link> Pair<L> {
         self.was_there = there;
         self.gaps >= TOO_MANY
     }
-}
-
-/// The raw numbers of a force sensor, for the plausibility check; NaN for channels that it does not have.
-fn numbers(sensed: &Sensed) -> [f64; CHANNELS] {
-    let mut all = [f64::NAN; CHANNELS];
-    match sensed {
-        Sensed::AtTip(force_n) => all[..3].copy_from_slice(force_n.as_slice()),
-        // Its sensor is judged at the other machine: here a silent line would look like a sensor that repeats itself.
-        Sensed::FarEnd(_) => {}
-        Sensed::AtWrist(sample) => {
-            all[..3].copy_from_slice(sample.raw.force_n.as_slice());
-            all[3..6].copy_from_slice(sample.raw.torque_nm.as_slice());
-            if let Some(acceleration_m_s2) = &sample.acceleration_m_s2 {
-                all[6..].copy_from_slice(acceleration_m_s2.as_slice());
-            }
-        }
-    }
-    all
 }

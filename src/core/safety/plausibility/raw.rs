@@ -1,0 +1,124 @@
+//! Readings of the devices as they came: each in its device's own frame and units, before any rotation or calibration.
+//!
+//! A rotation of the arm changes every number of a force in the workspace, also that of a sensor that has stopped measuring. So the
+//! plausibility check judges these, and only new ones, at the times of the device.
+
+/// Numbers of a haptic handle: position, m.
+pub const HANDLE_CHANNELS: usize = 3;
+/// Numbers of an arm: joint angles, rad.
+pub const ARM_CHANNELS: usize = 7;
+/// Numbers of a force sensor: force (N), torque (Nm), acceleration (m/s^2).
+pub const CHANNELS: usize = 9;
+
+/// One reading of a device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Raw<const N: usize> {
+    /// Its numbers; NaN where the device has none.
+    pub channels: [f64; N],
+    /// Time on the device's own clock, s; `None` if it sends no time.
+    pub device_s: Option<f64>,
+    /// When it arrived, s on the loop's clock. The same time twice is the same reading.
+    pub arrival_s: f64,
+}
+
+/// The newest readings of one side; `None` for a device that is at another machine or that does not exist.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RawReadings {
+    /// The haptic handle.
+    pub handle: Option<Raw<HANDLE_CHANNELS>>,
+    /// The arm.
+    pub arm: Option<Raw<ARM_CHANNELS>>,
+    /// The force sensor.
+    pub sensor: Option<Raw<CHANNELS>>,
+}
+
+impl RawReadings {
+    /// No device.
+    pub const NONE: Self = Self { handle: None, arm: None, sensor: None };
+
+    /// Whether every number that a device must have is finite; a force sensor may lack some.
+    pub fn is_finite(&self) -> bool {
+        self.handle.is_none_or(|raw| raw.is_finite())
+            && self.arm.is_none_or(|raw| raw.is_finite())
+            && self.sensor.is_none_or(|raw| raw.arrival_s.is_finite())
+    }
+}
+
+impl<const N: usize> Raw<N> {
+    fn is_finite(&self) -> bool {
+        self.arrival_s.is_finite() && self.channels.iter().all(|number| number.is_finite())
+    }
+}
+
+impl Raw<CHANNELS> {
+    /// A force sensor's reading from its parts: force (N), torque (Nm), acceleration (m/s^2).
+    pub fn of_sensor(parts: [Option<[f64; 3]>; 3], device_s: Option<f64>, arrival_s: f64) -> Self {
+        let mut channels = [f64::NAN; CHANNELS];
+        for (to, part) in channels.chunks_exact_mut(3).zip(parts) {
+            to.copy_from_slice(&part.unwrap_or([f64::NAN; 3]));
+        }
+        Self { channels, device_s, arrival_s }
+    }
+}
+
+/// Readings between which the usual interval is averaged.
+const AVERAGED: f64 = 16.0;
+/// A longer interval counts as so many usual ones: the loop was late, and the readings between were not seen.
+const LONGEST_INTERVALS: f64 = 2.0;
+/// A device's clock may be ahead of the arrivals by this, s: lines hold readings back for less.
+const HELD_BACK_S: f64 = 0.02;
+
+/// Time of a new reading.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step {
+    /// Sum of the intervals so far, s; none counts for more than [`LONGEST_INTERVALS`] usual ones.
+    pub(super) t_s: f64,
+    /// How long the device may have moved since the reading before, s.
+    pub(super) moved_s: f64,
+}
+
+/// Tells new readings from old ones.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pace {
+    last: Option<(f64, Option<f64>)>,
+    interval_s: f64,
+    t_s: f64,
+}
+
+/// Outcome of a look at a device.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum News {
+    /// The same reading as before, or none that has a time.
+    Old,
+    /// The first reading, or the first after the clock was set back.
+    First,
+    New(Step),
+}
+
+impl Pace {
+    pub(super) const NEW: Self = Self { last: None, interval_s: 0.0, t_s: 0.0 };
+
+    pub(super) fn look<const N: usize>(&mut self, raw: &Raw<N>) -> News {
+        let now = (raw.arrival_s, raw.device_s);
+        let Some((arrival_s, device_s)) = self.last else {
+            self.last = Some(now).filter(|_| raw.arrival_s.is_finite());
+            return self.last.map_or(News::Old, |_| News::First);
+        };
+        let arrived_s = raw.arrival_s - arrival_s;
+        if arrived_s.is_nan() || arrived_s == 0.0 {
+            return News::Old;
+        }
+        self.last = Some(now);
+        if arrived_s < 0.0 {
+            (self.interval_s, self.t_s) = (0.0, 0.0);
+            return News::First;
+        }
+        let told_s = raw.device_s.zip(device_s).map_or(0.0, |(now_s, before_s)| now_s - before_s);
+        let moved_s = arrived_s.max(told_s.min(arrived_s + HELD_BACK_S));
+        let usual_s = if self.interval_s > 0.0 { self.interval_s } else { arrived_s };
+        let counted_s = arrived_s.min(LONGEST_INTERVALS * usual_s);
+        self.interval_s = usual_s + (counted_s - usual_s) / AVERAGED;
+        self.t_s += counted_s;
+        News::New(Step { t_s: self.t_s, moved_s })
+    }
+}

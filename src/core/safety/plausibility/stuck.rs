@@ -1,0 +1,96 @@
+//! A handle or an arm that stands to the last bit while something else moves. Both may rest: a handle lies on the table in whole counts of its
+//! encoders, and an arm holds its angles. It is their cause that tells.
+
+use nalgebra::Vector3;
+
+/// A handle that stands to the last bit while its force changes by this much is stuck, N: a gripping hand of 900 N/m gives way by 0.8 mm.
+const STUCK_FORCE_N: f64 = 0.7;
+/// Or that stands so for [`UNMOVED_S`] under this force, N: a hand that grips trembles, one that is gone gives way.
+const UNMOVED_FORCE_N: f64 = 0.5;
+const UNMOVED_S: f64 = 0.1;
+/// That holds for a handle which has not stood for [`RESTFUL_S`] in this time, s: one that is led by a machine may stand.
+const TREMBLED_S: f64 = 10.0;
+const RESTFUL_S: f64 = 0.05;
+/// Shortest time to call something stuck, s, and fewest readings that repeat the first one.
+const STUCK_S: f64 = 0.015;
+const REPEATED: u32 = 2;
+
+/// Something that stands to the last bit while something else moves.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Stuck {
+    at: Option<Standing>,
+    is_stuck: bool,
+}
+
+/// Where it stands, where the other one was then, and since when.
+#[derive(Clone, Copy, Debug)]
+struct Standing {
+    still: Vector3<f64>,
+    moving: Vector3<f64>,
+    since_s: f64,
+    repeats: u32,
+}
+
+impl Stuck {
+    /// Takes a new reading: `still` is stuck when it has not changed for [`STUCK_S`] while `moving` went farther than `most`.
+    pub(super) fn look(&mut self, still: &Vector3<f64>, moving: &Vector3<f64>, most: f64, t_s: f64) {
+        let Some(at) = self.at.as_mut().filter(|at| at.still == *still) else {
+            let at = Standing { still: *still, moving: *moving, since_s: t_s, repeats: 0 };
+            (self.at, self.is_stuck) = (Some(at), false);
+            return;
+        };
+        at.repeats += 1;
+        let is_long = t_s - at.since_s > STUCK_S && at.repeats >= REPEATED;
+        self.is_stuck = is_long && (moving - at.moving).norm() > most;
+    }
+
+    pub(super) const fn is_stuck(&self) -> bool {
+        self.is_stuck
+    }
+}
+
+/// A handle that does not give way to its force.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HandleStuck {
+    by_change: Stuck,
+    before_m: Option<Vector3<f64>>,
+    unmoved_since_s: f64,
+    /// Since when the handle has not stood for [`RESTFUL_S`], s.
+    trembles_since_s: f64,
+    is_stuck: bool,
+}
+
+impl Default for HandleStuck {
+    fn default() -> Self {
+        let [unmoved_since_s, trembles_since_s] = [f64::INFINITY; 2];
+        Self { by_change: Stuck::default(), before_m: None, unmoved_since_s, trembles_since_s, is_stuck: false }
+    }
+}
+
+impl HandleStuck {
+    /// A new engagement: the force before it counts no more.
+    pub(super) fn engage(&mut self) {
+        self.by_change = Stuck::default();
+    }
+
+    /// Takes a new reading of the handle, m, and the force on it, N; a handle that is `guided` from the screen may stand under a force.
+    pub(super) fn look(&mut self, hand_m: &Vector3<f64>, force_n: &Vector3<f64>, guided: bool, t_s: f64) {
+        self.by_change.look(hand_m, force_n, STUCK_FORCE_N, t_s);
+        let pressed = !guided && force_n.norm() >= UNMOVED_FORCE_N;
+        if self.before_m != Some(*hand_m) {
+            self.unmoved_since_s = t_s;
+        }
+        self.before_m = Some(*hand_m);
+        self.trembles_since_s = self.trembles_since_s.min(t_s);
+        let stood_s = t_s - self.unmoved_since_s;
+        let trembled = self.unmoved_since_s - self.trembles_since_s >= TREMBLED_S;
+        if stood_s > RESTFUL_S && !(trembled && pressed) {
+            self.trembles_since_s = t_s;
+        }
+        self.is_stuck = (self.by_change.is_stuck() && !guided) || (trembled && pressed && stood_s > UNMOVED_S);
+    }
+
+    pub(super) const fn is_stuck(&self) -> bool {
+        self.is_stuck
+    }
+}

@@ -15,19 +15,19 @@ pub struct DeadBand {
     pub threshold_m_s: f64,
     /// Speed lately, m/s: it rises at once and falls slowly, so that a trembling hand does not switch its force twenty times a second.
     lately_m_s: f64,
-    falls: f64,
     /// The speed that counts, m/s.
     counted_m_s: f64,
 }
 
 impl DeadBand {
-    /// A closed gate with this threshold (m/s), for a loop of this period (s).
-    pub fn new(threshold_m_s: f64, period_s: f64) -> Self {
-        Self { threshold_m_s, lately_m_s: 0.0, falls: period_s / (FALL_S + period_s), counted_m_s: 0.0 }
+    /// A closed gate with this threshold (m/s).
+    pub const fn new(threshold_m_s: f64) -> Self {
+        Self { threshold_m_s, lately_m_s: 0.0, counted_m_s: 0.0 }
     }
 
-    /// Share of the force that passes at this speed (m/s), 0 to 1. A speed that is not a number closes the gate.
-    pub fn step(&mut self, speed_m_s: f64) -> f64 {
+    /// Fraction of the force that passes at this speed (m/s), `dt_s` (s) after the last call, 0 to 1. A speed that is not a number
+    /// closes the gate.
+    pub fn step(&mut self, speed_m_s: f64, dt_s: f64) -> f64 {
         if self.threshold_m_s <= 0.0 {
             return 1.0;
         }
@@ -35,7 +35,7 @@ impl DeadBand {
             (self.lately_m_s, self.counted_m_s) = (0.0, 0.0);
             return 0.0;
         }
-        let fallen_m_s = self.lately_m_s + (speed_m_s - self.lately_m_s) * self.falls;
+        let fallen_m_s = self.lately_m_s + (speed_m_s - self.lately_m_s) * (dt_s / (FALL_S + dt_s));
         self.lately_m_s = fallen_m_s.max(speed_m_s).clamp(0.0, FAST * self.threshold_m_s);
         let play_m_s = 0.5 * self.threshold_m_s;
         self.counted_m_s = self.counted_m_s.clamp(self.lately_m_s, self.lately_m_s + play_m_s);
@@ -52,7 +52,7 @@ mod tests {
 
     /// Share that passes once a hand has gone at this speed for half a second.
     fn settled(gate: &mut DeadBand, speed_m_s: f64) -> f64 {
-        (0..500).map(|_| gate.step(speed_m_s)).last().unwrap()
+        (0..500).map(|_| gate.step(speed_m_s, 1e-3)).last().unwrap()
     }
 
     proptest! {
@@ -60,21 +60,21 @@ mod tests {
         fn shut_below_half_open_above_double_whatever_came_before(
             before in prop::collection::vec(prop::num::f64::ANY, 0..50), slow in 0.0..0.49e-3f64, fast in 2e-3..10.0f64,
         ) {
-            let mut gate = DeadBand::new(1e-3, 1e-3);
+            let mut gate = DeadBand::new(1e-3);
             for speed_m_s in before {
-                let share = gate.step(speed_m_s);
+                let share = gate.step(speed_m_s, 1e-3);
                 prop_assert!((0.0..=1.0).contains(&share) && (speed_m_s.is_finite() || share == 0.0));
             }
             prop_assert!(settled(&mut gate, slow) == 0.0);
-            prop_assert!(gate.step(fast) >= 1.0, "it opens at once");
+            prop_assert!(gate.step(fast, 1e-3) >= 1.0, "it opens at once");
         }
     }
 
     #[test]
     fn passes_nothing_below_and_everything_well_above_the_threshold() {
-        let mut gate = DeadBand::new(1e-3, 1e-3);
+        let mut gate = DeadBand::new(1e-3);
         assert!(settled(&mut gate, 0.9e-3).abs() < f64::EPSILON);
-        assert!((gate.step(2e-3) - 1.0).abs() < f64::EPSILON);
+        assert!((gate.step(2e-3, 1e-3) - 1.0).abs() < f64::EPSILON);
         assert!(settled(&mut gate, 0.7e-3) > 0.0, "hysteresis keeps it open down to half the threshold");
         assert!(settled(&mut gate, 0.4e-3).abs() < f64::EPSILON);
         assert!(settled(&mut gate, 0.7e-3).abs() < f64::EPSILON, "and closed until the threshold is reached again");
@@ -82,21 +82,21 @@ mod tests {
 
     #[test]
     fn a_hand_that_turns_round_keeps_its_force_and_one_that_stops_loses_it() {
-        let mut gate = DeadBand::new(1e-3, 1e-3);
-        gate.step(5e-3);
-        assert!((0..25).all(|_| gate.step(0.0) > 0.9));
-        gate.step(1.0);
-        let ticks = (0..1000).position(|_| gate.step(0.0) <= 0.0).unwrap();
+        let mut gate = DeadBand::new(1e-3);
+        gate.step(5e-3, 1e-3);
+        assert!((0..25).all(|_| gate.step(0.0, 1e-3) > 0.9));
+        gate.step(1.0, 1e-3);
+        let ticks = (0..1000).position(|_| gate.step(0.0, 1e-3) <= 0.0).unwrap();
         assert!(ticks < 130, "{ticks} ms");
     }
 
     #[test]
     fn it_never_jumps() {
-        let mut gate = DeadBand::new(1e-3, 1e-3);
+        let mut gate = DeadBand::new(1e-3);
         let mut last = 0.0;
         for i in 0..20_000 {
             // Up and down through both edges, in steps of at most 0.3 um/s.
-            let share = gate.step(1.5e-3 * (1.0 - (f64::from(i) * 2e-4).cos()));
+            let share = gate.step(1.5e-3 * (1.0 - (f64::from(i) * 2e-4).cos()), 1e-3);
             assert!((share - last).abs() < 1e-3, "from {last} to {share}");
             last = share;
         }
@@ -104,8 +104,8 @@ mod tests {
 
     #[test]
     fn a_speed_that_is_no_number_closes_it() {
-        let mut gate = DeadBand::new(1e-3, 1e-3);
-        gate.step(1.0);
-        assert!(gate.step(f64::NAN).abs() < f64::EPSILON);
+        let mut gate = DeadBand::new(1e-3);
+        gate.step(1.0, 1e-3);
+        assert!(gate.step(f64::NAN, 1e-3).abs() < f64::EPSILON);
     }
 }

@@ -32,20 +32,19 @@ const JUMP_M_S: f64 = 5.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Energy<const D: usize> {
     mode: EnergyMode,
-    period_s: f64,
     stored_j: f64,
     hand_m: Option<SVector<f64, D>>,
     hand_m_s: SVector<f64, D>,
 }
 
 impl<const D: usize> Energy<D> {
-    /// A store with its allowance, for a loop of this period (s).
-    pub fn new(mode: EnergyMode, period_s: f64) -> Self {
-        Self { mode, period_s, stored_j: ALLOWANCE_J, hand_m: None, hand_m_s: SVector::zeros() }
+    /// A store with its allowance.
+    pub fn new(mode: EnergyMode) -> Self {
+        Self { mode, stored_j: ALLOWANCE_J, hand_m: None, hand_m_s: SVector::zeros() }
     }
 
-    /// Observes the period that has passed: the hand is here now (m), and this force (N) was held since the last call.
-    pub fn observe(&mut self, hand_m: Option<SVector<f64, D>>, held_n: &SVector<f64, D>) {
+    /// Observes the `dt_s` (s) that have passed: the hand is here now (m), and this force (N) was held since the last call.
+    pub fn observe(&mut self, hand_m: Option<SVector<f64, D>>, held_n: &SVector<f64, D>, dt_s: f64) {
         let hand_m = hand_m.filter(|at_m| at_m.iter().all(|x| x.is_finite()));
         let way_m = match (hand_m, self.hand_m) {
             (Some(now_m), Some(then_m)) => now_m - then_m,
@@ -53,10 +52,10 @@ impl<const D: usize> Energy<D> {
         };
         self.hand_m = hand_m;
         // Also false for the infinite difference of two finite places.
-        let way_m = if way_m.norm() <= JUMP_M_S * self.period_s { way_m } else { SVector::zeros() };
-        let smoothing = self.period_s / (SMOOTHING_S + self.period_s);
-        self.hand_m_s += (way_m / self.period_s - self.hand_m_s) * smoothing;
-        let leak = (self.period_s / LEAK_S).min(1.0);
+        let way_m = if way_m.norm() <= JUMP_M_S * dt_s { way_m } else { SVector::zeros() };
+        // The quotient of way and time, low-passed, in an order that needs no division by a time of zero.
+        self.hand_m_s += (way_m - self.hand_m_s * dt_s) / (SMOOTHING_S + dt_s);
+        let leak = (dt_s / LEAK_S).min(1.0);
         self.stored_j += (ALLOWANCE_J - self.stored_j) * leak - held_n.dot(&way_m);
         self.stored_j = self.stored_j.clamp(-MOST_J, MOST_J);
     }
@@ -96,10 +95,10 @@ mod tests {
     /// A handle of 0.25 kg pushed by `force(t, x, v)` (N) through the gate for `seconds`: energy the hand got, J, and the largest
     /// share taken while the hand itself pushed.
     fn pushed(mode: EnergyMode, seconds: f64, force: impl Fn(f64, f64, f64) -> f64) -> f64 {
-        let mut gate = Energy::<1>::new(mode, 1e-3);
+        let mut gate = Energy::<1>::new(mode);
         let (mut x, mut v, mut got_j, mut held_n) = (0.0, 0.0, 0.0, 0.0);
         for i in 0..(seconds * 1e3) as u32 {
-            gate.observe(Some([x].into()), &[held_n].into());
+            gate.observe(Some([x].into()), &[held_n].into(), 1e-3);
             held_n = gate.controlled([force(f64::from(i) * 1e-3, x, v)].into()).0.x;
             v += held_n / 0.25 * 1e-3;
             x += v * 1e-3;
@@ -119,12 +118,12 @@ mod tests {
 
     #[test]
     fn a_spring_that_gives_back_what_it_took_is_never_touched() {
-        let mut gate = Energy::<1>::new(EnergyMode::Control, 1e-3);
+        let mut gate = Energy::<1>::new(EnergyMode::Control);
         let mut held_n = 0.0;
         for i in 0..5000 {
             // 500 N/m pressed 8 mm deep once a second, without loss.
             let depth_m = 0.004 * (1.0 - (f64::from(i) * 1e-3 * std::f64::consts::TAU).cos());
-            gate.observe(Some([-depth_m].into()), &[held_n].into());
+            gate.observe(Some([-depth_m].into()), &[held_n].into(), 1e-3);
             let (force_n, reason) = gate.controlled([500.0 * depth_m].into());
             assert_eq!(reason, Reason::Open, "after {i} ms: {} J", gate.stored_j());
             held_n = force_n.x;
@@ -133,9 +132,9 @@ mod tests {
 
     #[test]
     fn resetting_again_and_again_gives_no_energy() {
-        let mut gate = Energy::<1>::new(EnergyMode::Control, 1e-3);
+        let mut gate = Energy::<1>::new(EnergyMode::Control);
         for i in 0..400 {
-            gate.observe(Some([f64::from(i) * 1e-4].into()), &[1.0].into());
+            gate.observe(Some([f64::from(i) * 1e-4].into()), &[1.0].into(), 1e-3);
         }
         let owed_j = gate.stored_j();
         gate.reset();
@@ -146,16 +145,16 @@ mod tests {
         #[test]
         fn it_only_ever_takes_and_its_store_is_bounded(
             ticks in prop::collection::vec(
-                (prop::array::uniform3(-20.0..20.0f64), prop::array::uniform3(prop_oneof![9 => -2e-3..2e-3f64, 1 => prop::num::f64::ANY])),
+                (prop::array::uniform3(-20.0..20.0f64), prop::array::uniform3(prop_oneof![9 => -2e-3..2e-3f64, 1 => prop::num::f64::ANY]), prop_oneof![3 => Just(0.0), 1 => -1e-3..20e-3f64]),
                 1..300,
             ),
         ) {
-            let mut gate = Energy::<3>::new(EnergyMode::Control, 1e-3);
+            let mut gate = Energy::<3>::new(EnergyMode::Control);
             let (mut at_m, mut held_n) = (Vector3::zeros(), Vector3::zeros());
-            for (force, way) in ticks {
+            for (force, way, late_s) in ticks {
                 let force = Vector3::from(force);
                 let now_m = at_m + Vector3::from(way);
-                gate.observe(Some(now_m), &held_n);
+                gate.observe(Some(now_m), &held_n, 1e-3 + late_s);
                 at_m = if now_m.iter().all(|x| x.abs() < 1.0) { now_m } else { Vector3::zeros() };
                 let (passed, reason) = gate.controlled(force);
                 prop_assert!(passed.iter().all(|f| f.is_finite()) && passed.norm() <= force.norm() * (1.0 + 1e-12));

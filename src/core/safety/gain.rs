@@ -45,9 +45,9 @@ impl Gain {
         self.chosen
     }
 
-    /// The gain in force after one more period (s), and why it is not the chosen one, or passes nothing.
-    pub fn step(&mut self, period_s: f64) -> (f64, Reason) {
-        let step = self.rate_per_s * period_s;
+    /// The active gain `dt_s` (s) after the last call, and why it is not the chosen one, or passes nothing.
+    pub fn step(&mut self, dt_s: f64) -> (f64, Reason) {
+        let step = self.rate_per_s * dt_s;
         self.now += (self.chosen - self.now).clamp(-step, step);
         let reason = if self.now <= 0.0 {
             Reason::GainZero

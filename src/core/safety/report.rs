@@ -97,10 +97,12 @@ pub enum Reason {
     AboveCeiling,
     /// The force is above what the device can give.
     AboveDeviceLimit,
-    /// The handle runs away along the force and nobody carries it: it is braked instead of pushed.
+    /// The handle moves along the force as a hand hardly moves it: the force fades, or returns after that.
     RunsAway,
-    /// The hand has let go: the handle rests, and there has been no sign of a hand since.
+    /// The handle rests after a release, and there has been no sign of a hand since.
     HandGone,
+    /// The hand has let go beyond doubt: no force but the brake's.
+    LetGo,
 }
 
 /// How often each gate acted since the chain was made, and why it last did.

@@ -119,7 +119,12 @@ impl ChainSettings {
 
     /// The handle that the governor observes.
     pub(super) const fn handle(&self) -> Handle {
-        Handle { mass_kg: self.handle_kg, damping_n_s_m: self.handle_n_s_m, brake_n_s_m: self.brake_n_s_m }
+        Handle {
+            mass_kg: self.handle_kg,
+            damping_n_s_m: self.handle_n_s_m,
+            brake_n_s_m: self.brake_n_s_m,
+            step_m: self.handle_step_m,
+        }
     }
 
     /// Every value within its range; one that is not a number takes its safe value.

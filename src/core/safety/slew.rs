@@ -11,30 +11,34 @@ use super::Reason;
 /// use nima_core::safety::{Reason, Slew};
 ///
 /// let slew = Slew::new(500.0, 1e-3);
-/// let (force_n, reason) = slew.limited(Vector3::new(3.0, 0.0, 0.0));
+/// let (force_n, reason) = slew.limited(Vector3::new(3.0, 0.0, 0.0), 1e-3);
 /// assert!((force_n.x - 0.5).abs() < 1e-12, "500 N/s are 0.5 N in a millisecond");
 /// assert_eq!(reason, Reason::ChangeTooFast);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Slew<const D: usize> {
-    most_n: f64,
+    n_per_s: f64,
+    period_s: f64,
     last_n: SVector<f64, D>,
 }
 
 impl<const D: usize> Slew<D> {
-    /// At most `n_per_s` (N/s) in a loop of this period (s), starting without force.
+    /// At most `n_per_s` (N/s) in a loop of this nominal period (s), starting without force.
     pub fn new(n_per_s: f64, period_s: f64) -> Self {
-        Self { most_n: n_per_s * period_s, last_n: SVector::zeros() }
+        Self { n_per_s, period_s, last_n: SVector::zeros() }
     }
 
-    /// The force nearest to `force_n` (N) that lies within one step of the last one, and whether it is another one.
-    pub fn limited(&self, force_n: SVector<f64, D>) -> (SVector<f64, D>, Reason) {
+    /// Returns the force nearest to `force_n` (N) that the limit allows `dt_s` (s) after the last one, and whether it differs.
+    ///
+    /// A tick that is late allows no more than one that is not: the hand feels the whole change at once.
+    pub fn limited(&self, force_n: SVector<f64, D>, dt_s: f64) -> (SVector<f64, D>, Reason) {
         let step = force_n - self.last_n;
         let norm = step.norm();
-        if norm <= self.most_n {
+        let max_n = self.n_per_s * dt_s.min(self.period_s);
+        if norm <= max_n {
             return (force_n, Reason::Open);
         }
-        (self.last_n + step * (self.most_n / norm), Reason::ChangeTooFast)
+        (self.last_n + step * (max_n / norm), Reason::ChangeTooFast)
     }
 
     /// The force (N) that left the chain.
@@ -58,12 +62,13 @@ mod tests {
     proptest! {
         #[test]
         fn no_two_forces_in_a_row_differ_by_more_than_a_step(
-            asked in prop::collection::vec(prop::array::uniform3(-1e3..1e3f64), 1..100),
+            asked in prop::collection::vec((prop::array::uniform3(-1e3..1e3f64), 0.0..0.1f64), 1..100),
         ) {
             let mut slew = Slew::new(500.0, 1e-3);
-            for asked in asked.into_iter().map(Vector3::from) {
-                let (now, reason) = slew.limited(asked);
-                prop_assert!((now - slew.last_n()).norm() <= 0.5 * (1.0 + 1e-12));
+            for (asked, dt_s) in asked {
+                let asked = Vector3::from(asked);
+                let (now, reason) = slew.limited(asked, dt_s);
+                prop_assert!((now - slew.last_n()).norm() <= 500.0 * dt_s.min(1e-3) * (1.0 + 1e-12));
                 prop_assert_eq!(reason == Reason::Open, now == asked);
                 prop_assert!((asked - now).norm() <= (asked - slew.last_n()).norm(), "never away from what is asked");
                 slew.left(now);

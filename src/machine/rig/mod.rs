@@ -186,6 +186,11 @@ impl Inputs {
         raw: RawReadings::NONE,
     };
 
+    /// When the handle was read, s; `now_s` is the time of the tick (s).
+    pub fn hand_s(&self, now_s: f64) -> f64 {
+        self.raw.handle.map_or(now_s - self.age_s, |reading| reading.arrival_s)
+    }
+
     /// Whether every number in it is finite.
     pub fn is_finite(&self) -> bool {
         let sensed = match &self.sensed {

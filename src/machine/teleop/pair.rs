@@ -327,16 +327,18 @@ impl<L: Link> Pair<L> {
         let force_n = self.in_force(&rendered);
         let ramp = ((now_s - self.engaged_s) / RAMP_S).clamp(0.0, 1.0);
         let (rendered_n, gates) = self.chain.step(&Request {
+            t_s: now_s,
             force_n: force_n.map(|force_n| force_n * ramp),
             age_s,
             speed_m_s: self.hand_speed_m_s,
             // On the axes of the force. The travel of the hand itself, before scaling. A missing sample hides no
             // travel: the next one contains it.
             hand_m: self.hand_now_m(now_s),
+            hand_age_s: now_s - seen.hand_s(now_s),
             permitted,
         });
         self.hand_is_gone |= gates.reason(Gate::Governor) == Reason::HandGone;
-        let gripper_n = self.grip(inputs.as_ref(), age_s, permitted);
+        let gripper_n = self.grip(inputs.as_ref(), now_s, age_s, permitted);
         // Over a network the force of now is not known here: the other machine judges.
         if inputs.is_some() && !self.far.is_there {
             self.accuracy.add(&rendered, self.identifier.report().modes, &self.force.tip_n);
@@ -367,14 +369,16 @@ impl<L: Link> Pair<L> {
     }
 
     /// Force on the gripper from the force on the jaws, through gates of its own.
-    fn grip(&mut self, inputs: Option<&Inputs>, age_s: f64, permitted: bool) -> f64 {
+    fn grip(&mut self, inputs: Option<&Inputs>, now_s: f64, age_s: f64, permitted: bool) -> f64 {
         let (opening_rad, grip_n) = (inputs.and_then(|i| i.gripper_rad), inputs.and_then(|i| i.grip_n));
         let (force_n, _) = self.gripper_chain.step(&Request {
+            t_s: now_s,
             force_n: grip_n.map(Vector1::new),
             age_s,
             // Above the dead band: a gripper that holds something still must keep its force.
             speed_m_s: 1.0,
             hand_m: opening_rad.map(|rad| Vector1::new(rad * GRIPPER_ARM_M)),
+            hand_age_s: 0.0,
             permitted: permitted && grip_n.is_some(),
         });
         force_n.x

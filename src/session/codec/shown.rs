@@ -165,6 +165,7 @@ choice!(Reason {
     14 => AboveDeviceLimit {},
     15 => RunsAway {},
     16 => HandGone {},
+    17 => LetGo {},
 });
 
 record!(ChainSettings {

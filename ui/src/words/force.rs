@@ -15,8 +15,12 @@ impl Words for Reason {
             Self::Open => word("open", "offen"),
             Self::NotPermitted => word("the loop is not engaged", "die Regelung ist nicht gekoppelt"),
             Self::RunsAway => word(
-                "the handle runs away and nobody carries the force",
-                "das Handgerät läuft weg, und niemand trägt die Kraft",
+                "the handle moves as if nobody held it, so the force fades",
+                "das Handgerät bewegt sich, als hielte es niemand, die Kraft wird ausgeblendet",
+            ),
+            Self::LetGo => word(
+                "the hand has let go: no force, the handle is braked",
+                "die Hand hat losgelassen: keine Kraft, das Handgerät wird gebremst",
             ),
             Self::HandGone => word("the hand has let go of the handle", "die Hand hat das Handgerät losgelassen"),
             Self::NothingAsked => word("the mode has no valid result", "der Modus hat kein gültiges Ergebnis"),

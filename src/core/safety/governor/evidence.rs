@@ -1,204 +1,179 @@
-//! Is there a hand after all? What speaks for one while the force is withheld.
+//! Does anybody hold the handle? What a hand can do, and what only a lone handle does.
+//!
+//! *Push*: the handle accelerates along the force faster than a hand moves. *Step*: the force that the hand carried vanishes
+//! faster than a hand changes its own. Both are certain beyond what a voluntary motion reaches, and likely beyond a
+//! fraction of it. *Travel*: over a long way the force alone explains the motion; likely, never certain.
 
 use nalgebra::SVector;
 
-use super::{
-    Push, decay,
-    flight::{ALONG_M_S, FREE, WEAK_N},
-};
+use super::observer::{Past, Range};
 
-/// Share above which the force counts as withheld.
-const WITHHELD: f64 = 0.1;
-/// Almost all.
-const NEARLY_ALL: f64 = 0.97;
-/// A hand's force is one above this, N, and above this share of the largest force applied lately: a handle's mass that is wrong by a
-/// quarter looks like a force as large. It must last so long, s.
-const FORCE_N: f64 = 0.35;
-const OF_APPLIED: f64 = 0.3;
-const LATELY_S: f64 = 0.006;
-const LASTS_S: f64 = 0.005;
-/// A share of the asked force that says at once that the hand carries it.
-const STRONG: f64 = 0.5;
-/// For how long strong and weak evidence count, s.
-const STRONG_FOR_S: f64 = 0.060;
-const WEAK_FOR_S: f64 = 0.200;
-/// A force that is there on average this long (s) after the fade.
-const LATER_S: f64 = 0.030;
-const MEAN_S: f64 = 0.010;
-const MEANS_MEAN_S: f64 = 0.030;
-/// Moved back against the push from its farthest place, m.
-const BACK_M: f64 = 0.15e-3;
-/// At rest below this speed (m/s), or the one from which the brake stops it within the next limit, for this long (s); then moved by this
-/// much (m) from where it was 40 ms ago.
-const REST_M_S: f64 = 0.005;
-const REST_S: f64 = 0.020;
-const STIR_M: f64 = 60e-6;
-const STIR_S: f64 = 0.040;
-/// Under less than this it does not stir by itself, N.
-const UNPUSHED_N: f64 = 0.1;
-/// Still moving so fast (m/s) so late (s), or so many times the brake's time constant: it would have stopped it.
-const MOVING_M_S: f64 = 0.015;
-const MOVING_AFTER_S: f64 = 0.050;
-const MOVING_AFTER: f64 = 3.0;
-/// Mean force applied that moves a free handle, N; how far a free handle's hand force may be off, N; time of the mean, s.
-const PUSHED_N: f64 = 0.25;
-const OFF_N: f64 = 0.1;
-const FREE_MEAN_S: f64 = 0.012;
+/// Largest acceleration of a hand, m/s^2: a minimum-jerk motion of 35 mm in 0.2 s has 5.05 (5.77 d / T^2, Flash and Hogan 1985),
+/// and a soft grip overshoots by a fifth.
+const HAND_M_S2: f64 = 6.0;
+/// Largest jerk of a hand, m/s^3: the same motion has 262 (60 d / T^3).
+const HAND_M_S3: f64 = 300.0;
+/// Fractions of these that are rare, chosen for less than one false alarm in an hour of the hands of `nima study hands`.
+const RARE_M_S2: f64 = 4.2;
+const RARE_STEP: f64 = 0.35;
+/// Weakest force that is judged, N: twice the friction.
+const WEAK_N: f64 = 0.3;
+/// Coulomb friction of a cable-driven handle, N (omega.7).
+pub(super) const COULOMB_N: f64 = 0.15;
+/// Error of the handle's mass, as a fraction.
+pub(super) const MASS_OFF: f64 = 0.25;
+/// A motion along the force is faster than this, m/s: it crosses an encoder step of 10 um in a tick.
+pub(super) const OUT_M_S: f64 = 0.008;
+/// A grip of 400 N/m with 0.25 kg takes this time to answer a change of the force, s.
+const ANSWER_S: f64 = 0.020;
+/// Fraction of the speed that the force gives a lone handle after a step.
+const DRIVEN: f64 = 0.5;
+/// A hand that carries less than this fraction of a force has lost it.
+const LOST: f64 = 0.4;
+/// Fraction of the force that a hand carried before a step counts as one.
+const CARRIED: f64 = 0.5;
+/// Windows of the parabola, s, and of the two halves of the kink, s: short ones for strong forces, long ones for weak ones.
+const PUSHES_S: [f64; 4] = [0.004, 0.006, 0.009, LONG_S];
+const STEPS_S: [[f64; 2]; 4] = [[0.008, 0.005], [0.008, 0.008], [0.010, 0.011], [0.016, 0.014]];
+const LONG_S: f64 = 0.014;
+/// Travel under the force alone that is suspicious: above the rare acceleration, and at any, m. No motion of the study goes 13 mm so.
+const PUSHED_M: f64 = 1e-3;
+const TRAVEL_M: f64 = 0.020;
+const TRAVEL_N: f64 = 0.4;
+/// The same for a handle that began at rest, m, for a force of this, N, and its speed at the beginning, m/s.
+const FROM_REST_M: f64 = 2e-3;
+const FROM_REST_N: f64 = 1.2;
+const REST_M_S: f64 = 0.02;
 
-/// What the evidence says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Says {
-    /// A hand carries the force.
-    Hand,
-    /// Something like a hand.
-    Perhaps,
-    /// The handle flies freely.
-    Free,
-    /// Nothing.
-    Nothing,
+/// Answer to the question.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Alone {
+    /// A hand explains the motion.
+    #[default]
+    No,
+    /// A hand hardly moves so: the force alone explains the motion.
+    Pushed,
+    /// A hand hardly lets go of a force so fast.
+    Dropped,
+    /// No hand moves so.
+    Certain,
 }
 
-#[derive(Clone, Copy, Debug)]
+/// Memory of the travel.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Evidence<const D: usize> {
-    period_s: f64,
-    rest_m_s: f64,
-    moving_after_s: f64,
-    /// How long the force has been withheld, s.
-    withheld_s: f64,
-    /// How long there has been no evidence, s.
-    quiet_s: f64,
-    /// How long the hand's force has lasted, s.
-    force_s: f64,
-    /// How long strong and weak evidence still count, s.
-    strong_left_s: f64,
-    weak_left_s: f64,
-    /// Largest force applied lately, N.
-    applied_n: f64,
-    hand_mean_n: SVector<f64, D>,
-    later_mean_n: f64,
-    free_applied_n: SVector<f64, D>,
-    free_hand_n: SVector<f64, D>,
-    farthest_m: SVector<f64, D>,
-    at_rest_s: f64,
-    /// Where it rests, m, once it does.
-    rest_m: Option<SVector<f64, D>>,
+    run: Option<Run<D>>,
+}
+
+/// A motion that the force alone explains.
+#[derive(Clone, Copy, Debug)]
+struct Run<const D: usize> {
+    /// Where it began, m.
+    from_m: SVector<f64, D>,
+    /// It began at rest, as a hand's motion never does: that needs a hand to begin.
+    from_rest: bool,
+}
+
+/// Along and beside the applied force.
+struct Parts {
+    /// Size of the applied force, N.
+    size_n: f64,
+    /// Part of it that the hand carries, N.
+    carried_n: f64,
+    /// The hand's force beside it, N.
+    aside_n: f64,
+}
+
+impl Parts {
+    fn of<const D: usize>(hand_n: &SVector<f64, D>, applied_n: &SVector<f64, D>) -> Self {
+        let size_n = applied_n.norm();
+        let along = applied_n / size_n;
+        let carried_n = -hand_n.dot(&along);
+        Self { size_n, carried_n, aside_n: (hand_n + along * carried_n).norm() }
+    }
+
+    /// A lone handle shows this hand force: an error of its mass, friction, and the error of the fit.
+    fn is_free(&self, error_n: f64) -> bool {
+        let mass_n = MASS_OFF * self.size_n + error_n;
+        self.carried_n < mass_n + COULOMB_N && self.carried_n > -mass_n && self.aside_n < mass_n + COULOMB_N
+    }
 }
 
 impl<const D: usize> Evidence<D> {
-    /// For a handle that the brake stops with this time constant, s.
-    pub(super) fn new(stopping_s: f64, period_s: f64) -> Self {
-        Self {
-            period_s,
-            rest_m_s: REST_M_S.min(STIR_M / stopping_s),
-            moving_after_s: MOVING_AFTER_S.max(MOVING_AFTER * stopping_s),
-            withheld_s: 0.0,
-            quiet_s: 0.0,
-            force_s: 0.0,
-            strong_left_s: 0.0,
-            weak_left_s: 0.0,
-            applied_n: 0.0,
-            hand_mean_n: SVector::zeros(),
-            later_mean_n: 0.0,
-            free_applied_n: SVector::zeros(),
-            free_hand_n: SVector::zeros(),
-            farthest_m: SVector::zeros(),
-            at_rest_s: 0.0,
-            rest_m: None,
-        }
+    pub(super) fn look(&mut self, past: &Past<D>) -> Alone {
+        let pushed = self.pushes(past);
+        if pushed == Alone::Certain { pushed } else { pushed.max(steps(past)) }
     }
 
-    /// The force has just been withheld: what was seen before counts no more.
-    pub(super) const fn begin(&mut self) {
-        (self.withheld_s, self.quiet_s, self.at_rest_s, self.rest_m) = (0.0, 0.0, 0.0, None);
-        (self.force_s, self.later_mean_n, self.strong_left_s, self.weak_left_s) = (0.0, 0.0, 0.0, 0.0);
+    fn pushes(&mut self, past: &Past<D>) -> Alone {
+        let mut alone = Alone::No;
+        let mut travels = false;
+        for span_s in PUSHES_S {
+            let Some(now) = past.parabola(span_s) else { break };
+            let size_n = now.applied_n.norm();
+            if size_n < WEAK_N || now.velocity_m_s.dot(&now.applied_n) < OUT_M_S * size_n {
+                continue;
+            }
+            let range = past.range(now.span_s + ANSWER_S, &(now.applied_n / size_n));
+            let parts = Parts::of(&now.hand_n, &now.applied_n);
+            // Mass times acceleration along the force, at least.
+            let pushed_n = size_n - parts.carried_n - now.error_n;
+            let kg = past.handle.mass_kg;
+            let lost = parts.carried_n < LOST * size_n + now.error_n
+                && parts.aside_n < MASS_OFF * size_n + COULOMB_N + now.error_n;
+            if lost && range.min_along_n > 0.0 && pushed_n - range.change_n() > kg * HAND_M_S2 {
+                return Alone::Certain;
+            }
+            let steady_n = past.range(now.span_s, &(now.applied_n / size_n)).min_along_n;
+            if span_s >= LONG_S && parts.is_free(now.error_n) && steady_n > 0.5 * size_n {
+                travels = true;
+                let speed_m_s = now.velocity_m_s.norm();
+                alone = alone.max(self.travel(past, size_n, speed_m_s, pushed_n > kg * RARE_M_S2));
+            }
+        }
+        if !travels {
+            self.run = None;
+        }
+        alone
     }
 
-    /// For so long the handle has rested without any sign of a hand, s; 0 while it moves.
-    pub(super) fn quiet_s(&self) -> f64 {
-        if self.rest_m.is_some() { self.quiet_s } else { 0.0 }
+    fn travel(&mut self, past: &Past<D>, size_n: f64, speed_m_s: f64, rare: bool) -> Alone {
+        let begins = Run { from_m: past.at_m, from_rest: speed_m_s < REST_M_S };
+        let run = self.run.get_or_insert(begins);
+        let travel_m = (past.at_m - run.from_m).norm();
+        let driven = run.from_rest && travel_m > FROM_REST_M && size_n > FROM_REST_N;
+        let far = travel_m > TRAVEL_M && size_n > TRAVEL_N;
+        if driven || far || (rare && travel_m > PUSHED_M) { Alone::Pushed } else { Alone::No }
     }
+}
 
-    /// Looks at a push while this share of it is withheld, `held_n` (N) being the force that was applied since the last look. The
-    /// second answer: there is new evidence.
-    pub(super) fn look(&mut self, push: &Push<D>, held_n: &SVector<f64, D>, withheld: f64) -> (Says, bool) {
-        let dt_s = self.period_s;
-        self.hand_mean_n += (push.hand_n - self.hand_mean_n) * decay(dt_s, MEAN_S);
-        if withheld > WITHHELD {
-            self.follow(push);
+/// Whether the hand's force has vanished in a step.
+fn steps<const D: usize>(past: &Past<D>) -> Alone {
+    let mut alone = Alone::No;
+    for [before_s, after_s] in STEPS_S {
+        let Some(kink) = past.kink(before_s, after_s) else { break };
+        let size_n = kink.applied_after_n.norm();
+        // A released handle soon moves as the force drives it from rest; a handle that swings on a grip does not.
+        let driven_m_s = DRIVEN * size_n / past.handle.mass_kg * kink.after_s;
+        if size_n < WEAK_N || kink.velocity_m_s.dot(&kink.applied_after_n) < driven_m_s.max(OUT_M_S) * size_n {
+            continue;
         }
-        let (hand_n, held) = (push.hand_n.norm(), held_n.norm());
-        self.applied_n += (held - self.applied_n) * decay(dt_s, LATELY_S);
-        let pulls = hand_n > FORCE_N + OF_APPLIED * self.applied_n.max(held);
-        self.force_s = if pulls { self.force_s + dt_s } else { (self.force_s - 2.0 * dt_s).max(0.0) };
-        let lasts = self.force_s > LASTS_S;
-        if lasts && hand_n > STRONG * push.size_n {
-            self.strong_left_s = STRONG_FOR_S;
+        let along = kink.applied_after_n / size_n;
+        let range: Range = past.range(kink.span_s, &along);
+        let parts = Parts::of(&kink.after_n, &kink.applied_after_n);
+        let was_carried = -kink.before_n.dot(&along) > CARRIED * kink.applied_before_n.dot(&along);
+        if range.min_along_n < 0.5 * size_n || !parts.is_free(kink.after_error_n) || !was_carried {
+            continue;
         }
-        let seen = lasts || self.moves(push, held, withheld);
-        if seen {
-            self.weak_left_s = WEAK_FOR_S;
-            (self.quiet_s, self.at_rest_s, self.rest_m) = (0.0, 0.0, None);
+        // A wrong mass makes a step of the applied force look like one of the hand's.
+        let step_n = (kink.after_n - kink.before_n).dot(&along) - kink.step_error_n - MASS_OFF * range.change_n();
+        let ramp_n = past.handle.mass_kg * HAND_M_S3 * 0.5 * kink.span_s;
+        if step_n > ramp_n {
+            return Alone::Certain;
         }
-        self.free_applied_n += (held_n - self.free_applied_n) * decay(dt_s, FREE_MEAN_S);
-        self.free_hand_n += (push.hand_n - self.free_hand_n) * decay(dt_s, FREE_MEAN_S);
-        (self.says(push), seen)
-    }
-
-    fn says(&mut self, push: &Push<D>) -> Says {
-        let (strong, weak) = (self.strong_left_s > 0.0, self.weak_left_s > 0.0);
-        self.strong_left_s = (self.strong_left_s - self.period_s).max(0.0);
-        self.weak_left_s = (self.weak_left_s - self.period_s).max(0.0);
-        if strong {
-            Says::Hand
-        } else if self.is_free(push) {
-            self.weak_left_s = 0.0;
-            Says::Free
-        } else if weak {
-            Says::Perhaps
-        } else {
-            Says::Nothing
+        if step_n > RARE_STEP * ramp_n {
+            alone = Alone::Dropped;
         }
     }
-
-    fn is_free(&self, push: &Push<D>) -> bool {
-        let pushed_n = self.free_applied_n.norm();
-        pushed_n > PUSHED_N
-            && self.free_hand_n.norm() < FREE * pushed_n + OFF_N
-            && self.free_applied_n.dot(&push.along) > 0.0
-            && push.out_m_s > ALONG_M_S
-    }
-
-    /// Where the handle went since the force is withheld, and whether it rests.
-    fn follow(&mut self, push: &Push<D>) {
-        let dt_s = self.period_s;
-        if self.withheld_s <= 0.0 || (push.at_m - self.farthest_m).dot(&push.along) > 0.0 {
-            self.farthest_m = push.at_m;
-        }
-        self.withheld_s += dt_s;
-        self.quiet_s += dt_s;
-        if self.withheld_s > LATER_S {
-            self.later_mean_n += (self.hand_mean_n.norm() - self.later_mean_n) * decay(dt_s, MEANS_MEAN_S);
-        }
-        self.at_rest_s = if push.velocity_m_s.norm() < self.rest_m_s { self.at_rest_s + dt_s } else { 0.0 };
-        match &mut self.rest_m {
-            Some(rest_m) => *rest_m += (push.at_m - *rest_m) * decay(dt_s, STIR_S),
-            None if self.at_rest_s > REST_S => self.rest_m = Some(push.at_m),
-            None => {}
-        }
-    }
-
-    /// The handle moves as no handle does that is braked and alone.
-    fn moves(&self, push: &Push<D>, held_n: f64, withheld: f64) -> bool {
-        let back = withheld > WITHHELD && (self.farthest_m - push.at_m).dot(&push.along) > BACK_M;
-        let stirs = self.rest_m.is_some_and(|rest_m| {
-            let way_m = push.at_m - rest_m;
-            let along_m = way_m.dot(&push.along);
-            let aside_m = (way_m - push.along * along_m).norm();
-            let unpushed = held_n < UNPUSHED_N && withheld > NEARLY_ALL;
-            along_m < -STIR_M || ((along_m > STIR_M || aside_m > STIR_M) && unpushed)
-        });
-        let late = self.withheld_s > self.moving_after_s && self.rest_m.is_none();
-        let goes_on = late && push.velocity_m_s.norm() > MOVING_M_S && (push.out_m_s < 0.0 || withheld > NEARLY_ALL);
-        back || stirs || goes_on || self.later_mean_n > WEAK_N
-    }
+    alone
 }

@@ -1,28 +1,27 @@
-//! Last gate: a handle that runs away under its force while nobody carries it is braked instead of pushed.
+//! Last gate: a handle that nobody holds is braked instead of pushed.
 //!
-//! In: the handle's reading (m), the force that all other gates let pass (`F_d`, N) and what the mode would like to give (N), once a
-//! period. Out: the force for the hand (N), the share withheld and why. It needs to know the handle alone: [`Handle`].
+//! In: the time of the tick (s), the handle's reading (m) and its time, and the force that all other gates let pass (`F_d`, N). Out:
+//! the force for the hand (N), the fraction withheld and why. The governor knows the handle alone: [`Handle`].
 //!
-//! An [`observer`] tells what the hand does to the handle; [`flight`] tells a handle that flies; then with the share `A` withheld
+//! The force of the hand on the handle follows from the readings and the applied force at true times ([`observer`], [`fit`]).
+//! [`evidence`] compares it with what a hand can do. Four states follow from that:
 //!
-//! ```text
-//! F = (1 - A) F_d - A min(b |v|, |F_d|) v / |v|        (below 1 mm/s no brake)
-//! ```
-//! so what pushed may also brake, and no more. That happens long before anybody knows whether the hand is gone: [`evidence`] of a
-//! hand gives the force back smoothly, and only a handle that rests for 150 ms after a letting go beyond doubt is declared to have no
-//! hand, until a reset.
+//! - *held*: `F = F_d`. A withheld fraction returns within [`RETURN_S`].
+//! - *doubtful*: the motion is rare for a hand. The force fades, `F = (1 - A) F_d`, no faster than the slew limit. If the handle then
+//!   coasts, nobody holds it; if its motion needs a hand, it is held.
+//! - *let go*: no hand moves so. The force falls to zero at once; then `F = -b v`, at most `|F_d|`, built up within the slew limit.
+//! - *gone*: the handle has rested for [`GONE_AFTER_S`] after one of the two. No force until a reset.
 //!
-//! What is certain, whatever is asked and whatever the observer believes:
-//! - `|F| <= |F_d|`: `F` lies between `F_d` and a vector no longer than it. Ceiling and device limit hold behind this gate.
-//! - `F . v <= (1 - A) max(F_d . v, 0)`, `v` as observed: the brake only takes energy. The energy gate before this one observes the
-//!   force that was really applied, so its bound holds with it: after a hand has let go at most what is stored
-//!   ([`MOST_J`](super::MOST_J)) and [`ALLOWANCE_J`](super::ALLOWANCE_J)/[`LEAK_S`](super::LEAK_S), whatever is asked.
+//! Certain, whatever is asked and whatever the evidence says: `|F| <= |F_d|`; while a hand is there `F` has the direction of `F_d`
+//! and changes no faster than the slew limit; once let go, `F . v <= 0` with the estimated `v`. The energy gate before this one
+//! observes the applied force, so its bound holds too.
 //!
-//! What is only measured: an honest mode's push gives a handle 1.4 mJ at most before it is told (`docs/release.md`); one who sees the
-//! handle and pushes in bursts too short to judge gets as much through as the energy gate lets.
+//! Measured, not certain: how far a released handle travels, and how rarely a hand looks like none (`docs/release.md`,
+//! `docs/hands.md`). Below about 1.5 N a slowly opening hand and a fast voluntary motion look the same; there the handle travels
+//! farther, because a hand that is there must never be braked.
 
 mod evidence;
-mod flight;
+mod fit;
 mod observer;
 
 use nalgebra::SVector;
@@ -30,49 +29,44 @@ use nalgebra::SVector;
 pub use observer::Handle;
 
 use self::{
-    evidence::{Evidence, Says},
-    flight::{Flight, WEAK_N},
-    observer::Observer,
+    evidence::{Alone, COULOMB_N, Evidence, MASS_OFF, OUT_M_S},
+    fit::Parabola,
+    observer::{Observer, Past},
 };
 use super::{PLAUSIBLE_N, Reason};
 
-/// A brake sampled with this share of `m / T` or less does not shake the handle.
+/// A brake sampled with this fraction of `m / T` or less does not shake the handle.
 const BRAKE_OF_MASS: f64 = 0.15;
-/// Slower than this nothing is braked, m/s.
-const STILL_M_S: f64 = 1e-3;
-/// Smoothing of the velocity, s, and the smoothed speed up to which it rather than the newest one is braked, m/s.
-const SLOW_S: f64 = 0.010;
-const COUNTS_M_S: f64 = 3e-3;
-/// Time in which the force fades, s.
-const FADE_S: f64 = 0.001;
-/// Times in which it comes back (exponentially) to a hand that carries it, and (linearly) to what may be a hand, s.
-const BACK_S: f64 = 0.020;
-const PERHAPS_BACK_S: f64 = 0.150;
-/// Times in which it is withheld altogether from a handle that flies on, and from one that nothing is known of, s.
-const FREE_S: f64 = 0.005;
-const NOTHING_S: f64 = 0.050;
-/// Shares withheld: below the first the fade was a false alarm, above the second nothing is left.
-const HARDLY: f64 = 0.1;
-const NEARLY_ALL: f64 = 0.9;
-/// Without any sign of a hand for so long it is gone, s.
+/// Below this speed nothing is braked, m/s.
+const STILL_M_S: f64 = 2e-3;
+/// Window in which the hand's force is judged while the force is withheld, s.
+const JUDGED_S: f64 = 0.009;
+/// A soft grip (400 N/m, 8 N s/m) pulls a handle whose force has vanished by more than friction after this time, s.
+const ANSWER_S: f64 = 0.020;
+/// A finding that lasts so long is no error of one reading, s.
+const COASTS_S: f64 = 0.0025;
+const PULLS_S: f64 = 0.005;
+/// The brake has stopped a handle after this time, s: seven times `m / b`. Until then an opening hand still touches it.
+const STOPPED_S: f64 = 0.060;
+/// Below this force before the fade, coasting is not told from a slow motion, N.
+const COASTING_N: f64 = 0.8;
+/// A handle at rest that moves by this is moved by a hand, m: tremor has 50 um at 9 Hz.
+const STIR_M: f64 = 60e-6;
+const RESTED_S: f64 = 0.020;
+/// Rest without any sign of a hand until it is gone, s: longer than a period of tremor.
 const GONE_AFTER_S: f64 = 0.150;
+/// Time in which the whole force returns, s: a tenth of a hand's slowest reaction.
+const RETURN_S: f64 = 0.040;
 /// A reading farther away is none, m.
 const FAR_M: f64 = 1e3;
 
-/// Force and handle as the looks need them.
-#[derive(Clone, Copy, Debug)]
-struct Push<const D: usize> {
-    /// Direction of the force asked for; of the last one worth the name where there is none.
-    along: SVector<f64, D>,
-    /// Size of the force asked for, N.
-    size_n: f64,
-    at_m: SVector<f64, D>,
-    velocity_m_s: SVector<f64, D>,
-    hand_n: SVector<f64, D>,
-    /// Speed along the push, m/s.
-    out_m_s: f64,
-    /// Size of the hand's force over that of the push.
-    carried: f64,
+/// Reading of the handle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading<const D: usize> {
+    /// When it was taken, s, on the clock of the ticks.
+    pub t_s: f64,
+    /// Position, m.
+    pub at_m: SVector<f64, D>,
 }
 
 /// What left the governor.
@@ -80,176 +74,269 @@ struct Push<const D: usize> {
 pub struct Governed<const D: usize> {
     /// Force for the hand, N.
     pub force_n: SVector<f64, D>,
-    /// Share of the asked force that was withheld, 0 to 1.
+    /// Fraction of the asked force that was withheld, 0 to 1.
     pub withheld: f64,
     /// Why.
     pub reason: Reason,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Grip<const D: usize> {
+    Held,
+    Doubtful {
+        since: Since,
+        /// Applied force when the doubt arose, N.
+        force_n: SVector<f64, D>,
+        /// Time after the fade from which a pull or none counts, s.
+        ripe_s: f64,
+    },
+    LetGo(Since),
+    Gone,
+}
+
+/// What has been seen since a grip became doubtful or was lost; times in s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Since {
+    lasted_s: f64,
+    /// The whole force is withheld.
+    faded_s: f64,
+    pulls_s: f64,
+    coasts_s: f64,
+    rests_s: f64,
 }
 
 /// The gate and its memory.
 ///
 /// ```
 /// use nalgebra::Vector1;
-/// use nima_core::safety::{Governor, Handle, Reason};
+/// use nima_core::safety::{Governor, Handle, Reading, Reason};
 ///
-/// let handle = Handle { mass_kg: 0.25, damping_n_s_m: 0.5, brake_n_s_m: 30.0 };
-/// let mut governor = Governor::<1>::new(handle, 1e-3);
+/// let handle = Handle { mass_kg: 0.25, damping_n_s_m: 0.5, brake_n_s_m: 30.0, step_m: 1e-5 };
+/// let mut governor = Governor::<1>::new(handle, 500.0, 1e-3);
 /// let asked_n = Vector1::new(3.0);
-/// let (mut at_m, mut speed_m_s, mut held_n) = (0.0, 0.0, 3.0);
-/// for tick in 0..200 {
-///     // A hand of 900 N/m carries the force; after 100 ms it lets go.
-///     let hand_n = if tick < 100 { -3.0 - 900.0 * at_m - 20.0 * speed_m_s } else { 0.0 };
+/// let (mut at_m, mut speed_m_s, mut held_n) = (0.0, 0.0, 0.0);
+/// for tick in 0..300 {
+///     let t_s = f64::from(tick) * 1e-3;
+///     // A hand of 900 N/m carries the force; after 200 ms it lets go.
+///     let hand_n = if tick < 200 { -3.0 - 900.0 * at_m - 20.0 * speed_m_s } else { 0.0 };
 ///     speed_m_s += (held_n + hand_n - 0.5 * speed_m_s) / 0.25 * 1e-3;
 ///     at_m += speed_m_s * 1e-3;
-///     let governed = governor.step(Some(Vector1::new(at_m)), asked_n, 3.0);
+///     let reading = Reading { t_s, at_m: Vector1::new(at_m) };
+///     let governed = governor.step(t_s, Some(reading), asked_n);
 ///     held_n = governed.force_n.x;
-///     assert!(tick >= 100 || governed.reason == Reason::Open, "a hand that carries it gets all of it");
+///     assert!(tick >= 200 || governed.reason == Reason::Open, "a hand that carries it gets all of it");
 /// }
 /// assert!(held_n.abs() < 0.1 && at_m < 2e-3, "the handle was caught after {at_m} m");
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Governor<const D: usize> {
     handle: Handle,
-    period_s: f64,
     brake_n_s_m: f64,
+    slew_n_per_s: f64,
+    period_s: f64,
+    watching: bool,
+    last_s: Option<f64>,
     observer: Observer<D>,
-    flight: Flight<D>,
     evidence: Evidence<D>,
-    along: SVector<f64, D>,
-    /// Velocity, smoothed, m/s: steps of the reading at rest are no motion to brake.
-    slow_m_s: SVector<f64, D>,
-    applied_n: SVector<f64, D>,
+    grip: Grip<D>,
+    rest_m: SVector<f64, D>,
     withheld: f64,
-    /// The hand let go beyond doubt, and nothing has spoken for one since.
-    let_go: bool,
-    gone: bool,
+    applied_n: SVector<f64, D>,
 }
 
 impl<const D: usize> Governor<D> {
-    /// For this handle (of unknown mass: everything passes) and a loop of this period (s).
-    pub fn new(handle: Handle, period_s: f64) -> Self {
-        let brake_n_s_m = handle.brake_n_s_m.min(BRAKE_OF_MASS * handle.mass_kg / period_s);
-        let stopping_s = handle.mass_kg / (brake_n_s_m + handle.damping_n_s_m).max(1e-9);
+    /// For this handle (of unknown mass: everything passes), a force that changes by at most `slew_n_per_s` (N/s), and a loop of
+    /// this nominal period (s).
+    pub fn new(handle: Handle, slew_n_per_s: f64, period_s: f64) -> Self {
         Self {
             handle,
+            brake_n_s_m: handle.brake_n_s_m.min(BRAKE_OF_MASS * handle.mass_kg / period_s),
+            slew_n_per_s,
             period_s,
-            brake_n_s_m,
-            observer: Observer::new(handle, period_s),
-            flight: Flight::new(period_s),
-            evidence: Evidence::new(stopping_s, period_s),
-            along: SVector::zeros(),
-            slow_m_s: SVector::zeros(),
-            applied_n: SVector::zeros(),
+            watching: handle.mass_kg > 0.0,
+            last_s: None,
+            observer: Observer::new(handle),
+            evidence: Evidence::default(),
+            grip: Grip::Held,
+            rest_m: SVector::zeros(),
             withheld: 0.0,
-            let_go: false,
-            gone: false,
+            applied_n: SVector::zeros(),
         }
     }
 
-    /// Starts anew: the hand is taken to be there.
+    /// The handle that it watches.
+    pub const fn handle(&self) -> &Handle {
+        &self.handle
+    }
+
+    /// Watches the handle, or lets every force pass. What is withheld returns as to a hand.
+    pub fn watch(&mut self, on: bool) {
+        self.watching = on && self.handle.mass_kg > 0.0;
+        self.grip = Grip::Held;
+    }
+
+    /// Starts again without force: the hand is taken to be there.
     pub fn reset(&mut self) {
-        *self = Self::new(self.handle, self.period_s);
+        self.observer.forget();
+        self.evidence = Evidence::default();
+        self.grip = Grip::Held;
+        (self.last_s, self.withheld, self.applied_n) = (None, 0.0, SVector::zeros());
     }
 
-    /// The handle is here now (m; `None`: not known, then what is withheld stays so), all gates before let `asked_n` (N) pass, and the
-    /// mode would like to give this much (N): a force that other gates hold back for a moment is still a threat.
-    ///
-    /// Anything that is not finite gives no force.
-    pub fn step(&mut self, hand_m: Option<SVector<f64, D>>, asked_n: SVector<f64, D>, threat_n: f64) -> Governed<D> {
-        let governed = self.governed(hand_m, asked_n, threat_n);
-        self.applied_n = governed.force_n;
-        governed
-    }
-
-    fn governed(&mut self, hand_m: Option<SVector<f64, D>>, asked_n: SVector<f64, D>, threat_n: f64) -> Governed<D> {
-        let far = |vector: &SVector<f64, D>, most: f64| !vector.iter().all(|x| x.abs() <= most);
-        let none = |reason| Governed { force_n: SVector::zeros(), withheld: 1.0, reason };
-        if far(&asked_n, PLAUSIBLE_N) || hand_m.is_some_and(|at_m| far(&at_m, FAR_M)) || threat_n.is_nan() {
+    /// The tick is at `t_s` (s), the handle was read there (`None`: unknown, then the grip stays as it is), and all gates before
+    /// let `asked_n` (N) pass. Anything that is not finite gives no force.
+    pub fn step(&mut self, t_s: f64, reading: Option<Reading<D>>, asked_n: SVector<f64, D>) -> Governed<D> {
+        let far = |vector: &SVector<f64, D>, limit: f64| !vector.iter().all(|x| x.abs() <= limit);
+        let reading_is_far = reading.is_some_and(|reading| far(&reading.at_m, FAR_M) || !reading.t_s.is_finite());
+        if far(&asked_n, PLAUSIBLE_N) || reading_is_far || !t_s.is_finite() {
             self.observer.forget();
-            return none(Reason::NotFinite);
+            self.applied_n = SVector::zeros();
+            return Governed { force_n: SVector::zeros(), withheld: 1.0, reason: Reason::NotFinite };
         }
-        if self.handle.mass_kg <= 0.0 {
-            return Governed { force_n: asked_n, withheld: 0.0, reason: Reason::Open };
+        // The first tick, and one after the clock was set back, count as no time.
+        let dt_s = self.last_s.map_or(0.0, |last_s| (t_s - last_s).max(0.0));
+        self.last_s = Some(t_s);
+        let brake_n = if self.watching { self.judge(dt_s, reading) } else { SVector::zeros() };
+        // After a late tick too: the hand feels the change at once, however long the tick before was held.
+        let step_n = self.slew_n_per_s * dt_s.min(self.period_s);
+        self.applied_n = self.force(asked_n, brake_n, step_n, dt_s);
+        Governed { force_n: self.applied_n, withheld: self.withheld, reason: self.reason() }
+    }
+
+    const fn reason(&self) -> Reason {
+        match self.grip {
+            Grip::Gone => Reason::HandGone,
+            Grip::LetGo(_) => Reason::LetGo,
+            Grip::Doubtful { .. } => Reason::RunsAway,
+            Grip::Held if self.withheld > 0.0 => Reason::RunsAway,
+            Grip::Held => Reason::Open,
         }
-        let brake_n = if let Some(at_m) = hand_m {
-            let push = self.push(at_m, asked_n);
-            self.judge(&push, threat_n);
-            self.brake(&push)
+    }
+
+    /// Decides on the grip; returns the brake's force, N.
+    fn judge(&mut self, dt_s: f64, reading: Option<Reading<D>>) -> SVector<f64, D> {
+        self.observer.held(&self.applied_n, dt_s);
+        let Some(reading) = reading else { return SVector::zeros() };
+        self.observer.read(reading.t_s, reading.at_m);
+        if self.grip == Grip::Gone || (self.grip == Grip::Held && self.applied_n.norm() < COULOMB_N) {
+            self.evidence = Evidence::default();
+            return SVector::zeros();
+        }
+        let past = self.observer.past();
+        let alone = self.evidence.look(&past);
+        self.grip = match (self.grip, alone) {
+            (Grip::Held | Grip::Doubtful { .. }, Alone::Certain) => Grip::LetGo(Since::default()),
+            (Grip::Held, Alone::Pushed | Alone::Dropped) => Grip::Doubtful {
+                since: Since::default(),
+                force_n: self.applied_n,
+                ripe_s: if alone == Alone::Pushed { ANSWER_S } else { JUDGED_S },
+            },
+            (grip, _) => grip,
+        };
+        let Some(now) = past.parabola(JUDGED_S) else { return SVector::zeros() };
+        match self.grip {
+            Grip::Held | Grip::Gone => SVector::zeros(),
+            Grip::Doubtful { mut since, force_n, ripe_s } => {
+                let ripe = since.faded_s > ripe_s;
+                // On its way along the force that is gone, strong enough to be told from a slow motion.
+                let coasting = now.velocity_m_s.dot(&force_n) > OUT_M_S * force_n.norm() && force_n.norm() > COASTING_N;
+                self.notice(&mut since, &past, &now, dt_s, ripe);
+                since.coasts_s = if coasting { since.coasts_s } else { 0.0 };
+                self.grip = since.verdict().unwrap_or(Grip::Doubtful { since, force_n, ripe_s });
+                SVector::zeros()
+            }
+            Grip::LetGo(mut since) => {
+                let ripe = since.lasted_s > STOPPED_S;
+                self.notice(&mut since, &past, &now, dt_s, ripe);
+                self.grip = since.verdict().unwrap_or(Grip::LetGo(since));
+                self.brake(&now)
+            }
+        }
+    }
+
+    /// What the handle does while the force is withheld; a pull counts only once it can be told (`ripe`).
+    fn notice(&mut self, since: &mut Since, past: &Past<D>, now: &Parabola<D>, dt_s: f64, ripe: bool) {
+        // A long tick is one look, not many.
+        let looked_s = dt_s.min(self.period_s);
+        let speed_m_s = now.velocity_m_s.norm();
+        let applied_n = past.range(now.span_s, &SVector::zeros()).max_n;
+        let friction_n = COULOMB_N + self.handle.damping_n_s_m * speed_m_s;
+        let pulls = now.hand_n.norm() > friction_n + MASS_OFF * applied_n + now.error_n;
+        since.lasted_s += dt_s;
+        since.faded_s = if self.withheld >= 1.0 { since.faded_s + dt_s } else { 0.0 };
+        since.pulls_s =
+            if pulls && ripe { since.pulls_s + looked_s } else { (since.pulls_s - 2.0 * looked_s).max(0.0) };
+        since.coasts_s = if !pulls && ripe { since.coasts_s + looked_s } else { 0.0 };
+        let quiet = self.withheld >= 1.0 && self.applied_n.norm() < 0.3 * COULOMB_N;
+        let moved_m = (past.at_m - self.rest_m).norm();
+        if !quiet || moved_m > STIR_M + 2.0 * self.handle.step_m {
+            if quiet && since.rests_s > RESTED_S {
+                since.pulls_s = PULLS_S;
+            }
+            (self.rest_m, since.rests_s) = (past.at_m, 0.0);
+        } else if moved_m > 1.5 * self.handle.step_m {
+            since.rests_s = since.rests_s.min(RESTED_S + looked_s);
         } else {
-            self.observer.forget();
-            SVector::zeros()
-        };
-        if self.gone {
-            return none(Reason::HandGone);
-        }
-        let withheld = self.withheld;
-        let reason = if withheld > 0.0 { Reason::RunsAway } else { Reason::Open };
-        Governed { force_n: asked_n * (1.0 - withheld) - brake_n * withheld, withheld, reason }
-    }
-
-    fn push(&mut self, at_m: SVector<f64, D>, asked_n: SVector<f64, D>) -> Push<D> {
-        let size_n = asked_n.norm();
-        if size_n > 0.3 * WEAK_N {
-            self.along = asked_n / size_n;
-        }
-        let seen = self.observer.step(at_m, &self.applied_n, &asked_n);
-        self.slow_m_s += (seen.velocity_m_s - self.slow_m_s) * decay(self.period_s, SLOW_S);
-        Push {
-            along: self.along,
-            size_n,
-            at_m,
-            velocity_m_s: seen.velocity_m_s,
-            hand_n: seen.hand_n,
-            out_m_s: seen.velocity_m_s.dot(&self.along),
-            carried: seen.hand_n.norm() / size_n.max(1e-9),
+            since.rests_s += looked_s;
         }
     }
 
-    /// Decides on the share that is withheld.
-    fn judge(&mut self, push: &Push<D>, threat_n: f64) {
-        let before = self.withheld;
-        let flown = self.flight.look(push, &self.applied_n, before, &self.observer);
-        if flown.share > before {
-            self.withheld += (flown.share - before) * decay(self.period_s, FADE_S);
-        }
-        self.let_go |= flown.surely;
-        if self.withheld > 0.5 && before <= 0.5 {
-            self.evidence.begin();
-        }
-        let (says, seen) = self.evidence.look(push, &self.applied_n, self.withheld);
-        self.let_go &= !seen;
-        if self.withheld > 0.0 && flown.share <= self.withheld && !self.gone {
-            let weak = push.size_n.max(threat_n) < 0.3 * WEAK_N;
-            let says = if weak || before <= HARDLY { Says::Hand } else { says };
-            self.withheld = self.moved(says);
-        }
-        self.let_go &= self.withheld > 0.0;
-        self.gone |= self.let_go && self.withheld > NEARLY_ALL && self.evidence.quiet_s() > GONE_AFTER_S;
+    fn brake(&self, now: &Parabola<D>) -> SVector<f64, D> {
+        let speed_m_s = now.velocity_m_s.norm();
+        let brake_n = self.brake_n_s_m * (speed_m_s - STILL_M_S).max(0.0);
+        now.velocity_m_s * (-brake_n / speed_m_s.max(STILL_M_S))
     }
 
-    fn moved(&self, says: Says) -> f64 {
-        let (withheld, dt_s) = (self.withheld, self.period_s);
-        let moved = match says {
-            Says::Hand => withheld * (1.0 - decay(dt_s, BACK_S)),
-            Says::Perhaps => withheld - dt_s / PERHAPS_BACK_S,
-            Says::Free => withheld + dt_s / FREE_S,
-            Says::Nothing => withheld + dt_s / NOTHING_S,
-        };
-        if moved < 1e-3 { 0.0 } else { moved.min(1.0) }
-    }
-
-    fn brake(&self, push: &Push<D>) -> SVector<f64, D> {
-        let speed_m_s = push.velocity_m_s.norm();
-        let slow_m_s = self.slow_m_s.norm();
-        let sure_m_s = speed_m_s.min(slow_m_s * (slow_m_s / COUNTS_M_S).max(1.0));
-        let brake_n = self.brake_n_s_m * (sure_m_s - STILL_M_S).max(0.0);
-        push.velocity_m_s * (brake_n.min(push.size_n) / speed_m_s.max(STILL_M_S))
+    fn force(&mut self, asked_n: SVector<f64, D>, brake_n: SVector<f64, D>, step_n: f64, dt_s: f64) -> SVector<f64, D> {
+        match self.grip {
+            Grip::Gone => {
+                self.withheld = 1.0;
+                SVector::zeros()
+            }
+            Grip::LetGo(since) => {
+                // The first look takes the force off; what follows is the brake's own.
+                let before_n = if since.lasted_s <= dt_s { SVector::zeros() } else { self.applied_n };
+                let most_n = asked_n.norm();
+                self.withheld = 1.0;
+                if since.lasted_s <= dt_s {
+                    return SVector::zeros();
+                }
+                let braked_n = within(brake_n, most_n);
+                within(before_n + within(braked_n - before_n, step_n), most_n)
+            }
+            Grip::Doubtful { .. } | Grip::Held => {
+                // What the asked force changes by comes first, so that both together keep the slew limit.
+                let kept_n = asked_n * (1.0 - self.withheld);
+                let room_n = (step_n - (kept_n - self.applied_n).norm()).max(0.0);
+                let change = (room_n / asked_n.norm().max(1e-9)).min(1.0);
+                let fades = self.grip != Grip::Held;
+                let back = change.min(dt_s / RETURN_S);
+                self.withheld = if fades { (self.withheld + change).min(1.0) } else { (self.withheld - back).max(0.0) };
+                asked_n * (1.0 - self.withheld)
+            }
+        }
     }
 }
 
-/// Share of the way that a low-pass of this time constant goes in a period.
-fn decay(period_s: f64, time_s: f64) -> f64 {
-    (period_s / time_s).min(1.0)
+impl Since {
+    /// The grip that this shows, if any.
+    fn verdict<const D: usize>(&self) -> Option<Grip<D>> {
+        if self.pulls_s >= PULLS_S {
+            Some(Grip::Held)
+        } else if self.rests_s > GONE_AFTER_S {
+            Some(Grip::Gone)
+        } else if self.coasts_s > COASTS_S {
+            Some(Grip::LetGo(*self))
+        } else {
+            None
+        }
+    }
+}
+
+/// The vector, shortened to this length.
+fn within<const D: usize>(vector: SVector<f64, D>, most: f64) -> SVector<f64, D> {
+    let norm = vector.norm();
+    if norm > most { vector * (most / norm) } else { vector }
 }
 
 #[cfg(test)]

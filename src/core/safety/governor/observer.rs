@@ -1,99 +1,174 @@
-//! What the hand does to the handle, told from the handle's reading and the force that was applied.
+//! The handle's last readings with the force that was applied between them, at true times.
 //!
-//! A Luenberger observer of place, velocity and the hand's force (taken as constant), all three poles at 500 rad/s: a change of the
-//! force shows after 4 to 6 ms, an encoder step of 10 um as 0.15 N. Model: `m a = F + f_h - c v`.
+//! A late tick changes only the spacing of the samples. From the model `m x'' + c x' = F + f_hand` follows that
+//! `y = m x + c ∫x - ∬F` has the hand's force as its second derivative, whatever `F` did in between. A [`Past`] is this `y`, and
+//! [`fit`](super::fit) takes the derivative.
 
 use nalgebra::SVector;
 
-/// The observer's pole, rad/s. At 700 the fade comes 2 ms sooner and three times as often to a hand that is there.
-const POLE_RAD_S: f64 = 500.0;
-/// Least mass that is believed, kg: a lighter handle moves farther in a tick than can be told.
-const LEAST_KG: f64 = 0.01;
-
-/// A handle alone, without a hand.
+/// A haptic handle without a hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Handle {
-    /// Apparent mass at the grip, kg; 0: not known.
+    /// Apparent mass at the grip, kg; 0: unknown.
     pub mass_kg: f64,
-    /// What its bearings and cables brake, N s/m.
+    /// Viscous friction of bearings and cables, N s/m.
     pub damping_n_s_m: f64,
-    /// Most viscous damping that the device can make without shaking, N s/m.
+    /// Largest viscous damping that the device renders without vibration, N s/m.
     pub brake_n_s_m: f64,
+    /// Step of the position reading, m.
+    pub step_m: f64,
 }
 
-/// What was found at one instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Observed<const D: usize> {
-    /// Reading of the handle, m.
-    pub(super) at_m: SVector<f64, D>,
-    /// Velocity, m/s.
-    pub(super) velocity_m_s: SVector<f64, D>,
-    /// Force of the hand on the handle, N.
-    pub(super) hand_n: SVector<f64, D>,
-}
+/// Samples kept: the longest fit spans 30 ms, and a rate above 2.5 kHz is thinned out to [`SPACING_S`].
+pub(super) const ROOM: usize = 96;
+/// A reading closer to the last sample than this is not kept, s.
+const SPACING_S: f64 = 0.4e-3;
+/// After a longer gap nothing is known of the force in it: a device takes its force off by itself when no command comes, s.
+const GAP_S: f64 = 0.010;
+/// Least mass that is believed, kg: a lighter handle moves farther in a tick than can be judged.
+const MIN_KG: f64 = 0.01;
 
 #[derive(Clone, Copy, Debug)]
+struct Sample<const D: usize> {
+    t_s: f64,
+    at_m: SVector<f64, D>,
+    /// Mean force applied from this sample to the next one, N.
+    applied_n: SVector<f64, D>,
+}
+
+/// Ring of samples.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Observer<const D: usize> {
-    mass_kg: f64,
-    damping_n_s_m: f64,
-    period_s: f64,
-    /// What of the reading's surprise goes into place (1), velocity (1/s) and force (N/m).
-    gains: [f64; 3],
-    last: Option<Observed<D>>,
+    handle: Handle,
+    ring: [Sample<D>; ROOM],
+    newest: usize,
+    count: usize,
+    /// Impulse of the force since the newest sample, N s, and the time in it, s.
+    impulse_n_s: SVector<f64, D>,
+    over_s: f64,
 }
 
 impl<const D: usize> Observer<D> {
-    /// Of this handle, in a loop of this period (s).
-    pub(super) fn new(handle: Handle, period_s: f64) -> Self {
-        let mass_kg = handle.mass_kg.max(LEAST_KG);
-        let pole = libm::exp(-POLE_RAD_S * period_s);
-        let rest = 1.0 - pole;
+    pub(super) fn new(handle: Handle) -> Self {
+        let blank = Sample { t_s: 0.0, at_m: SVector::zeros(), applied_n: SVector::zeros() };
+        let handle = Handle { mass_kg: handle.mass_kg.max(MIN_KG), ..handle };
+        Self { handle, ring: [blank; ROOM], newest: 0, count: 0, impulse_n_s: SVector::zeros(), over_s: 0.0 }
+    }
+
+    /// Forgets all samples.
+    pub(super) fn forget(&mut self) {
+        self.count = 0;
+        (self.impulse_n_s, self.over_s) = (SVector::zeros(), 0.0);
+    }
+
+    /// Adds `dt_s` (s) during which `applied_n` (N) was applied.
+    pub(super) fn held(&mut self, applied_n: &SVector<f64, D>, dt_s: f64) {
+        self.impulse_n_s += applied_n * dt_s;
+        self.over_s += dt_s;
+    }
+
+    /// Adds a reading (m) taken at `t_s` (s). One that is not newer than the last sample is ignored.
+    pub(super) fn read(&mut self, t_s: f64, at_m: SVector<f64, D>) {
+        if self.count > 0 {
+            let since_s = t_s - self.ring[self.newest].t_s;
+            if since_s > GAP_S || since_s < -GAP_S {
+                self.forget();
+            } else if since_s < SPACING_S {
+                return;
+            } else if self.over_s > 0.0 {
+                self.ring[self.newest].applied_n = self.impulse_n_s / self.over_s;
+            }
+        }
+        self.newest = (self.newest + 1) % ROOM;
+        self.ring[self.newest] = Sample { t_s, at_m, applied_n: SVector::zeros() };
+        self.count = (self.count + 1).min(ROOM);
+        (self.impulse_n_s, self.over_s) = (SVector::zeros(), 0.0);
+    }
+
+    /// The samples relative to the newest one.
+    pub(super) fn past(&self) -> Past<D> {
+        let mut past = Past::blank(self.handle, self.count);
+        let now = self.ring[self.newest];
+        let mut impulse_n_s = SVector::<f64, D>::zeros();
+        let mut twice_n_s2 = SVector::<f64, D>::zeros();
+        let mut way_m_s = SVector::<f64, D>::zeros();
+        past.at_m = now.at_m;
+        for back in 1..self.count {
+            let sample = self.ring[(self.newest + ROOM - back) % ROOM];
+            let next = self.ring[(self.newest + ROOM - back + 1) % ROOM];
+            let dt_s = next.t_s - sample.t_s;
+            twice_n_s2 += impulse_n_s * dt_s + sample.applied_n * (0.5 * dt_s * dt_s);
+            impulse_n_s += sample.applied_n * dt_s;
+            way_m_s += (sample.at_m + next.at_m - now.at_m * 2.0) * (0.5 * dt_s);
+            let from_now_m = sample.at_m - now.at_m;
+            past.t_s[back] = sample.t_s - now.t_s;
+            past.from_now_m[back] = from_now_m;
+            past.impulse_n_s[back] = impulse_n_s;
+            past.applied_n[back] = sample.applied_n;
+            past.y[back] = from_now_m * self.handle.mass_kg - way_m_s * self.handle.damping_n_s_m - twice_n_s2;
+        }
+        past
+    }
+}
+
+/// Samples relative to the newest one, which has index 0.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Past<const D: usize> {
+    pub(super) handle: Handle,
+    pub(super) count: usize,
+    /// The newest reading, m.
+    pub(super) at_m: SVector<f64, D>,
+    /// Time after the newest sample, s: none is above 0.
+    pub(super) t_s: [f64; ROOM],
+    /// Position from the newest one, m.
+    pub(super) from_now_m: [SVector<f64, D>; ROOM],
+    /// Impulse of the applied force from this sample until now, N s.
+    pub(super) impulse_n_s: [SVector<f64, D>; ROOM],
+    /// Force applied from this sample to the next one, N.
+    pub(super) applied_n: [SVector<f64, D>; ROOM],
+    /// `m x + c ∫x - ∬F`, kg m.
+    pub(super) y: [SVector<f64, D>; ROOM],
+}
+
+impl<const D: usize> Past<D> {
+    fn blank(handle: Handle, count: usize) -> Self {
+        let zeros = [SVector::zeros(); ROOM];
         Self {
-            mass_kg,
-            // A step of Euler's method stays stable.
-            damping_n_s_m: handle.damping_n_s_m.clamp(0.0, 0.5 * mass_kg / period_s),
-            period_s,
-            gains: [
-                1.0 - pole * pole * pole,
-                1.5 * rest * rest * (1.0 + pole) / period_s,
-                mass_kg * (rest * rest * rest) / (period_s * period_s),
-            ],
-            last: None,
+            handle,
+            count,
+            at_m: SVector::zeros(),
+            t_s: [0.0; ROOM],
+            from_now_m: zeros,
+            impulse_n_s: zeros,
+            applied_n: zeros,
+            y: zeros,
         }
     }
 
-    /// Kinetic energy at this velocity (m/s), J.
-    pub(super) fn kinetic_j(&self, velocity_m_s: &SVector<f64, D>) -> f64 {
-        0.5 * self.mass_kg * velocity_m_s.norm_squared()
+    /// Largest force applied in the last `span_s` (s), N, and the smallest part of it along a unit vector, N.
+    pub(super) fn range(&self, span_s: f64, along: &SVector<f64, D>) -> Range {
+        let mut range = Range { max_n: 0.0, min_along_n: f64::INFINITY };
+        for k in 1..self.count {
+            if self.t_s[k - 1] < -span_s {
+                break;
+            }
+            range.max_n = range.max_n.max(self.applied_n[k].norm());
+            range.min_along_n = range.min_along_n.min(self.applied_n[k].dot(along));
+        }
+        range
     }
+}
 
-    /// The handle is here now (m), and this force (N) was held since the last call. The first look takes the handle to be at rest, in
-    /// balance with the force that is asked for (N).
-    pub(super) fn step(
-        &mut self,
-        at_m: SVector<f64, D>,
-        held_n: &SVector<f64, D>,
-        asked_n: &SVector<f64, D>,
-    ) -> Observed<D> {
-        let first = Observed { at_m, velocity_m_s: SVector::zeros(), hand_n: -asked_n };
-        let Observed { at_m: last_m, velocity_m_s, hand_n } = self.last.map_or(first, |last| Observed { ..last });
-        let dt_s = self.period_s;
-        let held_n = if self.last.is_some() { *held_n } else { *asked_n };
-        let acceleration_m_s2 = (held_n + hand_n - velocity_m_s * self.damping_n_s_m) / self.mass_kg;
-        let expected_m = last_m + velocity_m_s * dt_s + acceleration_m_s2 * (0.5 * dt_s * dt_s);
-        let surprise_m = at_m - expected_m;
-        let [place, velocity, force] = self.gains;
-        let estimate = Observed {
-            at_m: expected_m + surprise_m * place,
-            velocity_m_s: velocity_m_s + acceleration_m_s2 * dt_s + surprise_m * velocity,
-            hand_n: hand_n + surprise_m * force,
-        };
-        self.last = Some(estimate);
-        Observed { at_m, ..estimate }
-    }
+/// Extremes of the applied force, N.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Range {
+    pub(super) max_n: f64,
+    pub(super) min_along_n: f64,
+}
 
-    /// Knows nothing any more.
-    pub(super) const fn forget(&mut self) {
-        self.last = None;
+impl Range {
+    /// How much the force has changed, N.
+    pub(super) fn change_n(&self) -> f64 {
+        (self.max_n - self.min_along_n).max(0.0)
     }
 }

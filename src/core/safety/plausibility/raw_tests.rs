@@ -197,7 +197,9 @@ fn a_sensor_without_noise_that_stops_from_full_speed_is_frozen_while_the_arm_goe
 fn healthy_devices_raise_no_alarm_at_any_rate_and_on_any_clock() {
     for noise_n in [0.02, 0.0] {
         for at_wrist in [false, true] {
-            for (sensor_s, handle_s, arm_s) in [(1e-3, 1e-3, 1e-3), (1e-2, 1e-3, 1e-3), (1e-3, 1e-2, 5e-3), (3e-3, 7e-3, 2e-3), (5e-4, 5e-4, 1e-3)] {
+            for (sensor_s, handle_s, arm_s) in
+                [(1e-3, 1e-3, 1e-3), (1e-2, 1e-3, 1e-3), (1e-3, 1e-2, 5e-3), (3e-3, 7e-3, 2e-3), (5e-4, 5e-4, 1e-3)]
+            {
                 for late in [0.0, 0.05] {
                     let rig = Rig { sensor_s, handle_s, arm_s, noise_n, at_wrist, late, seed: 7 };
                     assert_eq!(told(&rig, [Fault::None; 3], 10.0), None, "{rig:?}");

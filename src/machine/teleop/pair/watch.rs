@@ -40,7 +40,7 @@ impl<L: Link> Pair<L> {
             hand_silent_s: if self.far.is_there { 0.0 } else { inputs.silent_s },
         });
         (self.force.tip_n, inputs.tip_m, inputs.hand.position_m) = (admitted.force_n, admitted.tip_m, admitted.hand_m);
-        self.hand_speed_m_s = self.speed.step(now_s - inputs.age_s, inputs.hand.position_m);
+        self.hand_speed_m_s = self.speed.step(inputs.hand_s(now_s), inputs.hand.position_m);
         if self.far.is_there {
             self.far.parcel.force_n = self.force.tip_n;
         } else {

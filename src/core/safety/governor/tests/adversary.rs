@@ -110,10 +110,12 @@ fn episode_j(noise: &mut Noise, settings: ChainSettings) -> f64 {
         }
         plan.left -= 1;
         let request = Request {
+            t_s: f64::from(tick) * PERIOD_S,
             force_n: plan.force_n(tick, speed_m_s, noise).map(Vector1::new),
             age_s: 0.0,
             speed_m_s: 1.0,
             hand_m: Some(Vector1::new((at_m / 1e-5_f64).round() * 1e-5)),
+            hand_age_s: 0.0,
             permitted: true,
         };
         let held_n = chain.step(&request).0.x;

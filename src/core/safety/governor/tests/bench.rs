@@ -137,10 +137,12 @@ impl Bench {
         self.commands_m[self.tick % PAST] = self.command_m;
         let asked_n = self.asked(read_m);
         let (force_n, report) = self.chain.step(&Request {
+            t_s: now_s,
             force_n: Some(Vector1::new(asked_n)),
             age_s: 0.0,
             speed_m_s,
             hand_m: Some(Vector1::new(read_m)),
+            hand_age_s: 0.0,
             permitted: true,
         });
         (self.force_n, self.report) = (force_n.x, report);

@@ -1,0 +1,135 @@
+//! The hand's force as the second derivative of [`Past::y`]: one parabola, or a parabola whose curvature steps once.
+//!
+//! Each force comes with a bound on its error: the largest that readings in steps can cause (half a step each, all of the worst
+//! sign), or three deviations of what the fit leaves over, whichever is larger. So friction that sticks and slips, vibration and
+//! inexact times widen the bound instead of looking like a hand.
+
+use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
+
+use super::observer::Past;
+
+/// Fewest samples on each side of a fit's parameters.
+const MIN_SAMPLES: usize = 5;
+/// Deviations of the residuals that count.
+const DEVIATIONS: f64 = 3.0;
+/// Half a tick's tolerance in the length of a window, s: times are rounded.
+const TOLERANCE_S: f64 = 1e-4;
+
+/// Hand force over the last milliseconds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parabola<const D: usize> {
+    /// Force of the hand on the handle, N.
+    pub(super) hand_n: SVector<f64, D>,
+    /// Bound on its error, N.
+    pub(super) error_n: f64,
+    /// Velocity at the newest sample, m/s.
+    pub(super) velocity_m_s: SVector<f64, D>,
+    /// Mean applied force, N.
+    pub(super) applied_n: SVector<f64, D>,
+    /// Length of the window, s.
+    pub(super) span_s: f64,
+}
+
+/// A hand force that stepped once.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kink<const D: usize> {
+    /// Force of the hand before and after the step, N.
+    pub(super) before_n: SVector<f64, D>,
+    pub(super) after_n: SVector<f64, D>,
+    /// Bounds on the errors of the force after the step, and of the step, N.
+    pub(super) after_error_n: f64,
+    pub(super) step_error_n: f64,
+    /// Mean applied force before and after the step, N.
+    pub(super) applied_before_n: SVector<f64, D>,
+    pub(super) applied_after_n: SVector<f64, D>,
+    /// Velocity at the newest sample, m/s.
+    pub(super) velocity_m_s: SVector<f64, D>,
+    /// Time since the step, and length of both windows together, s.
+    pub(super) after_s: f64,
+    pub(super) span_s: f64,
+}
+
+impl<const D: usize> Past<D> {
+    /// The sample that ends a window of `span_s` (s) and of at least [`MIN_SAMPLES`] that begins at `from`.
+    fn window(&self, from: usize, span_s: f64) -> Option<usize> {
+        let at_least = from + MIN_SAMPLES - 1;
+        let begin_s = *self.t_s.get(from)?;
+        (at_least..self.count).find(|k| begin_s - self.t_s[*k] >= span_s - TOLERANCE_S)
+    }
+
+    /// Mean force applied between two samples, N.
+    fn mean_n(&self, old: usize, new: usize) -> SVector<f64, D> {
+        (self.impulse_n_s[old] - self.impulse_n_s[new]) / (self.t_s[new] - self.t_s[old])
+    }
+
+    /// Fits one parabola to the last `span_s` (s).
+    pub(super) fn parabola(&self, span_s: f64) -> Option<Parabola<D>> {
+        let end = self.window(0, span_s)?;
+        let n = (end + 1) as f64;
+        let mean_s = self.t_s[..=end].iter().sum::<f64>() / n;
+        let mean_y = self.y[..=end].iter().sum::<SVector<f64, D>>() / n;
+        let centred = |k: usize| self.t_s[k] - mean_s;
+        let squares = (0..=end).map(|k| centred(k).powi(2)).sum::<f64>();
+        let cubes = (0..=end).map(|k| centred(k).powi(3)).sum::<f64>();
+        // Orthogonal to 1 and t over these samples, evenly spaced or not.
+        let square = |k: usize| centred(k) * (centred(k) - cubes / squares) - squares / n;
+        let norm = (0..=end).map(|k| square(k).powi(2)).sum::<f64>();
+        let slope = (0..=end).map(|k| self.y[k] * centred(k)).sum::<SVector<f64, D>>() / squares;
+        let bend = (0..=end).map(|k| self.y[k] * square(k)).sum::<SVector<f64, D>>() / norm;
+        let weights = (0..=end).map(|k| square(k).abs()).sum::<f64>() / norm;
+        let left = |k: usize| (self.y[k] - mean_y - slope * centred(k) - bend * square(k)).norm_squared();
+        let residual = ((0..=end).map(left).sum::<f64>() / (n - 3.0)).sqrt();
+        let worst = 0.5 * self.handle.mass_kg * self.handle.step_m * weights;
+        // y' = m v + c (x - x_now) + the impulse until now; the last two are none at the newest sample.
+        let velocity_m_s = (slope + bend * (2.0 * centred(0) - cubes / squares)) / self.handle.mass_kg;
+        let fit = Parabola {
+            hand_n: bend * 2.0,
+            error_n: 2.0 * worst.max(DEVIATIONS * residual / norm.sqrt()),
+            velocity_m_s,
+            applied_n: self.mean_n(end, 0),
+            span_s: -self.t_s[end],
+        };
+        fit.error_n.is_finite().then_some(fit)
+    }
+
+    /// Fits a parabola whose curvature steps `after_s` (s) ago and that reaches `before_s` (s) farther back.
+    pub(super) fn kink(&self, before_s: f64, after_s: f64) -> Option<Kink<D>> {
+        let at = self.window(0, after_s)?;
+        let end = self.window(at, before_s)?;
+        let span_s = -self.t_s[end];
+        // In units of the span, for the condition of the equations.
+        let row = |k: usize| {
+            let u = self.t_s[k] / span_s;
+            let after = (self.t_s[k] - self.t_s[at]).max(0.0) / span_s;
+            Vector4::new(1.0, u, 0.5 * u * u, 0.5 * after * after)
+        };
+        let normal = (0..=end).map(|k| row(k) * row(k).transpose()).sum::<Matrix4<f64>>();
+        let right = (0..=end).map(|k| row(k) * self.y[k].transpose()).sum::<SMatrix<f64, 4, D>>();
+        let inverse = normal.try_inverse()?;
+        let solved = inverse * right;
+        let left = |k: usize| (self.y[k] - solved.transpose() * row(k)).norm_squared();
+        let residual = ((0..=end).map(left).sum::<f64>() / (end as f64 - 3.0)).sqrt();
+        let half_step = 0.5 * self.handle.mass_kg * self.handle.step_m;
+        // Bound on the error of a sum of the four parameters.
+        let bound = |sum: Vector4<f64>| {
+            let weights = (0..=end).map(|k| (inverse * row(k)).dot(&sum).abs()).sum::<f64>();
+            let deviation = sum.dot(&(inverse * sum)).max(0.0).sqrt();
+            (half_step * weights).max(DEVIATIONS * residual * deviation) / (span_s * span_s)
+        };
+        let before_n: SVector<f64, D> = solved.row(2).transpose() / (span_s * span_s);
+        let step_n: SVector<f64, D> = solved.row(3).transpose() / (span_s * span_s);
+        let slope: SVector<f64, D> = (solved.row(1) - solved.row(3) * (self.t_s[at] / span_s)).transpose() / span_s;
+        let fit = Kink {
+            before_n,
+            after_n: before_n + step_n,
+            after_error_n: bound(Vector4::new(0.0, 0.0, 1.0, 1.0)),
+            step_error_n: bound(Vector4::w()),
+            applied_before_n: self.mean_n(end, at),
+            applied_after_n: self.mean_n(at, 0),
+            velocity_m_s: slope / self.handle.mass_kg,
+            after_s: -self.t_s[at],
+            span_s,
+        };
+        (fit.after_error_n.is_finite() && fit.step_error_n.is_finite()).then_some(fit)
+    }
+}

@@ -228,13 +228,15 @@ impl Bench {
         let (console, follower) = (self.console.pace.tick_in(period), self.follower.pace.tick_in(period));
         // In the order in which they wake.
         let follower_first =
-            matches!((console, follower), (Some((_, console_s)), Some((_, follower_s))) if follower_s < console_s);
-        if follower_first {
-            follower.into_iter().for_each(|(time, late_s)| self.step_follower(time, late_s));
+            console.zip(follower).is_some_and(|((_, console_s), (_, follower_s))| follower_s < console_s);
+        if let (Some((time, late_s)), true) = (follower, follower_first) {
+            self.step_follower(time, late_s);
         }
-        console.into_iter().for_each(|(time, late_s)| self.step_console(time, late_s));
-        if !follower_first {
-            follower.into_iter().for_each(|(time, late_s)| self.step_follower(time, late_s));
+        if let Some((time, late_s)) = console {
+            self.step_console(time, late_s);
+        }
+        if let (Some((time, late_s)), false) = (follower, follower_first) {
+            self.step_follower(time, late_s);
         }
         let ticked = [follower.is_some(), console.is_some()];
         let (console, follower) = (self.console.rig.wire(), self.follower.rig.wire());

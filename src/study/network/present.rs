@@ -171,7 +171,7 @@ impl Report {
     fn on(&self, clock: ClockProfile) -> Self {
         let rows = self.rows.iter().filter(|row| row.clock == clock).cloned().collect();
         let aims = self.aims.iter().filter(|aim| aim.clock == clock).cloned().collect();
-        Self { rows, aims, ..self.clone() }
+        Self { aims, rows, ..self.clone() }
     }
 
     /// Markdown for a document or a terminal.

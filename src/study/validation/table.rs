@@ -175,10 +175,11 @@ impl Findings for Report {
 fn by_clock(all: &[Rendering]) -> String {
     let Some(first) = all.first() else { return String::new() };
     let perfect = all.iter().find(|rendering| rendering.clock == ClockProfile::Perfect);
-    let heads: String = all.iter().map(|rendering| format!(" {} |", rendering.clock)).collect();
+    let heads: Vec<_> = all.iter().map(|rendering| format!(" {} |", rendering.clock)).collect();
     let mut out = format!(
-        "Error at the horizon of {:.0} ms by clock, MAE (N) / over that on the perfect clock:\n\n| mode |{heads}\n|---|{}\n",
+        "Error at the horizon of {:.0} ms by clock, MAE (N) / over that on the perfect clock:\n\n| mode |{}\n|---|{}\n",
         1e3 * first.delay_s,
+        heads.concat(),
         "---|".repeat(all.len())
     );
     for (at, figures) in first.at_horizon.iter().enumerate() {

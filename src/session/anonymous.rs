@@ -6,7 +6,7 @@
 use std::{collections::BTreeMap, fs, ops::Range, path::Path, sync::atomic::AtomicBool, time::UNIX_EPOCH};
 
 use nima_core::impedance::Mode;
-use nima_machine::rig::Side;
+use nima_machine::{rig::Side, runtime::ClockProfile};
 use nima_recording::{
     messages::{
         JointStateDecoder,
@@ -115,8 +115,15 @@ const fn since(time_ns: u64, begin_ns: u64) -> u64 {
 fn about(table: &BTreeMap<String, String>) -> BTreeMap<String, String> {
     let words = WORDS.map(|(key, words)| (key, words.to_vec()));
     let mode = table.get("mode").and_then(|mode| mode.parse::<Mode>().ok()).map(|mode| ("mode", mode.to_string()));
+    let profile = table.get("clock_profile").and_then(|profile| profile.parse::<ClockProfile>().ok());
+    let profile = profile.map(|profile| ("clock_profile", profile.to_string()));
     let mut about = kept(table, &words, &NUMBERS);
-    about.extend(mode.into_iter().chain([(ANONYMOUS, "yes".to_owned())]).map(|(key, value)| (key.to_owned(), value)));
+    about.extend(
+        mode.into_iter()
+            .chain(profile)
+            .chain([(ANONYMOUS, "yes".to_owned())])
+            .map(|(key, value)| (key.to_owned(), value)),
+    );
     about
 }
 

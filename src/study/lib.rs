@@ -5,6 +5,7 @@
 #![warn(missing_docs)]
 
 pub mod baselines;
+pub mod clocks;
 pub mod effects;
 pub mod faults;
 pub mod gates;

@@ -3,7 +3,8 @@
 //!
 //! The parts of the loop are the real ones (identifier, link, tracking, renderer, gates); hand, handle and follower are
 //! models. SI units, workspace frame (z up, tissue at rest at z = 0), 1 kHz. Deterministic for a seed. Unlike in the
-//! simulated world of the scenes, the hand can open here and leave the handle free.
+//! simulated world of the scenes, the hand can open here and leave the handle free. Ticks come when the clock of the trial
+//! says; meanwhile hand, handle and follower move for the true time, with the last force and command held.
 
 use std::f64::consts::TAU;
 
@@ -14,13 +15,18 @@ use nima_core::{
     safety::{Chain, ChainSettings, GateReport, Request},
     signal::Speed,
 };
-use nima_machine::teleop::{Link as _, ProgrammedLink, Tracking};
+use nima_machine::{
+    runtime::{TickTimes, VirtualClock},
+    teleop::{Link as _, ProgrammedLink, Tracking},
+};
 use nima_world::{Tissue, scene::Tissue as TissueConfig};
 
 /// Ticks per second.
 pub(super) const RATE_HZ: f64 = 1000.0;
-/// Integration steps of the equation of motion per tick.
+/// Integration steps of the equation of motion per period.
 const SUBSTEPS: u32 = 4;
+/// An interval that is longer than a period by less than this part of it is one period: times are rounded.
+const ROUNDING_PERIODS: f64 = 1e-6;
 /// Speed at which Coulomb friction is nearly whole, m/s.
 const RUBS_M_S: f64 = 0.002;
 /// As in the scenes: noise of the force sensor (N), resolution of the handle's position (m), natural frequency (Hz) and
@@ -82,13 +88,16 @@ pub(super) struct Trial {
     pub(super) handle: Handle,
     pub(super) grip: Grip,
     pub(super) seed: u64,
+    /// When the loop's ticks come.
+    pub(super) clock: VirtualClock,
 }
 
 /// The state of the bench.
 #[derive(Debug)]
 pub(super) struct Pair {
     trial: Trial,
-    tick: u64,
+    times: TickTimes,
+    now_s: f64,
     handle_m: Vector3<f64>,
     handle_m_s: Vector3<f64>,
     /// Whether the hand grips the handle.
@@ -126,9 +135,12 @@ impl Pair {
         let tremor_phase = std::array::from_fn(|_| std::array::from_fn(|_| TAU * noise.uniform()));
         let mut chain = Chain::new(trial.gates, 1.0 / RATE_HZ);
         chain.set_gain_above_one(trial.gain);
+        let mut times = trial.clock.tick_times(RATE_HZ);
+        let now_s = times.advance().now_s;
         Ok(Self {
             trial: *trial,
-            tick: 0,
+            times,
+            now_s,
             handle_m: at_m,
             handle_m_s: Vector3::zeros(),
             gripped: true,
@@ -149,6 +161,11 @@ impl Pair {
             force_n: Vector3::zeros(),
             report: GateReport::default(),
         })
+    }
+
+    /// Time of the last tick, s; about 0 at the beginning.
+    pub(super) const fn now_s(&self) -> f64 {
+        self.now_s
     }
 
     pub(super) const fn handle_m(&self) -> Vector3<f64> {
@@ -184,12 +201,19 @@ impl Pair {
         self.tissue = Tissue::new(tissue);
     }
 
-    /// One tick; the hand's intended position (m) is given.
-    pub(super) fn step(&mut self, intended_m: &Vector3<f64>) {
-        self.tick += 1;
-        let now_s = self.tick as f64 / RATE_HZ;
-        self.move_handle(&(intended_m + self.tremor(now_s)));
-        self.follow();
+    /// One tick. `intended_m` returns the hand's intended position (m) at a time (s); it is called with rising times up to
+    /// that of the tick, at most a period apart, and with how long after the one before each is (s).
+    pub(super) fn step(&mut self, mut intended_m: impl FnMut(f64, f64) -> Vector3<f64>) {
+        let now_s = self.times.advance().now_s;
+        let before_s = std::mem::replace(&mut self.now_s, now_s);
+        let pieces = ((now_s - before_s) * RATE_HZ - ROUNDING_PERIODS).ceil().max(1.0);
+        let piece_s = (now_s - before_s) / pieces;
+        for piece in 1..=pieces as u32 {
+            let t_s = before_s + piece_s * f64::from(piece);
+            let intended_m = intended_m(t_s, piece_s) + self.tremor(t_s);
+            self.move_handle(&intended_m, piece_s);
+            self.follow(piece_s);
+        }
         self.tip_n = self.tissue.contact_n(&self.tip_m, &self.tip_m_s);
         let (noise, noise_n) = (&mut self.noise, self.trial.noise_n);
         let force_n = self.tip_n + Vector3::from_fn(|_, _| noise_n * noise.gaussian());
@@ -197,7 +221,7 @@ impl Pair {
         self.link.send(self.identifier.parcel());
         let read_m = self.handle_m.map(|x| (x / RESOLUTION_M).round() * RESOLUTION_M);
         self.speed_m_s = self.speed.step(now_s, read_m);
-        self.command(&read_m);
+        self.command(&read_m, now_s - before_s);
         let follower_m = self.tracking.step(&self.command_m, &self.tip_m, 0);
         let motion_m = match self.trial.own_motion {
             OwnMotion::Follower => follower_m,
@@ -217,8 +241,8 @@ impl Pair {
         force_n
     }
 
-    fn move_handle(&mut self, intended_m: &Vector3<f64>) {
-        let dt_s = 1.0 / (RATE_HZ * f64::from(SUBSTEPS));
+    fn move_handle(&mut self, intended_m: &Vector3<f64>, for_s: f64) {
+        let dt_s = for_s / f64::from(SUBSTEPS);
         let (handle, grip) = (self.trial.handle, self.trial.grip);
         let (mass_kg, stiffness_n_m, friction_n_s_m) =
             if self.gripped { (grip.kg, grip.n_m, grip.n_s_m) } else { (handle.kg, 0.0, handle.n_s_m) };
@@ -230,17 +254,17 @@ impl Pair {
         }
     }
 
-    /// The follower: critically damped second order, exact over the tick for a constant command.
-    fn follow(&mut self) {
-        let (omega, dt_s) = (TAU * FOLLOWER_HZ, 1.0 / RATE_HZ);
+    /// The follower: critically damped second order, exact for a constant command.
+    fn follow(&mut self, dt_s: f64) {
+        let omega = TAU * FOLLOWER_HZ;
         let (offset_m, decay) = (self.tip_m - self.command_m, (-omega * dt_s).exp());
         let slope_m_s = self.tip_m_s + offset_m * omega;
         self.tip_m = self.command_m + (offset_m + slope_m_s * dt_s) * decay;
         self.tip_m_s = (self.tip_m_s - slope_m_s * (omega * dt_s)) * decay;
     }
 
-    fn command(&mut self, read_m: &Vector3<f64>) {
-        let (way_m, most_m) = (read_m - self.command_m, FOLLOWER_M_S / RATE_HZ);
+    fn command(&mut self, read_m: &Vector3<f64>, passed_s: f64) {
+        let (way_m, most_m) = (read_m - self.command_m, FOLLOWER_M_S * passed_s);
         self.command_m += way_m * (most_m / way_m.norm().max(most_m));
     }
 

@@ -1,9 +1,10 @@
 //! Letting go: a hand presses the tissue with up to 5 N, opens, and the handle is alone with the force that the link still delivers.
 //!
-//! Takes nothing; gives a [`Report`]: one [`Row`] for every mode and baseline, delay, force and situation (held for two seconds, and let
+//! Takes the clocks of the loop; gives a [`Report`]: one [`Row`] for every clock, mode and baseline, delay, force and situation (held for two seconds, and let
 //! go while still pressing), with and without the governor, all other gates as they come; and with the governor the worst over handles
 //! that are not the one that it assumes, and over the viscosity of its brake.
 
+mod grid;
 mod present;
 
 use nalgebra::Vector3;
@@ -11,14 +12,14 @@ use nima_core::{
     impedance::{Mode, OwnMotion, Recipe, SettingsError},
     safety::ChainSettings,
 };
-use nima_machine::config::ConfigError;
+use nima_machine::{
+    config::ConfigError,
+    runtime::{ClockProfile, VirtualClock},
+};
 use nima_world::scene::{Scene, Tissue};
 use serde::Serialize;
 
-use super::{
-    Experiment,
-    pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial},
-};
+use super::pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial};
 
 /// Delays of the link, ms.
 pub const DELAYS_MS: [f64; 6] = [0.0, 10.0, 50.0, 100.0, 200.0, 300.0];
@@ -97,6 +98,8 @@ impl Situation {
 /// One letting go.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Row {
+    /// Clock of the loop.
+    pub clock: ClockProfile,
     /// Mode that rendered.
     pub mode: Mode,
     /// Delay of the link, ms.
@@ -142,6 +145,8 @@ impl Row {
 /// The worst over delays, situations and steady modes with one handle and one brake, the governor on.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Worst {
+    /// Clock of the loop.
+    pub clock: ClockProfile,
     /// Force of the contact, N.
     pub contact_n: f64,
     /// Viscosity of the governor's brake, N s/m.
@@ -160,12 +165,15 @@ pub struct Worst {
     pub force_after_100_ms_n: f64,
 }
 
-/// What to do: there is nothing to choose.
-#[derive(Clone, Copy, Debug)]
-pub struct Options;
+/// What to do.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Clocks of the loop, in the order of the tables.
+    pub clocks: Vec<VirtualClock>,
+}
 
 /// The study's result.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     /// Every release of a handle with the mass that the governor assumes.
     pub rows: Vec<Row>,
@@ -176,6 +184,8 @@ pub struct Report {
 /// One way of letting go.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
+    /// Clock of the loop.
+    pub clock: VirtualClock,
     /// When.
     pub situation: Situation,
     /// The governor is on.
@@ -188,43 +198,6 @@ pub struct Way {
     pub contact_n: f64,
 }
 
-impl Experiment for Options {
-    const NAME: &'static str = "release";
-    const FILES: &'static [&'static str] = &[".md", ".svg"];
-    type Findings = Report;
-    type Error = ReleaseError;
-
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
-        let tissue = pressed_tissue()?;
-        let mut rows = Vec::new();
-        let releases = CONTACTS_N.len() * 2 * Situation::ALL.len() * METHODS * DELAYS_MS.len();
-        let all = releases + 2 * BRAKES_N_S_M.len() * HANDLES.len();
-        for contact_n in CONTACTS_N {
-            for governor in [false, true] {
-                for situation in Situation::ALL {
-                    for mode in methods() {
-                        progress(rows.len(), all, mode.name());
-                        for delay_ms in DELAYS_MS {
-                            rows.push(let_go(&Way { situation, governor, mode, delay_ms, contact_n }, tissue)?);
-                        }
-                    }
-                }
-            }
-        }
-        let mut worst = Vec::new();
-        for contact_n in [CONTACTS_N[0], WEAK_N] {
-            for brake_n_s_m in BRAKES_N_S_M {
-                for (kg, coulomb_n) in HANDLES {
-                    progress(releases + worst.len(), all, "other handles");
-                    worst.push(worst_of(contact_n, brake_n_s_m, &Handle { kg, coulomb_n, ..Handle::OMEGA }, tissue)?);
-                }
-            }
-        }
-        progress(all, all, "done");
-        Ok(Report { rows, worst })
-    }
-}
-
 /// Every mode, the program's own first.
 fn methods() -> impl Iterator<Item = Mode> {
     Mode::ALL.into_iter().chain(Mode::BASELINES)
@@ -235,9 +208,16 @@ pub(super) fn pressed_tissue() -> Result<Tissue, ReleaseError> {
     Scene::load("peg_transfer")?.tissue.ok_or(ReleaseError::NoTissue)
 }
 
-fn worst_of(contact_n: f64, brake_n_s_m: f64, handle: &Handle, tissue: Tissue) -> Result<Worst, ReleaseError> {
+fn worst_of(
+    clock: VirtualClock,
+    contact_n: f64,
+    brake_n_s_m: f64,
+    handle: &Handle,
+    tissue: Tissue,
+) -> Result<Worst, ReleaseError> {
     let gates = ChainSettings { brake_n_s_m, ..ChainSettings::default() };
     let mut worst = Worst {
+        clock: clock.profile,
         contact_n,
         brake_n_s_m,
         handle_kg: handle.kg,
@@ -250,7 +230,8 @@ fn worst_of(contact_n: f64, brake_n_s_m: f64, handle: &Handle, tissue: Tissue) -
     for situation in Situation::ALL {
         for mode in STEADY {
             for delay_ms in DELAYS_MS {
-                let row = tried(&Way { situation, governor: true, mode, delay_ms, contact_n }, gates, handle, tissue)?;
+                let way = Way { clock, situation, governor: true, mode, delay_ms, contact_n };
+                let row = tried(&way, gates, handle, tissue)?;
                 worst.travel_mm = worst.travel_mm.max(row.travel_mm);
                 worst.peak_m_s = worst.peak_m_s.max(row.peak_m_s);
                 worst.energy_mj = worst.energy_mj.max(row.energy_mj);
@@ -269,7 +250,7 @@ pub fn let_go(way: &Way, tissue: Tissue) -> Result<Row, ReleaseError> {
 }
 
 fn tried(way: &Way, gates: ChainSettings, handle: &Handle, tissue: Tissue) -> Result<Row, ReleaseError> {
-    let Way { situation, mode, delay_ms, contact_n, .. } = *way;
+    let Way { clock, situation, mode, delay_ms, contact_n, .. } = *way;
     let trial = Trial {
         mode,
         own_motion: OwnMotion::Follower,
@@ -283,6 +264,7 @@ fn tried(way: &Way, gates: ChainSettings, handle: &Handle, tissue: Tissue) -> Re
         handle: *handle,
         grip: Grip::FIRM,
         seed: 1,
+        clock,
     };
     release(&trial, situation, contact_n)
 }
@@ -292,24 +274,33 @@ pub(super) fn release(trial: &Trial, situation: Situation, contact_n: f64) -> Re
     let (mode, delay_ms) = (trial.mode, 1e3 * trial.delay_s);
     let mut intended_m = Vector3::new(0.0, 0.0, START_M);
     let mut pair = Pair::new(trial, intended_m)?;
-    let mut patience = (PATIENCE_S * RATE_HZ) as u32;
     while pair.tip_n().z < contact_n {
-        patience = patience.checked_sub(1).ok_or(ReleaseError::NoContact { mode, delay_ms, contact_n })?;
-        intended_m.z -= PRESS_M_S / RATE_HZ;
-        pair.step(&intended_m);
+        if pair.now_s() > PATIENCE_S {
+            return Err(ReleaseError::NoContact { mode, delay_ms, contact_n });
+        }
+        pair.step(|_, passed_s| {
+            intended_m.z -= PRESS_M_S * passed_s;
+            intended_m
+        });
     }
     let mut shake_m_s = 0.0_f64;
     if situation == Situation::Held {
-        for left in (0..(HOLD_S * RATE_HZ) as u32).rev() {
+        let end_s = pair.now_s() + HOLD_S - 0.5 / RATE_HZ;
+        let judged_s = end_s - SHAKE_S + 1.0 / RATE_HZ;
+        while pair.now_s() < end_s {
             // Whoever holds a force corrects slowly, 2 mm/s for a newton that is missing.
-            intended_m.z += 0.002 / RATE_HZ * (pair.tip_n().z - contact_n).clamp(-1.0, 1.0);
-            pair.step(&intended_m);
-            if f64::from(left) < SHAKE_S * RATE_HZ {
+            let corrects_m_s = 0.002 * (pair.tip_n().z - contact_n).clamp(-1.0, 1.0);
+            pair.step(|_, passed_s| {
+                intended_m.z += corrects_m_s * passed_s;
+                intended_m
+            });
+            if pair.now_s() > judged_s {
                 shake_m_s = shake_m_s.max(pair.handle_m_s().norm());
             }
         }
     }
     let start = Row {
+        clock: trial.clock.profile,
         mode,
         delay_ms,
         governor: trial.gates.handle_kg > 0.0,
@@ -332,10 +323,11 @@ fn watch(mut pair: Pair, intended_m: &Vector3<f64>, handle: &Handle, mut row: Ro
     let swing_s = handle.kg / handle.n_s_m;
     let (mut energy_j, mut travel_m, mut beyond_swing_m) = (0.0, 0.0_f64, 0.0_f64);
     pair.let_go();
-    for tick in 1..=(AFTER_S * RATE_HZ) as u32 {
+    let (from_s, mut t_s) = (pair.now_s(), 0.0);
+    while t_s < AFTER_S - 0.5 / RATE_HZ {
         let (held_n, at_m) = (pair.force_n(), pair.handle_m());
-        pair.step(intended_m);
-        let t_s = f64::from(tick) / RATE_HZ;
+        pair.step(|_, _| *intended_m);
+        t_s = pair.now_s() - from_s;
         let way_m = pair.handle_m() - from_m;
         let swing_m = swing_m_s * (swing_s * (1.0 - (-t_s / swing_s).exp()));
         travel_m = travel_m.max(way_m.norm());
@@ -343,7 +335,7 @@ fn watch(mut pair: Pair, intended_m: &Vector3<f64>, handle: &Handle, mut row: Ro
         energy_j += held_n.dot(&(pair.handle_m() - at_m));
         row.peak_m_s = row.peak_m_s.max(pair.handle_m_s().norm());
         row.energy_mj = row.energy_mj.max(1e3 * energy_j);
-        if t_s > LATE_S {
+        if t_s > LATE_S + 0.5 / RATE_HZ {
             row.force_after_100_ms_n = row.force_after_100_ms_n.max(pair.force_n().norm());
         }
     }
@@ -352,51 +344,4 @@ fn watch(mut pair: Pair, intended_m: &Vector3<f64>, handle: &Handle, mut row: Ro
 }
 
 #[cfg(test)]
-mod tests {
-    use nima_core::impedance::Baseline;
-
-    use super::*;
-    use crate::Findings as _;
-
-    fn tissue() -> Tissue {
-        Scene::load("peg_transfer").unwrap().tissue.unwrap()
-    }
-
-    #[test]
-    fn a_late_force_kicks_and_the_governor_takes_the_kick_away() {
-        for situation in Situation::ALL {
-            for (mode, delay_ms) in [(Mode::Dfr, 300.0), (Mode::Dfr, 0.0), (Mode::Anchored, 50.0)] {
-                let way = Way { situation, governor: false, mode, delay_ms, contact_n: 5.0 };
-                let [without, with] = [false, true].map(|governor| let_go(&Way { governor, ..way }, tissue()).unwrap());
-                assert!(without.travel_mm > 100.0 && without.energy_mj > 30.0, "{without:?}");
-                assert!(with.counts() && with.meets_the_aims(), "{with:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_handle_that_is_not_the_one_it_is_told_of_is_caught_too() {
-        for (kg, coulomb_n) in [(0.2, 0.0), (0.31, 0.15)] {
-            let worst = worst_of(5.0, 30.0, &Handle { kg, coulomb_n, ..Handle::OMEGA }, tissue()).unwrap();
-            let Worst { travel_mm, peak_m_s, energy_mj, force_after_100_ms_n, .. } = worst;
-            assert!(travel_mm <= AIM_MM && peak_m_s <= AIM_M_S && energy_mj <= AIM_MJ, "{worst:?}");
-            assert!(force_after_100_ms_n <= AIM_N, "{worst:?}");
-        }
-    }
-
-    #[test]
-    fn the_methods_of_others_are_let_go_of_too() {
-        let way = |mode| Way { situation: Situation::Pressing, governor: true, mode, delay_ms: 50.0, contact_n: 5.0 };
-        let rows: Vec<Row> = methods().map(|mode| let_go(&way(mode), tissue()).unwrap()).collect();
-        for baseline in Baseline::ALL {
-            let row = rows.iter().find(|row| row.mode == Mode::Baseline(baseline)).unwrap();
-            // The passivity controller pushes a handle that nobody holds (docs/release.md).
-            assert!(row.counts() && row.meets_the_aims() == (baseline != Baseline::Passivity), "{row:?}");
-        }
-        let text = Report { rows, worst: Vec::new() }.text();
-        for mode in Mode::BASELINES {
-            assert_eq!(text.matches(&format!("| 5 | {mode} | on |")).count(), 1, "{text}");
-            assert_eq!(text.matches(&format!("\n| {mode} | 50 | on |")).count(), 1, "{text}");
-        }
-    }
-}
+mod tests;

@@ -20,6 +20,7 @@ use nima_core::{
     impedance::{Mode, OwnMotion, Recipe, SettingsError},
     safety::{ChainSettings, EnergyMode},
 };
+use nima_machine::runtime::VirtualClock;
 use nima_world::scene::Tissue;
 use serde::{Serialize, Serializer};
 
@@ -306,7 +307,7 @@ pub fn trial(mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Result<
     let gates =
         ChainSettings { static_hold: true, energy: EnergyMode::Off, gain_rate_per_s: 1e3, ..ChainSettings::default() }
             .without_governor();
-    let seed = 1;
+    let (seed, clock) = (1, VirtualClock::PERFECT);
     let above_m = Vector3::new(0.0, 0.0, 2e-3);
     // The intended position of the hand at which tissue and feedback together balance it at the contact force.
     let deep_m =
@@ -314,7 +315,7 @@ pub fn trial(mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Result<
     let (own_motion, literal) = (OwnMotion::Follower, Recipe::default());
     let (handle, grip, tremor_m, noise_n) = (Handle::OMEGA, Grip::FIRM, 0.0, NOISE_N);
     let trial =
-        Trial { mode, own_motion, literal, delay_s, gates, gain, tissue, tremor_m, noise_n, handle, grip, seed };
+        Trial { mode, own_motion, literal, delay_s, gates, gain, tissue, tremor_m, noise_n, handle, grip, seed, clock };
     let mut pair = Pair::new(&trial, above_m)?;
     let (mut low_m, mut high_m) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
     for tick in 0..(TRIAL_S * RATE_HZ) as u32 {
@@ -322,7 +323,7 @@ pub fn trial(mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Result<
         let s = (t_s / APPROACH_S).min(1.0);
         let knock_m = if (KNOCK_S[0]..KNOCK_S[1]).contains(&t_s) { KNOCK_M } else { 0.0 };
         let way = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
-        pair.step(&(above_m + (deep_m - above_m) * way + Vector3::z() * knock_m));
+        pair.step(|_, _| above_m + (deep_m - above_m) * way + Vector3::z() * knock_m);
         if t_s >= TRIAL_S - JUDGED_S {
             low_m = low_m.inf(&pair.handle_m());
             high_m = high_m.sup(&pair.handle_m());

@@ -8,7 +8,7 @@ mod table;
 
 use nalgebra::Vector3;
 use nima_core::{calibration::AxisStats, impedance::SettingsError};
-use nima_machine::config::ConfigError;
+use nima_machine::{config::ConfigError, runtime::VirtualClock};
 use nima_recording::tip_force::TipForceError;
 use rendering::Rendering;
 use serde::Serialize;
@@ -41,10 +41,12 @@ pub enum ValidationError {
 }
 
 /// Options of this study.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Options {
     /// Seed of every scene and of the training.
     pub seed: u64,
+    /// Clocks of the loop in Validation III, in the order of the table.
+    pub clocks: Vec<VirtualClock>,
     /// Rows of the training session.
     pub rows: usize,
     /// Delay of the link in Validation III, s.
@@ -69,8 +71,8 @@ pub struct Report {
     pub correspondence: Agreement,
     /// Validation II.
     pub isolation: Isolation,
-    /// Validation III.
-    pub rendering: Rendering,
+    /// Validation III, for each clock.
+    pub rendering: Vec<Rendering>,
     /// The paper's figures and those of this project.
     pub table: Vec<Row>,
 }
@@ -78,19 +80,24 @@ pub struct Report {
 /// Duration of the pushes by which Validation I is judged, s.
 const PUSHES_S: f64 = 60.0;
 
-/// Runs the validations; `progress` is called with the number of the one that begins, of three.
+/// Runs the validations; `progress` is called with the number of parts done, their total, and the name of the next. Validation III is
+/// run on each clock.
 ///
 /// # Errors
 /// [`ValidationError`] if a scene or setting is invalid, a calibration fails, or the network cannot be trained.
 pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, ValidationError> {
-    progress(0, 3, "correspondence");
+    let all = 2 + options.clocks.len();
+    progress(0, all, "correspondence");
     let gravity = experiment::gravity(options.seed)?;
     let correspondence = agreement(&experiment::correspondence(&gravity, options.seed, PUSHES_S)?.unseen_s1_n);
-    progress(1, 3, "tip force through the trocar");
+    progress(1, all, "tip force through the trocar");
     let isolation = isolation::study(options.seed, options.rows)?;
-    progress(2, 3, "rendering");
-    let rendering = rendering::study(options.seed, options.delay_s)?;
-    progress(3, 3, "");
+    let mut rendering = Vec::new();
+    for clock in &options.clocks {
+        progress(2 + rendering.len(), all, "rendering");
+        rendering.push(rendering::study(*clock, options.seed, options.delay_s)?);
+    }
+    progress(all, all, "");
     let table = table::rows(&correspondence, &isolation, &rendering);
     Ok(Report { correspondence, isolation, rendering, table })
 }
@@ -115,7 +122,7 @@ mod tests {
 
     #[test]
     fn a_small_study_fills_every_row_and_separates_friction_from_tissue() {
-        let options = Options { seed: 5, rows: 4000, delay_s: 0.05 };
+        let options = Options { seed: 5, clocks: vec![VirtualClock::PERFECT], rows: 4000, delay_s: 0.05 };
         let report = study(&options, |_, _, _| {}).unwrap();
         assert!(report.table.iter().all(|row| row.ours.iter().all(|value| value.is_finite())), "{:?}", report.table);
         assert!(report.correspondence.r2 > 0.95, "{:?}", report.correspondence);

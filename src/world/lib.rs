@@ -30,7 +30,7 @@ mod wrist;
 
 pub use desk::Desk;
 pub use hand::Hand;
-pub use plan::{Plan, run_virtual, start, start_on, start_simulated, start_watched};
+pub use plan::{Plan, run_virtual, run_virtual_on, start, start_on, start_simulated, start_watched};
 pub use tissue::Tissue;
 pub use trocar::Trocar;
 pub use watched::{LoopSeen, MARKS_MAX, Mark, Moment, RINGS_MAX, Training, Watched};

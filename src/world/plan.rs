@@ -5,7 +5,7 @@ use nima_machine::{
     config::{RigConfig, SchedulingClass},
     messages::{Command, Tick},
     rig::{DeviceRig, Rig, RigError, Roster, SIDES, Side},
-    runtime::{self, Assembly, Clock, Handle, StartError, Summary},
+    runtime::{self, Assembly, Clock, Handle, StartError, Summary, VirtualClock},
     teleop::{Calibrations, Loop, Origin},
 };
 
@@ -195,7 +195,20 @@ pub fn run_virtual(
     seconds: f64,
     each: impl FnMut(&Tick) -> Option<Command>,
 ) -> Result<Summary, SettingsError> {
-    Ok(runtime::run_virtual(plan.simulated()?, seconds, each))
+    run_virtual_on(plan, VirtualClock::PERFECT, seconds, each)
+}
+
+/// The same with late ticks, as this clock has them.
+///
+/// # Errors
+/// As [`run_virtual`].
+pub fn run_virtual_on(
+    plan: &Plan,
+    clock: VirtualClock,
+    seconds: f64,
+    each: impl FnMut(&Tick) -> Option<Command>,
+) -> Result<Summary, SettingsError> {
+    Ok(runtime::run_virtual_on(clock, plan.simulated()?, seconds, each))
 }
 
 #[cfg(test)]
@@ -204,9 +217,9 @@ mod tests {
 
     use nima_core::impedance::Mode;
     use nima_machine::{
-        messages::{Event, LoopState, Refusal},
+        messages::{Event, Fault, LoopState, Refusal},
         rig::{Inputs, Outputs},
-        runtime::TICKS_WAITING_MAX,
+        runtime::{ClockProfile, TICKS_WAITING_MAX},
     };
     use nima_testing::real_time::judged;
 
@@ -262,6 +275,30 @@ mod tests {
             (periods - (summary.ticks + summary.missed) as f64).abs() < 1.5,
             "every period is a tick or counted as missed"
         );
+    }
+
+    #[test]
+    fn late_ticks_are_no_fault_and_a_pause_of_the_whole_loop_is_one() {
+        let busy = ClockProfile::Busy;
+        let late = ClockProfile::Late { percent: 5.0 };
+        let stall = |ms| ClockProfile::Stall { ms };
+        for (profile, is_fault) in
+            [(busy, false), (late, false), (stall(5), false), (stall(20), true), (stall(100), true)]
+        {
+            let (mut last_s, mut longest_s) = (0.0, 0.0_f64);
+            let summary = run_virtual_on(&plan(), VirtualClock { profile, seed: 1 }, 5.0, |tick| {
+                longest_s = longest_s.max(tick.t_s - last_s);
+                last_s = tick.t_s;
+                None
+            });
+            let summary = summary.unwrap();
+            let stalled = matches!(summary.final_state, LoopState::Faulted(Fault::LoopStalled { .. }));
+            assert_eq!(stalled, is_fault, "{profile}: {:?}", summary.final_state);
+            assert!(stalled || summary.final_state == LoopState::Engaged, "{profile}: {:?}", summary.final_state);
+            let periods = (1e3 * summary.seconds).round() as u64;
+            assert_eq!(summary.ticks + summary.missed, periods, "{profile}: every period is a tick or missed");
+            assert!(summary.missed > 0 && longest_s > 2e-3, "{profile}: {longest_s} s");
+        }
     }
 
     /// A world that is delayed once, much longer than a stall may last.

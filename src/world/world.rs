@@ -25,6 +25,8 @@ use crate::{
 pub struct World {
     period_s: f64,
     time_s: f64,
+    /// When the force on the tip was last measured, s.
+    measured_s: f64,
     hand: Hand,
     leader: Option<Leader>,
     follower: Option<Follower>,
@@ -75,8 +77,10 @@ pub(super) struct Touch {
     pub(super) stand: Vector3<f64>,
 }
 
-/// Longest time simulated in one exchange, in periods; after a longer stall the remainder is skipped.
-const CATCH_UP_PERIODS_MAX: u32 = 20;
+/// Longest time simulated in one exchange, s; after a longer stall the remainder is skipped.
+const CATCH_UP_MAX_S: f64 = 0.2;
+/// Less of a period than this is not simulated until more is due: times of the loop are rounded.
+pub(super) const ROUNDING_PERIODS: f64 = 1e-3;
 /// Longest integration step of the hand's motion, s; keeps it stable in slow loops.
 const HAND_STEP_MAX_S: f64 = 1e-3;
 
@@ -88,6 +92,7 @@ impl World {
         Self {
             period_s: 1.0 / rate_hz,
             time_s: 0.0,
+            measured_s: 0.0,
             leader: scene.leader,
             follower: scene.follower,
             tissue: Tissue::of(scene, 1.0 / rate_hz),
@@ -200,25 +205,25 @@ impl World {
 
     /// The same, but the hand waits only if [`World::wait`] says so.
     pub fn advance_to(&mut self, now_s: f64, outputs: &Outputs) -> Inputs {
-        for _ in 0..self.accept(now_s, outputs) {
-            self.step();
+        let mut due_s = self.accept(now_s, outputs);
+        while due_s > ROUNDING_PERIODS * self.period_s {
+            let step_s = due_s.min(self.period_s);
+            self.step(step_s);
+            due_s -= step_s;
         }
         self.measure()
     }
 
-    /// Takes the loop's outputs; how many steps are due at loop time `now_s`.
-    pub(super) fn accept(&mut self, now_s: f64, outputs: &Outputs) -> u32 {
+    /// Takes the loop's outputs; returns the time to be simulated until loop time `now_s`, s. It is exactly the time that has
+    /// passed, so that a late tick finds hand and tissue where they are by then; whole periods but for rounding are whole.
+    pub(super) fn accept(&mut self, now_s: f64, outputs: &Outputs) -> f64 {
         self.take(outputs);
-        let behind = ((now_s - self.time_s) / self.period_s).round();
-        if behind > f64::from(CATCH_UP_PERIODS_MAX) {
-            self.time_s = now_s - f64::from(CATCH_UP_PERIODS_MAX) * self.period_s;
+        if now_s - self.time_s > CATCH_UP_MAX_S {
+            self.time_s = now_s - CATCH_UP_MAX_S;
         }
-        (behind.max(0.0) as u32).min(CATCH_UP_PERIODS_MAX)
-    }
-
-    /// One period.
-    pub(super) fn step(&mut self) {
-        self.advance(self.period_s);
+        let periods = ((now_s - self.time_s) / self.period_s).max(0.0);
+        let whole = periods.round();
+        self.period_s * if (periods - whole).abs() <= ROUNDING_PERIODS { whole } else { periods }
     }
 
     fn take(&mut self, outputs: &Outputs) {
@@ -243,7 +248,8 @@ impl World {
         self.prompt = if outputs.prompt.is_finite() { outputs.prompt } else { Prompt::Rest };
     }
 
-    fn advance(&mut self, dt_s: f64) {
+    /// One step of at most a period.
+    pub(super) fn step(&mut self, dt_s: f64) {
         let substeps = (dt_s / HAND_STEP_MAX_S).ceil().max(1.0);
         for _ in 0..substeps as u32 {
             self.hand.advance(dt_s / substeps, &self.hand_force_n);
@@ -263,7 +269,8 @@ impl World {
 
     fn follow(&mut self, dt_s: f64) {
         let Some(Follower { bandwidth_hz }) = self.follower else {
-            self.tip_velocity_m_s = (self.command_m - self.tip_m) / dt_s;
+            // A command holds for a period, however soon the next one comes.
+            self.tip_velocity_m_s = (self.command_m - self.tip_m) / dt_s.max(self.period_s);
             self.tip_m = self.command_m;
             return;
         };

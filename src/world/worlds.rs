@@ -12,7 +12,7 @@ use crate::{
     scene::Scene,
     searching::Searching,
     watched::{self, Watched},
-    world::Doing,
+    world::{Doing, ROUNDING_PERIODS},
 };
 
 /// The worlds of a scene.
@@ -21,6 +21,8 @@ pub struct Worlds {
     arms: [Option<World>; SIDES],
     playing: Option<Playing>,
     period_s: f64,
+    /// By how much the hands are ahead of the objects, s.
+    ahead_s: f64,
     /// Applied until the next write.
     outputs: [Outputs; SIDES],
 }
@@ -59,7 +61,7 @@ impl Worlds {
                 None => World::new(&scene, rate_hz),
             })
         });
-        (Self { arms, playing, period_s, outputs: [Outputs::SAFE; SIDES] }, watched)
+        (Self { arms, playing, period_s, ahead_s: 0.0, outputs: [Outputs::SAFE; SIDES] }, watched)
     }
 
     /// Where the tips are, m; those that the scene does not have are nowhere.
@@ -69,22 +71,28 @@ impl Worlds {
 
     /// Both instruments among the same objects, period by period.
     fn play(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
-        let Self { arms, playing: Some(playing), period_s, outputs } = self else { return [None; SIDES] };
-        let mut due = [0; SIDES];
-        for ((world, outputs), due) in arms.iter_mut().zip(&*outputs).zip(&mut due) {
+        let Self { arms, playing: Some(playing), period_s, ahead_s, outputs } = self else { return [None; SIDES] };
+        let mut left_s = 0.0_f64;
+        for (world, outputs) in arms.iter_mut().zip(&*outputs) {
             if let Some(world) = world {
                 world.wait(outputs.tip_command_m.is_none());
-                *due = world.accept(now_s, outputs);
+                // The worlds have one clock.
+                left_s = left_s.max(world.accept(now_s, outputs));
             }
         }
-        let steps = due.into_iter().max().unwrap_or(0);
-        for step in 0..steps {
+        while left_s > ROUNDING_PERIODS * *period_s {
             let pace = arms.iter().flatten().map(|world| world.hand().felt_pace()).fold(1.0, f64::min);
             arms.iter_mut().flatten().for_each(|world| world.share_pace(pace));
-            for (world, due) in arms.iter_mut().zip(due) {
-                world.iter_mut().filter(|_| step < due).for_each(World::step);
+            let step_s = left_s.min(*period_s - *ahead_s);
+            arms.iter_mut().flatten().for_each(|world| world.step(step_s));
+            left_s -= step_s;
+            // The objects move in whole periods: when a late tick has ended, they wait for the rest of theirs.
+            *ahead_s += step_s;
+            if *ahead_s < *period_s * (1.0 - ROUNDING_PERIODS) {
+                continue;
             }
-            let t_s = now_s - f64::from(steps - 1 - step) * *period_s;
+            *ahead_s = 0.0;
+            let t_s = now_s - left_s;
             let instruments = arms.each_ref().map(|world| world.as_ref().map(World::instrument));
             let mut acts = outputs.each_ref().map(|outputs| outputs.acts);
             for (acts, world) in acts.iter_mut().zip(&*arms) {

@@ -5,7 +5,7 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
-use nima_machine::runtime::{Tap, tap};
+use nima_machine::runtime::{ClockProfile, Tap, VirtualClock, tap};
 use nima_recording::store::utc_now;
 use nima_session::{
     Words,
@@ -29,14 +29,19 @@ pub(crate) fn toml_file(name: &str, text: String) -> Attached {
     Attached { name: name.to_owned(), media_type: "application/toml".to_owned(), data: text.into_bytes() }
 }
 
-/// Begins to record a loop of this plan: the tap is for its [`nima_machine::runtime::Assembly`]. `clock` is `real` or `virtual`.
-pub(crate) fn begin(to: Destination<'_>, plan: &Plan, clock: &str) -> Result<(Tap, Recorder), RecordError> {
+/// Begins to record a loop of this plan: the tap is for its [`nima_machine::runtime::Assembly`]. `clock` is the
+/// virtual clock on which it runs, `None` on the real one.
+pub(crate) fn begin(
+    to: Destination<'_>,
+    plan: &Plan,
+    clock: Option<VirtualClock>,
+) -> Result<(Tap, Recorder), RecordError> {
     let (tap, end) = tap();
     let recorder = Recorder::start(to, about(plan, clock), plan.origin(), end)?;
     Ok((tap, recorder))
 }
 
-fn about(plan: &Plan, clock: &str) -> About {
+fn about(plan: &Plan, clock: Option<VirtualClock>) -> About {
     let started_ns = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64);
     let Plan { rig, scene, .. } = plan;
     let build = if cfg!(debug_assertions) { "debug" } else { "release" };
@@ -45,7 +50,7 @@ fn about(plan: &Plan, clock: &str) -> About {
         ("build", build.to_owned()),
         ("system", format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)),
         ("started", utc_now()),
-        ("clock", clock.to_owned()),
+        ("clock", if clock.is_some() { "virtual" } else { "real" }.to_owned()),
         ("rig", rig.name.clone()),
         ("scene", scene.name.clone()),
         ("seed", scene.seed.to_string()),
@@ -53,7 +58,11 @@ fn about(plan: &Plan, clock: &str) -> About {
         ("mode", rig.mode.to_string()),
         ("delay_s", rig.delay_s.to_string()),
     ];
-    let session = session.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+    // A replay needs neither: the times of the ticks are in the journal.
+    let late = clock.filter(|clock| clock.profile != ClockProfile::Perfect);
+    let late = late.map(|clock| [("clock_profile", clock.profile.to_string()), ("clock_seed", clock.seed.to_string())]);
+    let session = session.into_iter().chain(late.into_iter().flatten());
+    let session = session.map(|(key, value)| (key.to_owned(), value)).collect();
     // As they are in force, with what the command line changed.
     let texts = [(RIG, toml::to_string(rig)), (SCENE, toml::to_string(scene))];
     let file = |(name, text): (&str, Result<String, _>)| Some(toml_file(name, text.ok()?));

@@ -7,7 +7,7 @@ use nima_core::impedance::Mode;
 use nima_machine::{
     config::{ConfigError, RigConfig, text},
     messages::{Command, Fault, LoopState, Tick},
-    runtime::{self, Assembly},
+    runtime::{self, Assembly, VirtualClock},
 };
 use nima_recording::store::utc_now;
 use nima_score::TaskFile;
@@ -190,7 +190,8 @@ pub(crate) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, lea
     // The reason would tell the condition. A rig that was changed since `new` is the only one.
     plan.rig = under(plan.rig, running.condition())
         .map_err(|_| anyhow!("the rig of the study does not allow this condition any more: was its file changed?"))?;
-    let recorded = running.session().map(|file| recording::begin(Destination::file(file), &plan, "virtual"));
+    let recorded =
+        running.session().map(|file| recording::begin(Destination::file(file), &plan, Some(VirtualClock::PERFECT)));
     let (tap, recorder) = recorded.transpose()?.unzip();
     let (assembly, mut watched) = plan.watched()?;
     if let Some((recorder, watched)) = recorder.as_ref().zip(watched.as_mut().and_then(Watched::another)) {

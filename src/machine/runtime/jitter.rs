@@ -22,43 +22,58 @@ struct JitterState {
     late_us: &'static [[f64; 2]],
 }
 
-/// An ordinary thread while nothing else runs.
+/// An ordinary thread while nothing else runs. The quantiles are recorded; the second state comes so often that as many periods
+/// are missed as in the quiet case of `docs/timing.md`, 0.2 %.
 pub(super) const QUIET: JitterProfile = JitterProfile {
     states: [
         JitterState {
-            leave: 0.0005,
+            leave: 8e-5,
+            late_us: &[[0.0, 10.0], [0.01, 36.0], [0.1, 69.0], [0.5, 80.0], [0.9, 87.0], [0.99, 122.0], [1.0, 314.0]],
+        },
+        JitterState {
+            leave: 0.0133,
             late_us: &[
-                [0.0, 4.0],
-                [0.01, 45.0],
-                [0.5, 98.0],
-                [0.95, 125.0],
-                [0.99, 152.0],
-                [0.999, 400.0],
-                [1.0, 1300.0],
+                [0.0, 17.0],
+                [0.1, 69.0],
+                [0.5, 82.0],
+                [0.6, 86.0],
+                [0.7, 508.0],
+                [0.8, 1014.0],
+                [0.9, 1627.0],
+                [0.95, 2195.0],
+                [0.98, 3773.0],
+                [0.99, 4839.0],
+                [0.995, 6817.0],
+                [1.0, 7971.0],
             ],
         },
-        JitterState { leave: 0.2, late_us: &[[0.0, 60.0], [0.5, 130.0], [0.7, 1000.0], [0.95, 3500.0], [1.0, 8000.0]] },
     ],
 };
 
-/// An ordinary thread while two busy processes share two cores with it.
+/// An ordinary thread while two busy processes share two cores with it. The quantiles are recorded; the second state comes so
+/// often that 5 % of the ticks are more than 0.5 ms late, the most that was seen beside two busy processes alone.
 pub(super) const BUSY: JitterProfile = JitterProfile {
     states: [
         JitterState {
-            leave: 0.002,
-            late_us: &[
-                [0.0, 4.0],
-                [0.01, 40.0],
-                [0.5, 67.0],
-                [0.95, 85.0],
-                [0.99, 100.0],
-                [0.999, 1500.0],
-                [1.0, 3500.0],
-            ],
+            leave: 0.012,
+            late_us: &[[0.0, 8.0], [0.01, 29.0], [0.1, 64.0], [0.5, 66.0], [0.9, 75.0], [0.99, 128.0], [1.0, 446.0]],
         },
         JitterState {
-            leave: 0.05,
-            late_us: &[[0.0, 60.0], [0.6, 100.0], [0.7, 1000.0], [0.95, 3500.0], [1.0, 5000.0]],
+            leave: 0.028,
+            late_us: &[
+                [0.0, 9.0],
+                [0.1, 65.0],
+                [0.5, 67.0],
+                [0.7, 72.0],
+                [0.8, 89.0],
+                [0.85, 781.0],
+                [0.9, 1148.0],
+                [0.95, 1806.0],
+                [0.98, 3024.0],
+                [0.99, 5122.0],
+                [0.995, 7464.0],
+                [1.0, 10838.0],
+            ],
         },
     ],
 };
@@ -88,7 +103,8 @@ mod tests {
     fn every_table_rises_from_probability_0_to_1() {
         for JitterState { leave, late_us } in [QUIET, BUSY].into_iter().flat_map(|profile| profile.states) {
             assert!(leave > 0.0 && leave < 1.0 && late_us[0][1] >= 0.0, "{leave} {late_us:?}");
-            assert_eq!([late_us[0][0], late_us[late_us.len() - 1][0]], [0.0, 1.0]);
+            let ends = [late_us[0][0], late_us[late_us.len() - 1][0]];
+            assert!(ends[0].abs() < f64::EPSILON && (ends[1] - 1.0).abs() < f64::EPSILON, "{ends:?}");
             assert!(late_us.windows(2).all(|pair| pair[0][0] < pair[1][0] && pair[0][1] <= pair[1][1]), "{late_us:?}");
         }
     }

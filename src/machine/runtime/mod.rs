@@ -22,7 +22,7 @@ pub use summary::{ArmEnd, CauseAndCure, CpuShare, DeviceFigures, Histograms, Mod
 pub use supervisor::STALL_MAX_S;
 pub use tap::{Entry, Next, Operation, Passed, Stepped, TICKS_TAPPED_MAX, Tap, TapEnd, tap};
 pub use thread::{Ender, Handle, StartError, TICKS_WAITING_MAX, start};
-pub use virtual_clock::{run_virtual, run_virtual_on, tick};
+pub use virtual_clock::{VirtualSupervisor, run_virtual, run_virtual_on, tick};
 pub use wrists::WristChange;
 
 use crate::{

@@ -7,6 +7,7 @@ use nima_core::{
 use nima_devices::{Health, Standing};
 use serde::Serialize;
 
+use super::VirtualClock;
 use crate::{
     messages::{Fault, LoopState, Scheduling, attention},
     rig::{Roster, Side},
@@ -114,6 +115,9 @@ pub struct Histograms {
 pub struct Summary {
     /// `real` or `virtual`.
     pub clock: &'static str,
+    /// Profile and seed of a virtual clock on which ticks are late.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lateness: Option<VirtualClock>,
     /// Ticks executed.
     pub ticks: u64,
     /// Periods missed and skipped.
@@ -231,6 +235,7 @@ impl Meters {
         });
         Summary {
             clock,
+            lateness: None,
             ticks: self.ticks,
             missed: of.pairs().map(Pair::missed).max().unwrap_or_default(),
             dropped: self.dropped,

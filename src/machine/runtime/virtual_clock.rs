@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::{
     Assembly, Summary,
-    clock_profile::{TickTime, VirtualClock},
+    clock_profile::{ClockProfile, TickTime, VirtualClock},
     summary::Meters,
     supervisor::STALL_MAX_S,
     tap::{Operation, Tap},
@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     messages::{Command, Scheduling, Tick},
-    rig::{Rig, SIDES},
+    rig::{Outputs, Rig, SIDES},
     teleop::{Link, Loop, Timing},
 };
 
@@ -41,7 +41,7 @@ fn run(
 ) -> Summary {
     let Assembly { mut control, mut rig, rate_hz, engage, tap, .. } = assembly;
     let mut tap = tap.map(Tap::waiting);
-    let (mut times, mut drives) = (clock.tick_times(rate_hz), Drives::default());
+    let (mut times, mut supervisor) = (clock.tick_times(rate_hz), VirtualSupervisor::default());
     // Half a period before the end: times are rounded.
     let end_s = ((seconds * rate_hz).round() - 0.5) / rate_hz;
     let (mut meters, mut missed) = (Meters::default(), 0);
@@ -60,7 +60,7 @@ fn run(
         let inputs = rig.read(now_s);
         let read = Instant::now();
         control.clear_events();
-        if let Some(silent_s) = drives.stalled_s(&time) {
+        if let Some(silent_s) = supervisor.stalled_s(&time) {
             tell(&mut tap, Operation::Stall { silent_s, t_s: now_s });
             control.notice_stall(silent_s, now_s);
         }
@@ -72,7 +72,7 @@ fn run(
         let work_s = read.elapsed().as_secs_f64();
         rig.write(now_s, &outputs);
         rig.hear(now_s, &control.bulletins());
-        drives.beat(now_s, outputs.iter().any(|outputs| outputs.drives));
+        supervisor.beat(now_s, &outputs);
         if let Some(tap) = &mut tap {
             tap.tick(control.events(), &timing, &inputs, &outputs, &ticks);
         }
@@ -86,22 +86,26 @@ fn run(
         }
     }
     let loop_s = (meters.ticks + missed) as f64 / rate_hz;
-    meters.summary("virtual", &control, loop_s, start.elapsed().as_secs_f64(), Scheduling::default())
+    Summary {
+        lateness: Some(clock).filter(|clock| clock.profile != ClockProfile::Perfect),
+        ..meters.summary("virtual", &control, loop_s, start.elapsed().as_secs_f64(), Scheduling::default())
+    }
 }
 
 /// Stands for the supervisor of the real clock: a loop that was silent for too long with its drives on has lost them.
-#[derive(Debug, Default)]
-struct Drives {
+#[derive(Clone, Copy, Debug, Default)]
+pub struct VirtualSupervisor {
     driven_at_s: Option<f64>,
 }
 
-impl Drives {
-    fn beat(&mut self, now_s: f64, driven: bool) {
-        self.driven_at_s = driven.then_some(now_s);
+impl VirtualSupervisor {
+    /// Notes that the loop gave these outputs at this time, s.
+    pub fn beat(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+        self.driven_at_s = outputs.iter().any(|outputs| outputs.drives).then_some(now_s);
     }
 
-    /// How long the loop was silent, s, if it missed periods for too long.
-    fn stalled_s(&self, time: &TickTime) -> Option<f64> {
+    /// How long the loop was silent, s, if it missed periods for too long; for [`Loop::notice_stall`].
+    pub fn stalled_s(&self, time: &TickTime) -> Option<f64> {
         let silent_s = self.driven_at_s.filter(|_| time.missed > 0).map(|at_s| time.now_s - at_s);
         silent_s.filter(|silent_s| *silent_s > STALL_MAX_S)
     }

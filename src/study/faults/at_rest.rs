@@ -13,6 +13,7 @@ use nima_machine::{
     config::RigConfig,
     messages::{Command, LoopState},
     rig::{Rig as _, Side},
+    runtime::VirtualClock,
     teleop::{Calibrations, Loop, Timing},
 };
 use nima_recording::{
@@ -91,7 +92,8 @@ fn let_go() -> Result<Special, FaultsError> {
     let tissue = Scene::load("peg_transfer")?.tissue;
     let wrong = |reason: String| FaultsError::Calibration(ValidationError::Calibration(reason));
     let tissue = tissue.ok_or_else(|| wrong("peg_transfer has no tissue".to_owned()))?;
-    let way = Way { situation: Situation::Held, governor: true, mode: MODES[0], delay_ms: 50.0, contact_n: 5.0 };
+    let (situation, governor, mode) = (Situation::Held, true, MODES[0]);
+    let way = Way { clock: VirtualClock::PERFECT, situation, governor, mode, delay_ms: 50.0, contact_n: 5.0 };
     let row = release::let_go(&way, tissue).map_err(|error| wrong(error.to_string()))?;
     Ok(Special {
         what: "the hand opens, no presence detection".to_owned(),

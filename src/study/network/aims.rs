@@ -1,6 +1,7 @@
 //! What must be reached, and what was.
 
 use nima_core::impedance::Mode;
+use nima_machine::runtime::ClockProfile;
 use serde::Serialize;
 
 use super::{
@@ -20,6 +21,8 @@ const NAMED_MS: f64 = 1000.0;
 /// One aim and what was reached.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Aim {
+    /// When the ticks of both loops wake.
+    pub clock: ClockProfile,
     /// What is measured, with its unit.
     pub what: String,
     /// At most this.
@@ -39,12 +42,13 @@ impl Aim {
     fn over<'a>(
         what: &str,
         limit: f64,
-        rows: impl Iterator<Item = &'a Row>,
+        rows: impl Iterator<Item = &'a &'a Row>,
         of: impl Fn(&Row) -> Option<f64>,
     ) -> Option<Self> {
         let measured: Vec<_> = rows.filter_map(|row| Some((of(row)?, row))).collect();
         let (worst, row) = measured.iter().max_by(|(one, _), (other, _)| one.total_cmp(other))?;
         Some(Self {
+            clock: row.clock,
             what: what.to_owned(),
             limit,
             worst: *worst,
@@ -56,8 +60,8 @@ impl Aim {
     }
 }
 
-/// All aims. Limits of the gates and what happens after a stop concern every mode, the quality of the force the one that is judged.
-pub(super) fn aims(rows: &[Row], judged: Mode) -> Vec<Aim> {
+/// All aims on one clock. Limits of the gates and what happens after a stop concern every mode, the quality of the force the one that is judged.
+pub(super) fn aims(rows: &[&Row], judged: Mode) -> Vec<Aim> {
     let all = || rows.iter();
     let ours = || rows.iter().filter(move |row| row.mode == judged);
     let cost = |row: &Row| {

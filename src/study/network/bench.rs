@@ -9,6 +9,7 @@ use nima_machine::{
     messages::{Command, Event, LoopState, Tick},
     remote::{FarFollower, FarLeader, Wire as _, at_follower},
     rig::{Inputs, Outputs, Rig, SIDES, Side},
+    runtime::{TickTime, TickTimes, VirtualClock, VirtualSupervisor},
     teleop::{Calibrations, Loop, Timing},
 };
 use nima_network::{
@@ -18,6 +19,7 @@ use nima_network::{
 use nima_world::{World, scene::Scene};
 
 use super::{Condition, NetworkError, end::End};
+use crate::clocks;
 
 /// Ticks per second.
 pub(super) const RATE_HZ: f64 = 1000.0;
@@ -52,29 +54,63 @@ impl Rig for Place {
     }
 }
 
+/// When the ticks of one machine come.
+struct Pace {
+    times: TickTimes,
+    /// Period in which the next tick wakes, and its time since the loop was started.
+    due: u64,
+    time: TickTime,
+}
+
+impl Pace {
+    fn new(clock: VirtualClock) -> Self {
+        // The first one is at its deadline, so that both machines begin together.
+        Self { times: clock.tick_times(RATE_HZ), due: 0, time: TickTime::default() }
+    }
+
+    /// How late a tick of this period wakes, if it has one: the whole lateness, and that within the period, s.
+    fn tick_in(&mut self, period: u32) -> Option<(TickTime, f64)> {
+        if self.due != u64::from(period) {
+            return None;
+        }
+        let time = std::mem::replace(&mut self.time, self.times.advance());
+        self.due += 1 + self.time.missed;
+        Some((time, time.wake_s - time.missed as f64 / RATE_HZ))
+    }
+}
+
 /// One machine: a loop and its rig.
 struct Machine<R> {
     control: Loop,
     rig: R,
+    pace: Pace,
+    supervisor: VirtualSupervisor,
     tick: Option<Tick>,
     /// Faults that it has raised, and how often.
     faults: BTreeMap<String, u32>,
 }
 
 impl<R: Rig> Machine<R> {
-    fn new(rig: &RigConfig, place: R) -> Result<Self, NetworkError> {
+    fn new(rig: &RigConfig, place: R, clock: VirtualClock) -> Result<Self, NetworkError> {
         let control = Loop::new(rig, &[Some(Calibrations::default()), None])?;
-        Ok(Self { control, rig: place, tick: None, faults: BTreeMap::new() })
+        let (pace, supervisor) = (Pace::new(clock), VirtualSupervisor::default());
+        Ok(Self { control, rig: place, pace, supervisor, tick: None, faults: BTreeMap::new() })
     }
 
-    fn step(&mut self, command: Option<Command>, now_s: f64) {
+    fn step(&mut self, command: Option<Command>, time: TickTime) {
+        let timing = Timing::from(time);
+        let now_s = timing.now_s;
         let inputs = self.rig.read(now_s);
         self.control.clear_events();
+        if let Some(silent_s) = self.supervisor.stalled_s(&time) {
+            self.control.notice_stall(silent_s, now_s);
+        }
         for command in command.into_iter().chain(std::iter::from_fn(|| self.rig.command())) {
             self.control.obey(command, now_s);
         }
-        let (outputs, ticks) = self.control.step(inputs, &Timing { now_s, ..Timing::default() });
+        let (outputs, ticks) = self.control.step(inputs, &timing);
         self.rig.write(now_s, &outputs);
+        self.supervisor.beat(now_s, &outputs);
         self.rig.hear(now_s, &self.control.bulletins());
         self.tick = ticks[Side::Right.index()];
         for event in self.control.events() {
@@ -97,9 +133,11 @@ pub(super) struct Bench {
     lines: [Line; 2],
     condition: Condition,
     pub(super) rig: RigConfig,
-    /// Since the line was opened, and since the loops were started.
+    /// Periods since the line was opened, and until the loops were started.
     pub(super) tick: u32,
     begun: u32,
+    /// What the operator has commanded and the console's loop has not obeyed yet.
+    command: Option<Command>,
     /// Tick in which the newest command that the follower has was given.
     newest: Option<u32>,
 }
@@ -107,8 +145,9 @@ pub(super) struct Bench {
 /// What is seen of one tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
-    /// Of the console's loop.
+    /// Of the console's loop, and whether it is of this period.
     pub(super) console: Tick,
+    pub(super) is_new: bool,
     pub(super) states: [LoopState; 2],
     /// True positions of hand and tip, m, and true force of the tissue on the tip, N.
     pub(super) hand_m: Vector3<f64>,
@@ -123,6 +162,7 @@ pub(super) struct Seen {
 impl Bench {
     /// The line has been open for `known_s` when the loops start.
     pub(super) fn new(
+        clock: VirtualClock,
         condition: Condition,
         mode: Mode,
         own_motion: OwnMotion,
@@ -144,13 +184,14 @@ impl Bench {
         let console = FarFollower::new(Place::new(&scene), one, RATE_HZ);
         let follower = FarLeader::new(Place::new(&scene), other, RATE_HZ);
         Ok(Self {
-            console: Machine::new(&rig, console)?,
-            follower: Machine::new(&at_follower(&rig), follower)?,
+            console: Machine::new(&rig, console, clock)?,
+            follower: Machine::new(&at_follower(&rig), follower, clocks::of_trial(clock, 1))?,
             lines,
             condition,
             rig,
             tick: begun,
             begun,
+            command: None,
             newest: None,
         })
     }
@@ -180,35 +221,35 @@ impl Bench {
         [&self.console.faults, &self.follower.faults]
     }
 
-    /// One tick of both machines; `None` before the console's loop has one.
+    /// One period of both machines; `None` before both loops have had a tick.
     pub(super) fn step(&mut self, command: Option<Command>) -> Option<Seen> {
-        let (now_s, ahead_s, tick) = (self.now_s(), self.ahead_s(), self.tick);
-        let [there, back] = &mut self.lines;
-
-        let end = self.console.rig.wire_mut();
-        end.tick = tick;
-        while let Some((came_s, bytes)) = back.receive(now_s + ROUNDING_S) {
-            end.arrive(&bytes, came_s);
+        let period = self.ticks();
+        self.command = command.or(self.command.take());
+        let (console, follower) = (self.console.pace.tick_in(period), self.follower.pace.tick_in(period));
+        // In the order in which they wake.
+        let follower_first =
+            console.zip(follower).is_some_and(|((_, console_s), (_, follower_s))| follower_s < console_s);
+        if let (Some((time, late_s)), true) = (follower, follower_first) {
+            self.step_follower(time, late_s);
         }
-        self.console.step(command, now_s);
-        self.console.rig.wire_mut().out.drain(..).for_each(|bytes| there.send(now_s, &bytes));
-
-        self.follower.rig.local_mut().ahead_s = ahead_s;
-        let end = self.follower.rig.wire_mut();
-        end.tick = tick;
-        while let Some((came_s, bytes)) = there.receive(now_s + ROUNDING_S) {
-            end.arrive(&bytes, came_s + ahead_s);
+        if let Some((time, late_s)) = console {
+            self.step_console(time, late_s);
         }
-        self.follower.step(None, now_s + ahead_s);
-        self.follower.rig.wire_mut().out.drain(..).for_each(|bytes| back.send(now_s, &bytes));
-
+        if let (Some((time, late_s)), false) = (follower, follower_first) {
+            self.step_follower(time, late_s);
+        }
+        let ticked = [follower.is_some(), console.is_some()];
         let (console, follower) = (self.console.rig.wire(), self.follower.rig.wire());
-        let under_way = [under_way(console, follower), under_way(follower, console)];
         let newest = follower.taken.last().and_then(|number| console.sent.get(*number as usize).copied());
         self.newest = newest.and_then(|tick| tick.checked_sub(self.begun)).or(self.newest);
+        let under_way = [
+            if ticked[0] { under_way(console, follower) } else { (0, 0) },
+            if ticked[1] { under_way(follower, console) } else { (0, 0) },
+        ];
         self.tick += 1;
         Some(Seen {
             console: self.console.tick?,
+            is_new: ticked[1],
             states: [self.console.state(), self.follower.state()],
             hand_m: self.console.rig.local().world.hand().position_m(),
             tip_m: self.follower.rig.measured()[Side::Right.index()]?.tip_m,
@@ -216,6 +257,33 @@ impl Bench {
             newest: self.newest,
             under_way,
         })
+    }
+
+    /// A tick of the console that wakes so late in this period, s.
+    fn step_console(&mut self, time: TickTime, late_s: f64) {
+        let now_s = self.now_s() + late_s;
+        let [there, back] = &mut self.lines;
+        let end = self.console.rig.wire_mut();
+        end.tick = self.tick;
+        while let Some((came_s, bytes)) = back.receive(now_s + ROUNDING_S) {
+            end.arrive(&bytes, came_s);
+        }
+        self.console.step(self.command.take(), TickTime { now_s, ..time });
+        self.console.rig.wire_mut().out.drain(..).for_each(|bytes| there.send(now_s, &bytes));
+    }
+
+    /// The same of the follower, whose clock differs.
+    fn step_follower(&mut self, time: TickTime, late_s: f64) {
+        let (now_s, ahead_s) = (self.now_s() + late_s, self.ahead_s());
+        let [there, back] = &mut self.lines;
+        self.follower.rig.local_mut().ahead_s = ahead_s;
+        let end = self.follower.rig.wire_mut();
+        end.tick = self.tick;
+        while let Some((came_s, bytes)) = there.receive(now_s + ROUNDING_S) {
+            end.arrive(&bytes, came_s + ahead_s);
+        }
+        self.follower.step(None, TickTime { now_s: now_s + ahead_s, ..time });
+        self.follower.rig.wire_mut().out.drain(..).for_each(|bytes| back.send(now_s, &bytes));
     }
 }
 

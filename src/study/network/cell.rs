@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use nima_core::impedance::{Mode, OwnMotion};
-use nima_machine::messages::LoopState;
+use nima_machine::{messages::LoopState, runtime::VirtualClock};
 use nima_network::playout::Counts;
 
 use super::{
@@ -54,7 +54,9 @@ struct Counting {
 impl Counting {
     fn look(&mut self, seen: &Seen, is_judged: bool) {
         let tick = &seen.console;
-        self.watch.look(&tick.rendered_n, &tick.gates, 1.0, &mut self.breaches);
+        if seen.is_new {
+            self.watch.look(&tick.rendered_n, &tick.gates, 1.0, &mut self.breaches);
+        }
         self.silent = if seen.under_way[1].1 > 0 { 0 } else { self.silent + 1 };
         if tick.rendered_n.norm() > 0.0 {
             self.force_after = self.force_after.max(self.silent);
@@ -89,10 +91,10 @@ impl Counting {
 }
 
 /// Runs a cell.
-pub(super) fn measured(condition: Condition, mode: Mode, runs: Runs) -> Result<Row, NetworkError> {
+pub(super) fn measured(clock: VirtualClock, condition: Condition, mode: Mode, runs: Runs) -> Result<Row, NetworkError> {
     let Runs { known_s, settle_s, learn_s, task_s, own_motion } = runs;
     let known_s = known_s[usize::from(condition.jitter == Jitter::None)];
-    let mut bench = Bench::new(condition, mode, own_motion, known_s)?;
+    let mut bench = Bench::new(clock, condition, mode, own_motion, known_s)?;
     let mut operator = Operator::new(bench.now_s() + settle_s);
     let ticks = ((settle_s + learn_s + task_s) * RATE_HZ) as u32;
     let mut counting = Counting {
@@ -146,6 +148,7 @@ pub(super) fn measured(condition: Condition, mode: Mode, runs: Runs) -> Result<R
     let felt = trace.felt();
     let [console, follower] = bench.faults();
     Ok(Row {
+        clock: clock.profile,
         condition,
         mode,
         error_n: felt.error_n,

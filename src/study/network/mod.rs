@@ -2,7 +2,7 @@
 //!
 //! Takes [`Options`]; returns a [`Report`]: one [`Row`] per cell, and the [`Aim`]s with what was reached. A cell is a run of two whole
 //! loops on the virtual clock, the console's with the hand and the follower's with arm and tissue: those of `nima console --follower` and
-//! `nima follower`, joined by the stream of `nima-network` through its impaired line. Deterministic.
+//! `nima follower`, joined by the stream of `nima-network` through its impaired line, each with late ticks of its own. Deterministic.
 
 mod aims;
 mod bench;
@@ -22,7 +22,7 @@ use std::{
 };
 
 use nima_core::impedance::{Mode, OwnMotion, SettingsError};
-use nima_machine::config::ConfigError;
+use nima_machine::{config::ConfigError, runtime::ClockProfile};
 use nima_network::keys::KeyError;
 use serde::Serialize;
 
@@ -33,7 +33,7 @@ pub use self::{
 };
 use self::{
     cell::{Runs, measured},
-    plan::{judged_line, plan, runs},
+    plan::{Cell, judged_line, plan, runs},
 };
 
 /// Why the study could not be made.
@@ -53,6 +53,8 @@ pub enum NetworkError {
 /// One cell. Pairs are: to the follower, to the console.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
+    /// When the ticks of both loops wake.
+    pub clock: ClockProfile,
     /// The line and the clocks.
     #[serde(flatten)]
     pub condition: Condition,
@@ -148,18 +150,24 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
     let (plan, runs) = (plan(options), runs(options));
     let mut rows = Vec::with_capacity(plan.len());
     for cells in plan.chunks(available_parallelism().map_or(1, NonZero::get)) {
-        progress(rows.len(), plan.len(), cells[0].1.name());
+        progress(rows.len(), plan.len(), cells[0].mode.name());
         rows.extend(side_by_side(cells, runs)?);
     }
     compare(&mut rows);
     let judged = options.judged();
-    for row in rows.iter_mut().filter(|row| row.mode == judged && row.condition == judged_line(row.condition.delay_ms))
-    {
+    for (row, cell) in rows.iter_mut().zip(&plan) {
+        if row.mode != judged || row.condition != judged_line(row.condition.delay_ms) {
+            continue;
+        }
         let playout_ms = row.under_way_ms.iter().sum::<f64>() / 2.0;
         // Play-out adds a margin and what is left of a tick.
-        let as_long = measured(Condition::clean(playout_ms.round() - 1.0), judged, runs)?;
+        let as_long = measured(cell.clock, Condition::clean(playout_ms.round() - 1.0), judged, runs)?;
         row.over_same_playout = Some(row.error_n / as_long.error_n);
     }
+    let aims = options.clocks.iter().flat_map(|clock| {
+        let rows: Vec<_> = rows.iter().filter(|row| row.clock == clock.profile).collect();
+        aims::aims(&rows, judged)
+    });
     progress(plan.len(), plan.len(), "done");
     Ok(Report {
         extent: options.extent,
@@ -168,27 +176,30 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
         known_s: runs.known_s,
         run_s: runs.settle_s + runs.learn_s + runs.task_s,
         judged_s: runs.task_s,
-        aims: aims::aims(&rows, judged),
+        aims: aims.collect(),
         rows,
     })
 }
 
 /// Runs these cells at the same time.
-fn side_by_side(cells: &[(Condition, Mode)], runs: Runs) -> Result<Vec<Row>, NetworkError> {
+fn side_by_side(cells: &[Cell], runs: Runs) -> Result<Vec<Row>, NetworkError> {
     scope(|scope| {
-        let running: Vec<_> =
-            cells.iter().map(|&(condition, mode)| scope.spawn(move || measured(condition, mode, runs))).collect();
+        let running: Vec<_> = cells
+            .iter()
+            .map(|&Cell { clock, condition, mode }| scope.spawn(move || measured(clock, condition, mode, runs)))
+            .collect();
         running.into_iter().map(|run| run.join().unwrap_or_else(|panic| panic::resume_unwind(panic))).collect()
     })
 }
 
 /// Fills in what compares a cell with others.
 fn compare(rows: &mut [Row]) {
-    let key = |condition: &Condition, mode: Mode| format!("{condition:?} {mode}");
-    let errors: HashMap<String, f64> = rows.iter().map(|row| (key(&row.condition, row.mode), row.error_n)).collect();
+    let key = |clock: ClockProfile, condition: &Condition, mode: Mode| format!("{clock} {condition:?} {mode}");
+    let errors: HashMap<String, f64> =
+        rows.iter().map(|row| (key(row.clock, &row.condition, row.mode), row.error_n)).collect();
     for row in rows {
         let over = |condition: &Condition, mode| {
-            let error_n = errors.get(&key(condition, mode))?;
+            let error_n = errors.get(&key(row.clock, condition, mode))?;
             Some(row.error_n / error_n).filter(|ratio| ratio.is_finite())
         };
         let ratios = (over(&Condition::clean(row.condition.delay_ms), row.mode), over(&row.condition, Mode::Dfr));

@@ -1,6 +1,7 @@
 //! Which cells are run.
 
 use nima_core::impedance::{Mode, OwnMotion};
+use nima_machine::runtime::VirtualClock;
 use serde::Serialize;
 
 use super::{BURSTS_MS, Condition, DELAYS_MS, Happening, JITTERS, Jitter, LOSSES_PERCENT, cell::Runs};
@@ -32,6 +33,8 @@ pub enum Extent {
 pub struct Options {
     /// How much.
     pub extent: Extent,
+    /// When the ticks of both loops wake, in the order of the tables.
+    pub clocks: Vec<VirtualClock>,
     /// In these modes, the first of which is judged; if none is given, in all, and the default one is judged. Delayed reflection is
     /// always among them: the others are compared with it.
     pub modes: Vec<Mode>,
@@ -65,8 +68,25 @@ pub(super) const fn runs(options: &Options) -> Runs {
     }
 }
 
+/// What is run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell {
+    pub(super) clock: VirtualClock,
+    pub(super) condition: Condition,
+    pub(super) mode: Mode,
+}
+
 /// The cells, in the order in which they are run.
-pub(super) fn plan(options: &Options) -> Vec<(Condition, Mode)> {
+pub(super) fn plan(options: &Options) -> Vec<Cell> {
+    let cells = of_one_clock(options);
+    let on = |clock: &VirtualClock| {
+        let clock = *clock;
+        cells.iter().map(move |&(condition, mode)| Cell { clock, condition, mode })
+    };
+    options.clocks.iter().flat_map(on).collect()
+}
+
+fn of_one_clock(options: &Options) -> Vec<(Condition, Mode)> {
     let all = || Mode::ALL.into_iter().chain(Mode::BASELINES);
     let cells = |conditions: Vec<Condition>, modes: Vec<Mode>| {
         modes.into_iter().flat_map(move |mode| conditions.clone().into_iter().map(move |condition| (condition, mode)))
@@ -128,7 +148,9 @@ mod tests {
     use super::*;
 
     fn planned(extent: Extent, modes: &[Mode]) -> Vec<(Condition, Mode)> {
-        plan(&Options { extent, modes: modes.to_vec(), own_motion: OwnMotion::default() })
+        let (own_motion, clocks) = (OwnMotion::default(), vec![VirtualClock::PERFECT]);
+        let cells = plan(&Options { extent, clocks, modes: modes.to_vec(), own_motion });
+        cells.into_iter().map(|Cell { condition, mode, .. }| (condition, mode)).collect()
     }
 
     #[test]

@@ -3,17 +3,18 @@
 use std::{collections::BTreeMap, fmt::Write as _};
 
 use nima_core::impedance::{Mode, OwnMotion};
+use nima_machine::runtime::ClockProfile;
 
 use super::{
-    BASE_MS, Condition, DELAYS_MS, Extent, Happening, JITTERS, Jitter, LOSSES_PERCENT, NetworkError, Options, Report,
-    Row, plan::judged_line, study,
+    Aim, BASE_MS, Condition, DELAYS_MS, Extent, Happening, JITTERS, Jitter, LOSSES_PERCENT, NetworkError, Options,
+    Report, Row, plan::judged_line, study,
 };
 use crate::{
-    Experiment, Findings,
+    Experiment, Findings, clocks,
     picture::{Axis, Chart, Series, Style, svg},
 };
 
-const CSV_HEADER: &str = "mode,delay_ms,jitter_ms,loss_percent,burst_ms,happening,error_n,asked_error_n,tissue_n,over_clean,over_same_playout,\
+const CSV_HEADER: &str = "clock,mode,delay_ms,jitter_ms,loss_percent,burst_ms,happening,error_n,asked_error_n,tissue_n,over_clean,over_same_playout,\
     over_reflection,injected_mj,tissue_injected_mj,oscillation_n,tissue_oscillation_n,ceiling_breaches,slew_breaches,\
     without_force_ms,force_after_data_ms,engaged,stops,resumed,console_faults,follower_faults,return_step_mm,there_ms,back_ms,\
     round_trip_ms,late_there_percent,late_back_percent,lost_there_percent,lost_back_percent,recovered_there_percent,\
@@ -108,6 +109,7 @@ impl Row {
         };
         let shares = [self.late_percent, self.lost_percent, self.recovered_percent].concat();
         let cells = [
+            self.clock.to_string(),
             self.mode.to_string(),
             delay_ms.to_string(),
             jitter.word(),
@@ -158,9 +160,30 @@ impl Report {
         self.rows.iter().find(|row| row.mode == mode && row.condition == *condition)
     }
 
+    /// The clocks in the order in which they were run.
+    fn clocks(&self) -> Vec<ClockProfile> {
+        let mut clocks: Vec<_> = self.rows.iter().map(|row| row.clock).collect();
+        clocks.dedup();
+        clocks
+    }
+
+    /// What was found on this clock.
+    fn on(&self, clock: ClockProfile) -> Self {
+        let rows = self.rows.iter().filter(|row| row.clock == clock).cloned().collect();
+        let aims = self.aims.iter().filter(|aim| aim.clock == clock).cloned().collect();
+        Self { aims, rows, ..self.clone() }
+    }
+
     /// Markdown for a document or a terminal.
     pub fn markdown(&self) -> String {
-        let mut text = self.head();
+        let on = |clock| clocks::heading(clock) + &self.on(clock).tables();
+        let tables: String = self.clocks().into_iter().map(on).collect();
+        self.head() + &tables
+    }
+
+    /// What was found on the only clock.
+    fn tables(&self) -> String {
+        let mut text = String::new();
         self.aims_table(&mut text);
         self.over_delay(&mut text);
         for mode in self.modes() {
@@ -173,6 +196,7 @@ impl Report {
             (condition.is_at(BASE_MS) && condition.factors() <= 1) || *condition == judged_line(condition.delay_ms)
         };
         self.rows.iter().filter(is_shown).for_each(|row| row.line(&mut text));
+        text.push('\n');
         text
     }
 
@@ -346,7 +370,9 @@ impl Findings for Report {
     }
 
     fn files(&self) -> Vec<(String, String)> {
-        vec![(".md".to_owned(), self.markdown()), (".csv".to_owned(), self.csv()), (".svg".to_owned(), self.svg())]
+        // The picture is of the first clock.
+        let shown = self.clocks().first().map_or_else(|| self.clone(), |clock| self.on(*clock));
+        vec![(".md".to_owned(), self.markdown()), (".csv".to_owned(), self.csv()), (".svg".to_owned(), shown.svg())]
     }
 
     fn judge(&self) -> Result<(), String> {
@@ -354,8 +380,10 @@ impl Findings for Report {
         if missed.is_empty() {
             return Ok(());
         }
-        let told =
-            missed.iter().map(|aim| format!("{}: {:.3}, at most {} ({})", aim.what, aim.worst, aim.limit, aim.place));
+        let told = missed.iter().map(|aim| {
+            let Aim { clock, what, worst, limit, place, .. } = aim;
+            format!("{what}: {worst:.3}, at most {limit} ({place}, {clock} clock)")
+        });
         Err(format!(
             "{} of {} aims were missed. {}",
             missed.len(),

@@ -1,3 +1,5 @@
+use nima_machine::runtime::VirtualClock;
+
 use super::*;
 use crate::Findings as _;
 
@@ -6,7 +8,32 @@ fn quick(condition: Condition, mode: Mode) -> Row {
 }
 
 fn quick_from(own_motion: OwnMotion, condition: Condition, mode: Mode) -> Row {
-    measured(condition, mode, runs(&Options { extent: Extent::Quick, modes: vec![], own_motion })).unwrap()
+    on(VirtualClock::PERFECT, own_motion, condition, mode)
+}
+
+fn on(clock: VirtualClock, own_motion: OwnMotion, condition: Condition, mode: Mode) -> Row {
+    let options = Options { extent: Extent::Quick, clocks: vec![clock], modes: vec![], own_motion };
+    measured(clock, condition, mode, runs(&options)).unwrap()
+}
+
+#[test]
+fn late_ticks_of_both_machines_cost_little_and_stop_nothing() {
+    let [perfect, late] = [ClockProfile::Perfect, ClockProfile::Late { percent: 1.0 }]
+        .map(|profile| on(VirtualClock { profile, seed: 1 }, OwnMotion::Follower, Condition::clean(36.0), Mode::Dfr));
+    assert_eq!((late.stops, late.resumed, late.ceiling_breaches), (0, 0, 0), "{late:?}");
+    // Of what the mode asks for: how the gates take late ticks is judged by their own studies.
+    assert!((late.asked_error_n / perfect.asked_error_n - 1.0).abs() < 0.1, "{perfect:?} {late:?}");
+    assert!(late.error_n.to_bits() != perfect.error_n.to_bits() && late.clock == ClockProfile::Late { percent: 1.0 });
+}
+
+#[test]
+fn a_pause_of_100_ms_of_a_machine_is_a_latched_stop() {
+    let clock = VirtualClock { profile: ClockProfile::Stall { ms: 100 }, seed: 1 };
+    let row = on(clock, OwnMotion::Follower, Condition::clean(36.0), Mode::Dfr);
+    assert!(
+        row.stops >= 3 && row.console_faults.keys().any(|fault| fault.starts_with("LoopStalled")) && row.resumed == 0,
+        "{row:?}"
+    );
 }
 
 #[test]
@@ -14,7 +41,8 @@ fn a_cell_is_the_same_every_time() {
     let condition = plan::judged_line(BASE_MS);
     let own_motion = OwnMotion::Follower;
     let runs = Runs { known_s: [1.0; 2], settle_s: 1.0, learn_s: 1.0, task_s: 2.0, own_motion };
-    let [one, other] = [(); 2].map(|()| format!("{:?}", measured(condition, Mode::Best, runs).unwrap()));
+    let clock = VirtualClock { profile: ClockProfile::Busy, seed: 1 };
+    let [one, other] = [(); 2].map(|()| format!("{:?}", measured(clock, condition, Mode::Best, runs).unwrap()));
     assert_eq!(one, other);
 }
 
@@ -67,7 +95,7 @@ fn a_step_of_the_followers_clock_is_named_and_stops() {
 #[test]
 fn every_file_is_whole() {
     let rows = vec![quick(Condition::clean(36.0), Mode::Dfr)];
-    let aims = aims::aims(&rows, Mode::Dfr);
+    let aims = aims::aims(&rows.iter().collect::<Vec<_>>(), Mode::Dfr);
     let mut report = Report {
         extent: Extent::Quick,
         judged: Mode::Dfr,

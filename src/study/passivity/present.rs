@@ -2,20 +2,31 @@
 
 use std::fmt::Write as _;
 
+use nima_machine::runtime::ClockProfile;
+
 use super::{DELAYS_MS, LOOSE_N_M, OwnMotion, Report, STILL_M_S, Task, WAYS, study};
-use crate::{Experiment, Findings, release::ReleaseError};
+use crate::{Experiment, Findings, clocks, release::ReleaseError};
 
 impl Findings for Report {
-    /// Power and error of each task, and the speed of loose grips, by delay.
+    /// Power and error of each task, and the speed of loose grips, by delay, for each clock.
     fn text(&self) -> String {
-        let mut text = String::new();
+        let mut clocks: Vec<_> = self.rows.iter().map(|row| row.clock).collect();
+        clocks.dedup();
+        clocks.into_iter().map(|clock| self.tables(clock)).collect()
+    }
+}
+
+impl Report {
+    fn tables(&self, clock: ClockProfile) -> String {
+        let mut text = clocks::heading(clock);
         let delays = DELAYS_MS.map(|delay_ms| format!(" {delay_ms:.0} ms |")).concat();
         for task in Task::ALL {
             let head = format!("| mode | own motion |{delays}\n|---|---|{}\n", "---|".repeat(DELAYS_MS.len()));
             // Writing into a String cannot fail, here and below.
             write!(text, "{}: mean power into the hand (mW) / mean error (N):\n\n{head}", title(task)).ok();
             for way in WAYS {
-                let rows = self.rows.iter().filter(|row| (row.mode, row.own_motion) == way && row.task == task);
+                let rows = self.rows.iter().filter(|row| row.clock == clock && row.task == task);
+                let rows = rows.filter(|row| (row.mode, row.own_motion) == way);
                 let cells: Vec<_> = rows.map(|row| format!(" {:.1} / {:.3} |", row.power_mw, row.error_n)).collect();
                 let cells = cells.concat();
                 writeln!(text, "| {} | {} |{cells}", way.0, word(way.1)).ok();
@@ -32,7 +43,7 @@ impl Findings for Report {
             .ok();
             for way in WAYS {
                 let held = self.held.iter().filter(|held| (held.mode, held.own_motion) == way);
-                let held = held.filter(|held| (held.grip_n_m - grip_n_m).abs() < 1e-9);
+                let held = held.filter(|held| held.clock == clock && (held.grip_n_m - grip_n_m).abs() < 1e-9);
                 let cells: Vec<_> = held.map(|held| format!(" {:.1} |", 1e3 * held.peak_m_s)).collect();
                 let cells = cells.concat();
                 writeln!(text, "| {} | {} |{cells}", way.0, word(way.1)).ok();
@@ -65,6 +76,6 @@ impl Experiment for super::Options {
     type Error = ReleaseError;
 
     fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
-        study(progress)
+        study(self, progress)
     }
 }

@@ -3,18 +3,45 @@
 use std::fmt::Write as _;
 
 use nima_core::impedance::Mode;
+use nima_machine::runtime::ClockProfile;
 
 use super::{
     AIM_M_S, AIM_MJ, AIM_MM, AIM_N, CONTACTS_N, DELAYS_MS, Report, Row, Situation, WEAK_AIM_MM, Worst, methods,
 };
 use crate::{
-    Findings,
+    Findings, clocks,
     picture::{Axis, Chart, Series, Style, svg},
 };
 
 impl Findings for Report {
-    /// A summary, other handles, and every letting go of 5 N.
+    /// For each clock: a summary, other handles, and every letting go of 5 N.
     fn text(&self) -> String {
+        let on = |clock| clocks::heading(clock) + &self.on(clock).tables();
+        self.clocks().into_iter().map(on).collect()
+    }
+
+    fn files(&self) -> Vec<(String, String)> {
+        // The picture is of the first clock.
+        let shown = self.clocks().first().map_or_else(Self::default, |clock| self.on(*clock));
+        vec![(".md".to_owned(), self.text()), (".svg".to_owned(), shown.svg())]
+    }
+}
+
+impl Report {
+    /// The clocks, in the order in which they were tried.
+    fn clocks(&self) -> Vec<ClockProfile> {
+        let mut clocks: Vec<_> = self.rows.iter().map(|row| row.clock).collect();
+        clocks.dedup();
+        clocks
+    }
+
+    /// What was found on this clock.
+    fn on(&self, clock: ClockProfile) -> Self {
+        let rows = self.rows.iter().filter(|row| row.clock == clock).copied().collect();
+        Self { rows, worst: self.worst.iter().filter(|worst| worst.clock == clock).copied().collect() }
+    }
+
+    fn tables(&self) -> String {
         let mut text = String::new();
         self.summary(&mut text);
         self.handles(&mut text);
@@ -32,12 +59,6 @@ impl Findings for Report {
         text
     }
 
-    fn files(&self) -> Vec<(String, String)> {
-        vec![(".md".to_owned(), self.text()), (".svg".to_owned(), self.svg())]
-    }
-}
-
-impl Report {
     /// The worst of all delays and both situations, for each mode and force; rows in which the hand held no force are left out.
     fn summary(&self, text: &mut String) {
         writeln!(

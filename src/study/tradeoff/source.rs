@@ -1,7 +1,10 @@
 //! Sources of motion and force: recordings and simulated scenes.
 
 use nima_core::impedance::{AXES, Sample};
-use nima_machine::rig::{Outputs, Sensed};
+use nima_machine::{
+    rig::{Outputs, Sensed},
+    runtime::{ClockProfile, VirtualClock},
+};
 use nima_recording::csv::Recording;
 use nima_world::{World, scene::Scene};
 
@@ -16,15 +19,21 @@ pub struct Source {
 }
 
 impl Source {
-    /// Records `scene` open-loop on the virtual clock: the follower follows the hand, the hand feels nothing, so that
+    /// Records `scene` open-loop on the perfect virtual clock: the follower follows the hand, the hand feels nothing, so that
     /// every choice of parameters is given identical motion and force. The scene must have been validated.
     pub fn from_scene(scene: &Scene, rate_hz: f64, seconds: f64) -> Self {
+        Self::on_clock(VirtualClock::PERFECT, scene, rate_hz, seconds)
+    }
+
+    /// The same with the samples at the times of the ticks of another clock.
+    pub fn on_clock(clock: VirtualClock, scene: &Scene, rate_hz: f64, seconds: f64) -> Self {
         let mut world = World::new(scene, rate_hz);
         let mut outputs = Outputs::SAFE;
-        let ticks = (seconds * rate_hz).round().max(0.0) as usize;
-        let mut samples = Vec::with_capacity(ticks);
-        for k in 0..ticks {
-            let t_s = k as f64 / rate_hz;
+        let ticks = (seconds * rate_hz).round().max(0.0);
+        let mut samples = Vec::with_capacity(ticks as usize);
+        let mut times = clock.tick_times(rate_hz);
+        let mut t_s = times.advance().now_s;
+        while t_s < (ticks - 0.5) / rate_hz {
             if let Some(inputs) = world.exchange(t_s, &outputs) {
                 outputs.tip_command_m = Some(inputs.hand.position_m);
                 // This study compares identification, not the force path, so a scene with a wrist sensor gives the true
@@ -35,10 +44,15 @@ impl Source {
                 };
                 samples.push(Sample { t_s, position_m: inputs.tip_m, force_n });
             }
+            t_s = times.advance().now_s;
         }
         let recording =
             Recording { path: scene.name.clone().into(), axes: (0..AXES).collect(), rate_hz, samples, leader_m: None };
-        Self { name: scene.name.clone(), unit: "N".to_owned(), recording }
+        let name = match clock.profile {
+            ClockProfile::Perfect => scene.name.clone(),
+            profile => format!("{} ({profile} clock)", scene.name),
+        };
+        Self { name, unit: "N".to_owned(), recording }
     }
 
     /// A recording, named after its file.

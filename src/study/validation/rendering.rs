@@ -2,8 +2,12 @@
 
 use nalgebra::Vector3;
 use nima_core::impedance::{MODES, Mode};
-use nima_machine::{config::RigConfig, teleop::ErrorStats};
-use nima_world::{Plan, run_virtual, scene::Scene};
+use nima_machine::{
+    config::RigConfig,
+    runtime::{ClockProfile, VirtualClock},
+    teleop::ErrorStats,
+};
+use nima_world::{Plan, run_virtual_on, scene::Scene};
 use serde::Serialize;
 
 use super::ValidationError;
@@ -34,6 +38,8 @@ pub struct ModeFigures {
 /// Results of Validation III.
 #[derive(Clone, Debug, Serialize)]
 pub struct Rendering {
+    /// Clock of the loop.
+    pub clock: ClockProfile,
     /// The paper's method, judged on the newest sample of the window that it was fitted to.
     pub in_window_nonlinear: Figures,
     /// The same with degree N = 1.
@@ -63,11 +69,11 @@ impl Axes {
     }
 }
 
-/// Runs the task with this delay (s).
+/// Runs the task on this clock with this delay (s).
 ///
 /// # Errors
 /// [`ValidationError`] if the scene or a setting is invalid.
-pub fn study(seed: u64, delay_s: f64) -> Result<Rendering, ValidationError> {
+pub fn study(clock: VirtualClock, seed: u64, delay_s: f64) -> Result<Rendering, ValidationError> {
     let scene = Scene { seed, ..Scene::load(SCENE)? };
     let mut rig = RigConfig { delay_s, ..RigConfig::load("simulated")? };
     rig.identification.compare = true;
@@ -75,7 +81,7 @@ pub fn study(seed: u64, delay_s: f64) -> Result<Rendering, ValidationError> {
     let (mut nonlinear, mut linear) = (Axes::default(), Axes::default());
     let mut at_horizon: [Axes; MODES] = std::array::from_fn(|_| Axes::default());
     let (mut windows, mut above_one) = (0_u32, 0_u32);
-    run_virtual(&plan, SECONDS, |tick| {
+    run_virtual_on(&plan, clock, SECONDS, |tick| {
         if tick.t_s < FILL_S + delay_s {
             return None;
         }
@@ -92,6 +98,7 @@ pub fn study(seed: u64, delay_s: f64) -> Result<Rendering, ValidationError> {
         None
     })?;
     Ok(Rendering {
+        clock: clock.profile,
         in_window_nonlinear: nonlinear.figures(),
         in_window_linear: linear.figures(),
         nonlinear_share: f64::from(above_one) / f64::from(windows.max(1)),

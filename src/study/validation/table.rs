@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use nima_core::impedance::Mode;
+use nima_machine::runtime::ClockProfile;
 use nima_training::Part;
 use serde::Serialize;
 
@@ -34,7 +35,7 @@ fn row(
     Row { validation, what: what.into(), paper: paper.to_vec(), ours: ours.into(), why }
 }
 
-pub(super) fn rows(one: &Agreement, two: &Isolation, three: &Rendering) -> Vec<Row> {
+pub(super) fn rows(one: &Agreement, two: &Isolation, three: &[Rendering]) -> Vec<Row> {
     let mut all = vec![
         row(
             "I",
@@ -47,7 +48,7 @@ pub(super) fn rows(one: &Agreement, two: &Isolation, three: &Rendering) -> Vec<R
         row("I", "s1 against s2, R2", &[0.95], [one.r2], "as above"),
     ];
     all.extend(isolation(two));
-    all.extend(rendering(three));
+    all.extend(three.iter().flat_map(rendering));
     all
 }
 
@@ -106,18 +107,25 @@ fn isolation(two: &Isolation) -> Vec<Row> {
 fn rendering(three: &Rendering) -> Vec<Row> {
     const IN_WINDOW: &str = "the hand rests for 350 ms, longer than the window: X vanishes and the force does not; with holds of 100 ms: --paper";
     let pair = |figures: super::rendering::Figures| [figures.mae_n, figures.sd_n];
+    let clock = three.clock;
     let mut all = vec![
         row(
             "III",
-            "nonlinear, in its window, MAE and SD (N)",
+            format!("{clock} clock: nonlinear, in its window, MAE and SD (N)"),
             &[0.01, 0.02],
             pair(three.in_window_nonlinear),
             IN_WINDOW,
         ),
-        row("III", "linear, in its window, MAE and SD (N)", &[0.2, 0.4], pair(three.in_window_linear), IN_WINDOW),
         row(
             "III",
-            "windows that chose a nonlinear degree (share)",
+            format!("{clock} clock: linear, in its window, MAE and SD (N)"),
+            &[0.2, 0.4],
+            pair(three.in_window_linear),
+            IN_WINDOW,
+        ),
+        row(
+            "III",
+            format!("{clock} clock: windows that chose a nonlinear degree (share)"),
             &[0.64],
             [three.nonlinear_share],
             "inside the window the larger of two nested models always errs less; judged by the next 10 ms: --paper",
@@ -133,7 +141,8 @@ fn rendering(three: &Rendering) -> Vec<Row> {
             Mode::Best => "anchored and matched, weighted by their recent errors",
             Mode::Baseline(_) => "a method of others",
         };
-        let what = format!("{}, {:.0} ms later, MAE and SD (N)", figures.mode.name(), 1e3 * three.delay_s);
+        let what =
+            format!("{clock} clock: {}, {:.0} ms later, MAE and SD (N)", figures.mode.name(), 1e3 * three.delay_s);
         all.push(row("III", what, &[], pair(figures.error), why));
     }
     all
@@ -147,7 +156,7 @@ impl Findings for Report {
             // Writing into a String cannot fail.
             writeln!(out, "{validation:<4} {what:<78} {:>17}  {:>23}", words(paper), words(ours)).ok();
         }
-        out
+        out + "\n" + &by_clock(&self.rendering)
     }
 
     /// For the documentation, with the reasons.
@@ -156,8 +165,33 @@ impl Findings for Report {
         for Row { validation, what, paper, ours, why } in &self.table {
             writeln!(out, "| {validation} | {what} | {} | {} | {why} |", words(paper), words(ours)).ok();
         }
+        out.push('\n');
+        out.push_str(&by_clock(&self.rendering));
         vec![(".md".to_owned(), out)]
     }
+}
+
+/// Errors at the horizon, a column for each clock, and over those on the perfect clock where that is among them.
+fn by_clock(all: &[Rendering]) -> String {
+    let Some(first) = all.first() else { return String::new() };
+    let perfect = all.iter().find(|rendering| rendering.clock == ClockProfile::Perfect);
+    let heads: Vec<_> = all.iter().map(|rendering| format!(" {} |", rendering.clock)).collect();
+    let mut out = format!(
+        "Error at the horizon of {:.0} ms by clock, MAE (N) / over that on the perfect clock:\n\n| mode |{}\n|---|{}\n",
+        1e3 * first.delay_s,
+        heads.concat(),
+        "---|".repeat(all.len())
+    );
+    for (at, figures) in first.at_horizon.iter().enumerate() {
+        let cell = |rendering: &Rendering| {
+            let mae_n = rendering.at_horizon[at].error.mae_n;
+            let ratio = perfect.map(|perfect| mae_n / perfect.at_horizon[at].error.mae_n);
+            format!(" {} / {} |", words(&[mae_n]), ratio.map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.3}")))
+        };
+        // Writing into a String cannot fail.
+        writeln!(out, "| {} |{}", figures.mode, all.iter().map(cell).collect::<String>()).ok();
+    }
+    out
 }
 
 fn words(values: &[f64]) -> String {

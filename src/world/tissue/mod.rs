@@ -47,6 +47,14 @@ impl Tissue {
         })
     }
 
+    /// The next call of [`contact_n`](Self::contact_n) comes this long after the one before it, s, and further ones too. A time of
+    /// 0 changes nothing.
+    pub(crate) fn set_step(&mut self, step_s: f64) {
+        if let Some(relaxing) = self.relaxing.as_mut().filter(|_| step_s > 0.0) {
+            relaxing.set_step(step_s);
+        }
+    }
+
     /// How often the membrane has torn.
     pub fn tears(&self) -> usize {
         self.membrane.as_ref().map_or(0, Membrane::tears)

@@ -2,11 +2,16 @@
 
 use crate::scene::Relaxation;
 
+/// Steps that differ by less than this are equally long, s.
+const ROUNDING_S: f64 = 1e-9;
+
 /// The state of tissue that relaxes: quasi-linear viscoelasticity (Fung, Biomechanics, 1993, section 7.6) with one exponential, which is the
 /// standard linear solid where the elastic force is linear in the depth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Relaxing {
-    share: f64,
+    config: Relaxation,
+    /// Length of a step, s.
+    step_s: f64,
     /// Share of the distance to the elastic force that is left after a step.
     decay: f64,
     /// Mean of the elastic force over a step that counts, by its shape inside the step.
@@ -18,18 +23,28 @@ pub(super) struct Relaxing {
 impl Relaxing {
     /// At rest, for steps of this length.
     pub(super) fn new(config: Relaxation, step_s: f64) -> Self {
-        let Relaxation { share, time_s } = config;
-        let decay = (-step_s / time_s).exp();
+        let mut relaxing = Self { config, step_s: 0.0, decay: 1.0, ramp: 0.0, elastic_n: 0.0, relaxed_n: 0.0 };
+        relaxing.set_step(step_s);
+        relaxing
+    }
+
+    /// From now on a step has this length; one that differs by the rounding of times is the same.
+    pub(super) fn set_step(&mut self, step_s: f64) {
+        if (step_s - self.step_s).abs() <= ROUNDING_S {
+            return;
+        }
+        let over = step_s / self.config.time_s;
+        self.step_s = step_s;
+        self.decay = (-over).exp();
         // For an elastic force that changes linearly during the step the solution is exact.
-        let ramp = 1.0 - (1.0 - decay) * time_s / step_s;
-        Self { share, decay, ramp, elastic_n: 0.0, relaxed_n: 0.0 }
+        self.ramp = 1.0 - (1.0 - self.decay) / over;
     }
 
     /// The force (N) after a step at whose end the force of the elastic tissue is this.
     pub(super) fn step(&mut self, elastic_n: f64) -> f64 {
         let before_n = std::mem::replace(&mut self.elastic_n, elastic_n);
         self.relaxed_n = before_n + (self.relaxed_n - before_n) * self.decay + (elastic_n - before_n) * self.ramp;
-        (elastic_n - self.share * self.relaxed_n).max(0.0)
+        (elastic_n - self.config.share * self.relaxed_n).max(0.0)
     }
 }
 
@@ -67,6 +82,24 @@ mod tests {
                 assert!((force_n - (3.0 * t_s - 0.4 * relaxed_n)).abs() < 1e-9, "{step_s} s");
             }
         }
+    }
+
+    #[test]
+    fn steps_of_unequal_length_relax_as_equal_ones() {
+        let (mut even, mut uneven) = (Relaxing::new(CONFIG, STEP_S), Relaxing::new(CONFIG, STEP_S));
+        let (mut t_s, mut forces_n) = (0.0, [0.0; 2]);
+        for i in 0..1000_u32 {
+            // Every tenth step is 4 ms late, and the next one comes 0.5 ms after it.
+            for step_s in if i % 10 == 0 { [5e-3, 0.5e-3] } else { [STEP_S; 2] } {
+                uneven.set_step(step_s);
+                t_s += step_s;
+                forces_n[0] = uneven.step(3.0 * t_s);
+            }
+        }
+        for i in 1..=(t_s / STEP_S).round() as u32 {
+            forces_n[1] = even.step(3.0 * STEP_S * f64::from(i));
+        }
+        assert!((forces_n[0] / forces_n[1] - 1.0).abs() < 1e-3, "{forces_n:?}");
     }
 
     #[test]

@@ -24,8 +24,12 @@ impl World {
 
     /// Force on the tip by the tissue or a person, N; call once per step.
     fn contact_n(&mut self) -> Vector3<f64> {
+        let passed_s = self.time_s - std::mem::replace(&mut self.measured_s, self.time_s);
         let tissue_n = match &mut self.tissue {
-            Some(tissue) if !self.aside => tissue.contact_n(&self.tip_m, &self.tip_velocity_m_s),
+            Some(tissue) if !self.aside => {
+                tissue.set_step(passed_s);
+                tissue.contact_n(&self.tip_m, &self.tip_velocity_m_s)
+            }
             _ => Vector3::zeros(),
         };
         let wall_n = |wall: &Wall| wall.contact_n(&self.tip_m, &self.tip_velocity_m_s);

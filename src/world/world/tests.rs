@@ -72,3 +72,50 @@ fn a_force_on_the_hand_moves_it_and_a_poisoned_one_does_not() {
     assert!((up.z - still.z) > 0.003, "{}", up.z - still.z);
     assert_eq!(poisoned, still);
 }
+
+/// Times of the loop in tenths of a millisecond: most ticks a period after the one before, some late, some soon after a late one.
+fn late_ticks() -> impl Iterator<Item = u32> {
+    [10, 10, 14, 6, 32, 8, 45, 5, 10, 19, 1].into_iter().cycle().scan(0, |now, interval| {
+        *now += interval;
+        Some(*now)
+    })
+}
+
+#[test]
+fn a_late_tick_finds_the_hand_where_it_is_by_then() {
+    let scene = Scene::load("peg_transfer").unwrap();
+    let outputs = Outputs { hand_force_n: Vector3::new(0.0, 0.5, 1.0), ..Outputs::SAFE };
+    let [mut late, mut even] = [(); 2].map(|()| World::new(&scene, 1000.0));
+    let at = |ms: u32| {
+        even.advance_to(f64::from(ms) * 1e-3, &outputs);
+        even.hand().position_m()
+    };
+    let positions_m: Vec<_> = (0..=4000).map(at).collect();
+    let mut fastest_m_s = 0.0_f64;
+    for tenth in late_ticks().take_while(|now| *now < 40_000) {
+        late.advance_to(f64::from(tenth) * 1e-4, &outputs);
+        let [before_m, after_m] = [0, 1].map(|next| positions_m[tenth as usize / 10 + next]);
+        let there_m = before_m + (after_m - before_m) * (f64::from(tenth % 10) / 10.0);
+        fastest_m_s = fastest_m_s.max((after_m - before_m).norm() / 1e-3);
+        let off_m = (late.hand().position_m() - there_m).norm();
+        // Half a period is 90 um at the largest speed; unequal steps of integration differ by less.
+        assert!(off_m < 2e-5, "at {:.1} ms: {:.1} um", f64::from(tenth) / 10.0, 1e6 * off_m);
+    }
+    assert!(fastest_m_s > 0.1, "{fastest_m_s} m/s");
+}
+
+#[test]
+fn a_pause_of_100_ms_takes_the_hand_100_ms_further() {
+    let scene = Scene::load("peg_transfer").unwrap();
+    let outputs = Outputs { hand_force_n: Vector3::z(), ..Outputs::SAFE };
+    let after = |times_ms: &mut dyn Iterator<Item = u32>| {
+        let mut world = World::new(&scene, 1000.0);
+        times_ms.for_each(|ms| {
+            world.advance_to(f64::from(ms) * 1e-3, &outputs);
+        });
+        world.hand().position_m()
+    };
+    let (without, with) = (after(&mut (0..=250)), after(&mut (0..=150).chain([250])));
+    assert!((with - without).norm() < 1e-9, "{without} {with}");
+    assert!((after(&mut (0..=150)) - without).norm() > 5e-3, "it moves meanwhile");
+}

@@ -19,7 +19,7 @@ use nima_machine::{
     config::{RigConfig, SchedulingClass},
     messages::{Command, Tick},
     rig::Ends,
-    runtime::{self, Assembly, Summary, Tap},
+    runtime::{self, Assembly, ClockProfile, Summary, Tap, VirtualClock},
 };
 use nima_recording::store::WristId;
 use nima_score::Score;
@@ -79,6 +79,8 @@ pub(super) struct Arguments {
     /// Run on a virtual clock, as fast as this computer can
     #[arg(long = "virtual", conflicts_with_all = ["live", "share", "igtl", "lsl", "follower"])]
     virtual_clock: bool,
+    #[command(flatten)]
+    late: Late,
     /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
     #[arg(long, value_name = "CLASS")]
     scheduling: Option<SchedulingClass>,
@@ -97,7 +99,25 @@ pub(super) struct Arguments {
     json: bool,
 }
 
+/// Late ticks of the virtual clock.
+#[derive(Debug, Default, Args)]
+struct Late {
+    /// When the ticks of the virtual clock wake: perfect, quiet or busy (as recorded on such a computer), late-PERCENT (this fraction is
+    /// 0.5 to 4 ms late), stall-MS (a pause about once a second)
+    #[arg(long, value_name = "NAME", default_value_t, requires = "virtual_clock")]
+    clock: ClockProfile,
+    /// Seed of the late ticks
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "clock")]
+    clock_seed: u64,
+}
+
 impl Arguments {
+    /// The clock, unless it is the real one.
+    fn virtual_clock(&self) -> Option<VirtualClock> {
+        let Late { clock: profile, clock_seed: seed } = self.late;
+        self.virtual_clock.then_some(VirtualClock { profile, seed })
+    }
+
     /// Of the machine with the arm: what is rendered, and how, is the console's.
     pub(super) fn of_follower(
         setup: Setup,
@@ -179,11 +199,11 @@ pub(super) fn run_with(
         audiences: servers.audiences(&plan, &reel),
     };
     let pictures = (&reel, servers.show_pictures());
-    let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock, arguments.seconds, pictures)?;
-    let mut summary = if arguments.virtual_clock {
+    let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock(), arguments.seconds, pictures)?;
+    let mut summary = if let Some(clock) = arguments.virtual_clock() {
         let (assembly, watched) = plan.watched()?;
         start.watch_objects(&plan, watched, &recording);
-        runtime::run_virtual(Assembly { tap, ..assembly }, arguments.seconds.unwrap_or(60.0), |tick| {
+        runtime::run_virtual_on(clock, Assembly { tap, ..assembly }, arguments.seconds.unwrap_or(60.0), |tick| {
             let command = start.watch(tick);
             if leave.is_asked() || recording.is_over() { Some(Command::Shutdown) } else { command }
         })

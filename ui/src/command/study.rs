@@ -4,6 +4,7 @@
 //! code.
 
 mod baselines;
+mod clocks;
 mod effects;
 mod faults;
 mod gates;

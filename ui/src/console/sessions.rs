@@ -121,7 +121,7 @@ impl Sessions {
         let begin = |path: PathBuf, second: Option<PathBuf>| {
             let audiences = self.servers.audiences(plan, &self.reel);
             let to = Destination { file: Some(&path), second: second.as_deref(), audiences };
-            let (tap, recorder) = recording::begin(to, plan, "real").map_err(|error| chain(&error))?;
+            let (tap, recorder) = recording::begin(to, plan, None).map_err(|error| chain(&error))?;
             pictures::film(&recorder, &plan.rig, &self.reel);
             let began = Instant::now();
             let outlook = Outlook::new(&path, recorder.progress().bytes, began);

@@ -14,7 +14,7 @@ use super::{
 
 /// Most rows of the list of what happened.
 const MARKS: usize = 1000;
-const ABOUT: [(&str, &str); 11] = [
+const ABOUT: [(&str, &str); 13] = [
     ("started", "started (UTC)"),
     ("program", "program"),
     ("build", "build"),
@@ -23,6 +23,8 @@ const ABOUT: [(&str, &str); 11] = [
     ("scene", "scene"),
     ("seed", "seed"),
     ("clock", "clock"),
+    ("clock_profile", "lateness of the clock"),
+    ("clock_seed", "seed of the late ticks"),
     ("rate_hz", "rate (Hz)"),
     ("mode", "mode at the start"),
     ("delay_s", "delay of the link at the start (s)"),
@@ -181,11 +183,9 @@ pub(super) fn timing(session: &Figures) -> String {
         .map(|(until_s, missed)| format!("{missed} before {}", time(*until_s)))
         .collect();
     let missed = if missed.is_empty() { String::new() } else { format!(": {}", missed.join(", ")) };
-    let clock = if session.about.get("clock").is_some_and(|clock| clock == "virtual") {
-        "<p class=\"note\">On the virtual clock nothing is late.</p>\n"
-    } else {
-        ""
-    };
+    let is_perfect = session.about.get("clock").is_some_and(|clock| clock == "virtual")
+        && !session.about.contains_key("clock_profile");
+    let clock = if is_perfect { "<p class=\"note\">On the perfect virtual clock nothing is late.</p>\n" } else { "" };
     format!(
         "<section>\n<h2>Timing</h2>\n<p>Periods missed: {}{missed}</p>\n{}{clock}</section>\n",
         timing.missed,

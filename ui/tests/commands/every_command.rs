@@ -256,6 +256,33 @@ fn run_on_the_virtual_clock_reports_everything() {
 }
 
 #[test]
+fn a_run_on_a_late_clock_repeats_for_its_seed_and_its_session_names_both() {
+    let folder = tempfile::tempdir().unwrap();
+    let session = folder.path().join("late.mcap");
+    let late = |seed: &str, more: &[&str]| {
+        json(
+            &[&["run", "--virtual", "--seconds", "5", "--json", "--clock", "late-1", "--clock-seed", seed], more]
+                .concat(),
+        )
+    };
+    let [one, same, other] = [late("7", &["--record", session.to_str().unwrap()]), late("7", &[]), late("8", &[])];
+    assert_eq!(one["lateness"], serde_json::json!({ "profile": "late-1", "seed": 7 }));
+    let missed = one["missed"].as_u64().unwrap();
+    assert!(missed > 20 && (4990..=5000).contains(&(missed + one["ticks"].as_u64().unwrap())), "{one}");
+    assert!(one["wake_us"]["max"].as_f64().unwrap() > 1000.0, "{one}");
+    assert_eq!((&one["missed"], &one["error"]), (&same["missed"], &same["error"]));
+    assert_ne!(one["error"], other["error"]);
+    let replayed = nima(&["replay", session.to_str().unwrap()]);
+    assert!(replayed.status.success(), "{}", String::from_utf8_lossy(&replayed.stderr));
+    let page = folder.path().join("page");
+    assert!(nima(&["report", session.to_str().unwrap(), "--out", page.to_str().unwrap()]).status.success());
+    let page = std::fs::read_to_string(page.join("report.html")).unwrap();
+    assert!(page.contains("late-1") && !page.contains("nothing is late"), "the session names its clock");
+    refused(&["run", "--virtual", "--clock", "early"], &["unknown clock profile \"early\"", "stall-MS"]);
+    refused(&["run", "--clock", "busy"], &["--virtual"]);
+}
+
+#[test]
 fn every_baseline_runs_in_the_loop_and_over_a_recording() {
     let folder = tempfile::tempdir().unwrap();
     let path = recording(folder.path(), "r.csv", 2000, |_, _| {});

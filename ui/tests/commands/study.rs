@@ -135,11 +135,14 @@ fn the_methods_of_others_are_compared_on_a_recording() {
 fn two_machines_over_a_bad_line_are_compared_with_a_perfect_one() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let output = nima(&["study", "network", "--quick", "--mode", "best", "--json", "--out", out]);
+    let clock = ["--clock", "late-1"];
+    let output =
+        nima(&[&["study", "network", "--quick", "--mode", "best", "--json", "--out", out], &clock[..]].concat());
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     let rows = report["rows"].as_array().unwrap();
     assert_eq!((rows.len(), report["extent"].as_str()), (6, Some("quick")));
     for row in rows {
+        assert_eq!(row["clock"], "late-1");
         assert!(row["ceiling_breaches"] == 0 && row["slew_breaches"] == 0 && row["resumed"] == 0, "{row}");
         assert!(row["error_n"].as_f64().unwrap() > 0.0 && row["over_clean"].as_f64().unwrap() > 0.0, "{row}");
         assert_eq!(row["stops"].as_u64() > Some(0), row["happening"] == "outages", "{row}");
@@ -153,4 +156,8 @@ fn two_machines_over_a_bad_line_are_compared_with_a_perfect_one() {
 
     refused(&["study", "network", "--quick", "--full"], "--full");
     refused(&["study", "network", "--mode", "sideways"], "sideways");
+    for study in ["release", "passivity", "network", "validation", "tradeoff"] {
+        refused(&["study", study, "--clock", "late-90"], "unknown clock profile \"late-90\"");
+    }
+    refused(&["study", "validation", "--paper", "--clock", "busy"], "--clock");
 }

@@ -58,6 +58,28 @@ fn late_ticks_are_as_many_and_as_late_as_named() {
 }
 
 #[test]
+fn recorded_clocks_are_as_late_as_the_recordings() {
+    // Later than half a millisecond, and missed periods, %.
+    for (profile, late, missed) in
+        [(ClockProfile::Quiet, 0.1..0.3, 0.1..0.35), (ClockProfile::Busy, 4.0..6.0, 3.5..7.0)]
+    {
+        let all: Vec<TickTime> = (0..10).flat_map(|seed| times(profile, seed)).collect();
+        let [late_percent, missed_percent] = [
+            100.0 * later_than(&all, 0.5e-3),
+            100.0 * all.iter().map(|time| time.missed).sum::<u64>() as f64 / all.len() as f64,
+        ];
+        assert!(late.contains(&late_percent), "{profile}: {late_percent} % late");
+        assert!(missed.contains(&missed_percent), "{profile}: {missed_percent} % missed");
+        // They come in clusters: after a late tick another one is likely within 20 ticks.
+        let is_late = |time: &TickTime| time.wake_s > 0.5e-3;
+        let after_late: Vec<_> = all.windows(21).filter(|window| is_late(&window[0])).collect();
+        let (again, count) =
+            (after_late.iter().filter(|window| window[1..].iter().any(is_late)).count(), after_late.len());
+        assert!(again * 2 > count, "{profile}: {again} of {count}");
+    }
+}
+
+#[test]
 fn a_stalled_loop_pauses_about_once_a_second_for_the_named_time() {
     for ms in [5, 20, 100] {
         let times = times(ClockProfile::Stall { ms }, 1);

@@ -4,6 +4,7 @@ use nima_core::{
     impedance::{Mode, OwnMotion, Recipe},
     safety::ChainSettings,
 };
+use nima_machine::runtime::VirtualClock;
 use serde::Serialize;
 
 use super::judged::{PRINTED, REPAIRED};
@@ -83,8 +84,9 @@ pub(super) fn let_go(way: Way, situation: Situation, hand: Hand, delay_s: f64) -
     let tissue = pressed_tissue()?;
     let ((name, mode, literal), Hand { tremor_m, noise_n, grip_n_m }) = (way, hand);
     let (gates, handle, gain, seed) = (ChainSettings::default().without_governor(), Handle::OMEGA, 1.0, 1);
+    let clock = VirtualClock::PERFECT;
     let (own_motion, grip) = (OwnMotion::Follower, Grip::of_stiffness(grip_n_m));
     let trial =
-        Trial { mode, own_motion, literal, delay_s, gates, gain, tissue, tremor_m, noise_n, handle, grip, seed };
+        Trial { mode, own_motion, literal, delay_s, gates, gain, tissue, tremor_m, noise_n, handle, grip, seed, clock };
     Ok(Kick { name, tremor_m, noise_n, grip_n_m, row: release(&trial, situation, CONTACT_N)? })
 }

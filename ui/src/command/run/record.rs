@@ -8,7 +8,7 @@ use std::{
 
 use anyhow::Context as _;
 use nima_endoscope::Reel;
-use nima_machine::runtime::Tap;
+use nima_machine::runtime::{Tap, VirtualClock};
 use nima_session::{
     objects::ObjectSource,
     outlet::Destination,
@@ -71,7 +71,7 @@ impl Recording {
     pub(super) fn begin(
         to: Destination<'_>,
         plan: &Plan,
-        is_virtual: bool,
+        clock: Option<VirtualClock>,
         seconds: Option<f64>,
         (reel, watches): (&Reel, bool),
     ) -> anyhow::Result<(Option<Tap>, Self)> {
@@ -79,14 +79,14 @@ impl Recording {
             return Ok((None, Self::default()));
         }
         let file = to.file.map(ToOwned::to_owned);
-        let (tap, recorder) = begin(to, plan, if is_virtual { "virtual" } else { "real" })?;
+        let (tap, recorder) = begin(to, plan, clock)?;
         let now = Instant::now();
         let outlook = file.as_deref().map(|file| Outlook::new(file, recorder.progress().bytes, now));
         let ends = seconds.and_then(|seconds| now.checked_add(Duration::from_secs_f64(seconds)));
         // On the virtual clock pictures would belong to no moment.
         let films = file.is_some() && are_recorded(&plan.rig);
         let into = films.then_some(&recorder);
-        let filming = (!is_virtual && (films || watches)).then(|| Filming::start(into, &plan.rig, reel)).flatten();
+        let filming = (clock.is_none() && (films || watches)).then(|| Filming::start(into, &plan.rig, reel)).flatten();
         Ok((Some(tap), Self { recorder: Some((recorder, file)), outlook, ends, filming, told: [false; 8] }))
     }
 

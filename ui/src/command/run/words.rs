@@ -10,7 +10,7 @@ pub(super) fn in_words(plan: &Plan, summary: &Summary, is_measured: bool) -> Str
     let times =
         |q: &Quantiles| format!("p50 {:7.1}   p99 {:7.1}   p99.9 {:7.1}   max {:7.1}", q.p50, q.p99, q.p999, q.max);
     let mut text = format!(
-        "{} on \"{}\", {} clock: {:.1} s, {} ticks, {} missed, {:.1} times real time\n\
+        "{} on \"{}\", {} clock{}: {:.1} s, {} ticks, {} missed, {:.1} times real time\n\
          {}, mode {}\n\
          wake-up us  {}\n\
          work us     {}\n\
@@ -20,6 +20,7 @@ pub(super) fn in_words(plan: &Plan, summary: &Summary, is_measured: bool) -> Str
         plan.scene.name,
         plan.rig.name,
         summary.clock,
+        summary.lateness.map_or_else(String::new, |late| format!(" ({}, seed {})", late.profile, late.seed)),
         summary.seconds,
         summary.ticks,
         summary.missed,

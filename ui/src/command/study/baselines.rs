@@ -1,6 +1,7 @@
 //! Arguments of `nima study baselines`.
 
 use clap::Args;
+use nima_machine::runtime::VirtualClock;
 use nima_study::{
     baselines::{Options, Split},
     tradeoff::Source,
@@ -48,7 +49,7 @@ impl Asked for Arguments {
 
 fn sources(asked: &Sources) -> anyhow::Result<Vec<(Source, Split)>> {
     let recorded = asked.recordings()?.into_iter().map(|source| (Split::of_recording(&source.name), source));
-    let scenes = asked.scenes(SCENE_S)?.into_iter().map(|source| (Split::Scene, source));
+    let scenes = asked.scenes(&[VirtualClock::PERFECT], SCENE_S)?.into_iter().map(|source| (Split::Scene, source));
     let mut sources: Vec<_> = recorded.chain(scenes).map(|(split, source)| (source, split)).collect();
     if asked.is_empty() {
         for (name, seed) in SCENES.into_iter().flat_map(|name| (1..=SEEDS).map(move |seed| (name, seed))) {

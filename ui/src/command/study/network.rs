@@ -4,7 +4,7 @@ use clap::Args;
 use nima_core::impedance::{Mode, OwnMotion};
 use nima_study::network::{Extent, Options};
 
-use super::Asked;
+use super::{Asked, clocks::Clocks};
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct Network {
@@ -21,6 +21,8 @@ pub(in crate::command) struct Network {
     /// Make the force from the motion of the handle, as the rig key `own_motion = "handle"` does
     #[arg(long)]
     own_motion_handle: bool,
+    #[command(flatten)]
+    clocks: Clocks,
 }
 
 impl Asked for Network {
@@ -33,6 +35,6 @@ impl Asked for Network {
             _ => Extent::Usual,
         };
         let own_motion = if self.own_motion_handle { OwnMotion::Handle } else { OwnMotion::Follower };
-        Ok(Options { extent, modes: self.mode.clone(), own_motion })
+        Ok(Options { extent, clocks: self.clocks.chosen(), modes: self.mode.clone(), own_motion })
     }
 }

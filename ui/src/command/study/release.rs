@@ -1,17 +1,20 @@
-//! Arguments of `nima study release`: none.
+//! Arguments of `nima study release`.
 
 use clap::Args;
 use nima_study::release::Options;
 
-use super::Asked;
+use super::{Asked, clocks::Clocks};
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Release;
+pub(in crate::command) struct Release {
+    #[command(flatten)]
+    clocks: Clocks,
+}
 
 impl Asked for Release {
     type Experiment = Options;
 
     fn experiment(&self) -> anyhow::Result<Options> {
-        Ok(Options)
+        Ok(Options { clocks: self.clocks.chosen() })
     }
 }

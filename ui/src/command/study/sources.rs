@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_core::impedance::MAX_DELAY_S;
-use nima_machine::rig::Side;
+use nima_machine::{rig::Side, runtime::VirtualClock};
 use nima_recording::csv::Mapping;
 use nima_study::tradeoff::Source;
 use nima_world::scene::Scene;
@@ -57,13 +57,12 @@ impl Sources {
         self.recording.iter().map(read).collect()
     }
 
-    /// The scenes given, each for this long (s).
-    pub(super) fn scenes(&self, seconds: f64) -> anyhow::Result<Vec<Source>> {
-        let load = |name: &String| {
-            let scene = Scene::load(name).with_context(|| format!("--scene {name}"))?;
-            Ok(Source::from_scene(&scene, RATE_HZ, seconds))
-        };
-        self.scene.iter().map(load).collect()
+    /// The scenes given, each for this long (s), on each of these clocks.
+    pub(super) fn scenes(&self, clocks: &[VirtualClock], seconds: f64) -> anyhow::Result<Vec<Source>> {
+        let load = |name: &String| Scene::load(name).with_context(|| format!("--scene {name}"));
+        let scenes = self.scene.iter().map(load).collect::<anyhow::Result<Vec<_>>>()?;
+        let on = |scene| clocks.iter().map(move |clock| Source::on_clock(*clock, scene, RATE_HZ, seconds));
+        Ok(scenes.iter().flat_map(on).collect())
     }
 }
 

@@ -12,6 +12,7 @@ use nima_world::scene::Scene;
 
 use super::{
     Asked,
+    clocks::Clocks,
     sources::{RATE_HZ, Sources, delays_s},
 };
 use crate::leaving::Leave;
@@ -26,6 +27,8 @@ const QUICK_SCENE_S: f64 = 6.0;
 pub(in crate::command) struct Arguments {
     #[command(flatten)]
     sources: Sources,
+    #[command(flatten)]
+    clocks: Clocks,
     /// One-way delay of the link in ms; may be given several times (default: 10, 50, 100 and 300; with --quick 50)
     #[arg(long, value_name = "D", allow_negative_numbers = true)]
     delay_ms: Vec<f64>,
@@ -82,10 +85,12 @@ fn plan(arguments: &Arguments) -> anyhow::Result<Plan> {
 fn sources(arguments: &Arguments) -> anyhow::Result<Vec<Source>> {
     let seconds = if arguments.quick { QUICK_SCENE_S } else { SCENE_S };
     let mut sources = arguments.sources.recordings()?;
-    sources.extend(arguments.sources.scenes(seconds)?);
+    let clocks = arguments.clocks.chosen();
+    sources.extend(arguments.sources.scenes(&clocks, seconds)?);
     if arguments.sources.is_empty() {
         for name in SCENES {
-            sources.push(Source::from_scene(&Scene::load(name)?, RATE_HZ, seconds));
+            let scene = Scene::load(name)?;
+            sources.extend(clocks.iter().map(|clock| Source::on_clock(*clock, &scene, RATE_HZ, seconds)));
         }
     }
     Ok(sources)

@@ -8,7 +8,7 @@ use nima_machine::rig::Side;
 use nima_recording::tip_force::MOST_ROWS;
 use nima_study::validation::{Options, isolation::ROWS, paper};
 
-use super::{super::motion, Asked, Results};
+use super::{super::motion, Asked, Results, clocks::Clocks};
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct Validation {
@@ -21,8 +21,10 @@ pub(in crate::command) struct Validation {
     /// Delay of the link in the rendering part, ms
     #[arg(long, value_name = "D", default_value_t = 300.0, value_parser = delay_ms, conflicts_with = "paper")]
     delay_ms: f64,
-    /// Only the rendering part, under the paper's conditions and under others: in its window, at the horizon, and when the hand lets go
-    #[arg(long)]
+    #[command(flatten)]
+    clocks: Clocks,
+    /// Only the rendering part, on the perfect clock, under the paper's conditions and under others: in its window, at the horizon, and when the hand lets go
+    #[arg(long, conflicts_with_all = ["clock", "clock_seed"])]
     paper: bool,
     /// Duration of the task under each condition, s
     #[arg(long, value_name = "S", default_value_t = paper::SECONDS, value_parser = seconds, requires = "paper")]
@@ -63,7 +65,7 @@ impl Asked for Validation {
     type Experiment = Options;
 
     fn experiment(&self) -> anyhow::Result<Options> {
-        Ok(Options { seed: self.seed, rows: self.rows, delay_s: 1e-3 * self.delay_ms })
+        Ok(Options { seed: self.seed, clocks: self.clocks.chosen(), rows: self.rows, delay_s: 1e-3 * self.delay_ms })
     }
 
     fn carry_out(&self, results: &Results) -> anyhow::Result<()> {

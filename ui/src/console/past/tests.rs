@@ -12,7 +12,7 @@ use nima_machine::{
     config::RigConfig,
     messages::{Command, Tick},
     rig::{Act, SIDES, Side},
-    runtime::{self, Assembly},
+    runtime::{self, Assembly, VirtualClock},
 };
 use nima_recording::session::Reader;
 use nima_session::{
@@ -40,7 +40,7 @@ const TIMEOUT: Duration = Duration::from_mins(3);
 fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Option<Command>) {
     let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
-    let (tap, recorder) = recording::begin(Destination::file(path), &plan, "virtual").unwrap();
+    let (tap, recorder) = recording::begin(Destination::file(path), &plan, Some(VirtualClock::PERFECT)).unwrap();
     runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, seconds, |tick| {
         (tick.side.index() == 0).then(|| command(tick.index)).flatten()
     });
@@ -54,7 +54,7 @@ fn record_task(scene: &str, path: &Path, seconds: f64, command: impl Fn(u64) -> 
     let has_jaws = [scene.objects.is_some(); SIDES];
     rig.mode = Mode::Matched;
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
-    let (tap, recorder) = recording::begin(Destination::file(path), &plan, "virtual").unwrap();
+    let (tap, recorder) = recording::begin(Destination::file(path), &plan, Some(VirtualClock::PERFECT)).unwrap();
     let (assembly, watched) = plan.watched().unwrap();
     let mut watched = watched.unwrap();
     recorder.watch(OfSimulation::source(&plan, watched.another().unwrap()));

@@ -101,7 +101,7 @@ impl Trial {
     ) -> Result<Started, String> {
         let to = Destination { file: self.running.session(), audiences, ..Destination::default() };
         let is_heard = to.file.is_some() || !to.audiences.is_empty();
-        let recorded = is_heard.then(|| recording::begin(to, plan, "real"));
+        let recorded = is_heard.then(|| recording::begin(to, plan, None));
         let (tap, recorder) = recorded.transpose().map_err(|error| chain(&error))?.unzip();
         self.recorder = recorder;
         if let Some(recorder) = &self.recorder {

@@ -1,0 +1,53 @@
+//! Clocks on which the loop runs in a study.
+
+use clap::Args;
+use nima_machine::runtime::{ClockProfile, VirtualClock};
+use nima_study::clocks::USUAL;
+
+/// One value of `--clock`.
+#[derive(Clone, Copy, Debug)]
+enum Named {
+    One(ClockProfile),
+    All,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Clocks {
+    /// When the loop's ticks wake: perfect, quiet or busy (as recorded on such a computer), late-PERCENT (this fraction is 0.5 to 4 ms
+    /// late), stall-MS (a pause about once a second), or all; may be given several times (default: quiet and perfect)
+    #[arg(long, value_name = "NAME", value_parser = named)]
+    clock: Vec<Named>,
+    /// Seed of the late ticks
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    clock_seed: u64,
+}
+
+fn named(text: &str) -> Result<Named, String> {
+    match text {
+        "all" => Ok(Named::All),
+        _ => text
+            .parse()
+            .map(Named::One)
+            .map_err(|error: nima_machine::runtime::ParseClockProfileError| error.to_string()),
+    }
+}
+
+impl Clocks {
+    /// The clocks, each once, in the order in which they were named.
+    pub(super) fn chosen(&self) -> Vec<VirtualClock> {
+        let mut chosen: Vec<ClockProfile> = Vec::new();
+        let named = self.clock.iter().flat_map(|named| match named {
+            Named::One(profile) => vec![*profile],
+            Named::All => ClockProfile::ALL.to_vec(),
+        });
+        for profile in named {
+            if !chosen.contains(&profile) {
+                chosen.push(profile);
+            }
+        }
+        if chosen.is_empty() {
+            chosen.extend(USUAL);
+        }
+        chosen.into_iter().map(|profile| VirtualClock { profile, seed: self.clock_seed }).collect()
+    }
+}

@@ -293,6 +293,7 @@ impl ConsoleApp {
         self.panels.forces = ForcesState::default();
         self.history.adopt();
         self.panels.devices.begin_anew();
+        self.panels.demo.begin_anew();
         self.checking.forget();
         self.outbox = Outbox::default();
         let (handle, watched) = started?;

@@ -25,7 +25,7 @@ pub struct Plan {
     /// are not used on a rig with devices, where [`Handle::put_in_force`] sets them once a sensor has reported its
     /// identity.
     pub calibrations: [Calibrations; SIDES],
-    /// Engage as soon as every device delivers; only for simulated and emulated rigs, which cannot hurt anybody.
+    /// Engage as soon as every device delivers; ignored with real devices ([`RigConfig::is_harmless`]), which a person engages.
     pub engage: bool,
 }
 
@@ -80,7 +80,8 @@ impl Plan {
     /// As [`assembly`](Self::assembly).
     pub fn watched_assembly(&self) -> Result<(Assembly, Option<Watched>), StartError> {
         let (rig, roster, watched) = self.rig()?;
-        Ok((self.on(rig, roster)?, watched))
+        let assembly = self.on(rig, roster)?;
+        Ok((Assembly { engage: self.engage && self.rig.is_harmless(), ..assembly }, watched))
     }
 
     /// The same on the simulated world of this plan, and where that tells of the objects of its scene, if there are any.

@@ -95,7 +95,8 @@ fn a_haply_handle_feels_the_simulated_tissue_and_a_silent_one_takes_the_force_aw
         assert_eq!(rig.device_names(), ["right handle (Haply)"]);
         (rig.mode, rig.gates.static_hold) = (Mode::Dfr, true);
         let scene = Scene::load("peg_transfer").unwrap();
-        let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
+        // A wish that is not granted: a person's hand may be at the handle.
+        let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
         let handle = nima_world::start(&plan).unwrap();
         assert_eq!(handle.roster()[0].name, "right handle");
         let mut bench = Bench { handle, newest: None, lost: Vec::new() };
@@ -104,6 +105,9 @@ fn a_haply_handle_feels_the_simulated_tissue_and_a_silent_one_takes_the_force_aw
         bench.until("connected", |bench| {
             bench.handle.healths().is_none_or(|h| h.devices[0].standing == Standing::Connected)
         });
+        let connected_s = bench.newest.unwrap().t_s;
+        bench.until("half a second more", |bench| bench.newest.is_some_and(|tick| tick.t_s > connected_s + 0.5));
+        assert!(bench.is(LoopState::Idle), "only a person engages it");
         assert!(bench.handle.send(Command::Engage));
         bench.until("engaged", |bench| bench.is(LoopState::Engaged));
         begins.store(true, std::sync::atomic::Ordering::Relaxed);

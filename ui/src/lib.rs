@@ -2,6 +2,7 @@
 // These macros panic if stderr or stdout is closed: use `telling` and `command::output`.
 #![cfg_attr(not(test), deny(clippy::print_stderr, clippy::print_stdout))]
 
+mod by_itself;
 pub mod command;
 pub mod console;
 mod emulators;

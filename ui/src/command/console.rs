@@ -13,6 +13,7 @@ use nima_world::Plan;
 use super::{network::ToFollower, output, setup::Setup};
 use crate::language::Language;
 use crate::{
+    by_itself::{self, Starter},
     console::{
         self, Begun, Options, app::start_recorded, in_force::InForce, pictures::Album, roles::Role, sessions::Sessions,
         wizards::Which,
@@ -67,7 +68,7 @@ pub(super) struct Arguments {
     /// Seconds shown in the traces at the start
     #[arg(long, value_name = "S", value_parser = super::run::positive_seconds)]
     traces: Option<f64>,
-    /// Start idle; without this, a simulated or emulated rig engages by itself
+    /// Start idle; without this, the built-in rigs simulated and emulated engage by themselves
     #[arg(long)]
     at_rest: bool,
     /// Block the window for this many seconds, once, to show that the loop is not affected
@@ -91,10 +92,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut in_force = InForce::load(None, &rig, &scene);
     let (rig, calibrations) = (in_force.with_checked(rig.clone()), in_force.calibrations(&rig));
     let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
-    // Nobody can be hurt by a simulated or emulated rig, so the demo starts at once.
-    let by_itself = rig.is_harmless();
-    let by_itself = by_itself && !arguments.at_rest && arguments.calibrate.is_none() && arguments.session.is_none();
-    plan.engage = by_itself && plan.may_engage();
+    let at_rest = arguments.at_rest || arguments.calibrate.is_some() || arguments.session.is_some();
+    let by_itself = by_itself::engages(Starter::Window, arguments.setup.rig(), &rig, arguments.network.arm());
+    plan.engage = by_itself && !at_rest && plan.may_engage();
     // Pictures are taken of a session that nobody looks for afterwards.
     let folder = in_force.store().and_then(|store| store.folder().parent()).filter(|_| arguments.pictures.is_none());
     let servers = arguments.watching.start()?;

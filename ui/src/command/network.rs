@@ -17,7 +17,7 @@ use nima_network::{
 
 use nima_world::scene::Scene;
 
-use crate::line::Line;
+use crate::{by_itself::Arm, line::Line};
 
 /// The option of a command whose arm may be at another machine.
 #[derive(Clone, Debug, Default, Args)]
@@ -28,6 +28,15 @@ pub(super) struct ToFollower {
 }
 
 impl ToFollower {
+    /// Where the arm is. A follower that cannot be found is at another machine; opening the line reports it.
+    pub(super) fn arm(&self) -> Arm {
+        match self.follower.as_deref().map(address) {
+            None => Arm::Here,
+            Some(Ok(follower)) if follower.ip().is_loopback() => Arm::Loopback,
+            Some(_) => Arm::Elsewhere,
+        }
+    }
+
     /// Opens the line, if one is asked for; changes the rig to what is here.
     pub(super) fn open(&self, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Option<Line>> {
         let Some(host) = &self.follower else { return Ok(None) };

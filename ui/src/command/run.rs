@@ -41,6 +41,7 @@ use super::{
     truth::{self, Comparison},
 };
 use crate::{
+    by_itself::{self, Arm, Starter},
     console::in_force::InForce,
     emulators::Emulators,
     leaving::Leave,
@@ -169,9 +170,14 @@ pub(super) fn run_with(
     }
     let mut in_force = InForce::load(None, &rig, &scene);
     let calibrations = in_force.calibrations(&rig);
-    // With a calibrated wrist sensor the bias is checked before the tool may touch anything. Only rigs that cannot hurt
-    // anybody engage automatically.
-    let by_itself = rig.is_harmless();
+    // With a calibrated wrist sensor the bias is checked before the tool may touch anything.
+    let arm = arguments.network.arm();
+    if arm == Arm::Elsewhere {
+        tell(
+            "the arm at another machine may be a real one: it stays idle; engage it in `nima console --follower HOST`",
+        );
+    }
+    let by_itself = by_itself::engages(Starter::Run, arguments.setup.rig(), &rig, arm);
     let by_itself = by_itself && here.have_leader();
     let engage = by_itself && in_force.drift().is_none() && !in_force.is_waiting();
     let rig = in_force.with_checked(rig);

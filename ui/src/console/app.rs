@@ -293,6 +293,7 @@ impl ConsoleApp {
         self.panels.forces = ForcesState::default();
         self.history.adopt();
         self.panels.devices.begin_anew();
+        self.panels.demo.begin_anew();
         self.checking.forget();
         self.outbox = Outbox::default();
         let (handle, watched) = started?;
@@ -377,7 +378,8 @@ impl eframe::App for ConsoleApp {
             self.palette.close();
         }
         self.obey_commands(&ctx);
-        self.go_on_in_past(f64::from(ui.input(|input| input.stable_dt)).min(0.1));
+        // The time that passed: `stable_dt` is a sixtieth of a second in every window that waits between its frames.
+        self.go_on_in_past(f64::from(ui.input(|input| input.unstable_dt)));
         self.layout(ui);
         if !self.start.is_open {
             self.start.rest();

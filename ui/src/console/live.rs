@@ -340,6 +340,11 @@ impl Live {
         states.max_by_key(|state| attention(*state)).unwrap_or(LoopState::Idle)
     }
 
+    /// The fault that came first, while one is latched.
+    pub fn first_fault(&self) -> Option<Fault> {
+        self.first_fault.map(|(_, fault)| fault)
+    }
+
     /// Present mode.
     pub fn mode(&self) -> Mode {
         self.first_tick().map_or(self.rig.mode, |tick| tick.mode)

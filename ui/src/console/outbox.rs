@@ -6,6 +6,8 @@ use nima_machine::{messages::Command, runtime::Handle};
 #[derive(Debug, Default)]
 pub struct Outbox {
     waiting: Vec<Command>,
+    /// Stops that a person asked for.
+    stops: u64,
     /// A stop could not be put into the loop's queue.
     stop_refused: bool,
 }
@@ -16,6 +18,7 @@ impl Outbox {
     pub fn push(&mut self, command: Command) {
         if command == Command::Stop {
             self.waiting.clear();
+            self.stops += 1;
         }
         self.waiting.retain(|old| !is_outdated(old, command));
         self.waiting.push(command);
@@ -25,6 +28,12 @@ impl Outbox {
     /// sent.
     pub fn flush(&mut self, handle: Option<&Handle>) {
         self.flush_into(|command| handle.is_some_and(|handle| handle.send(command)));
+    }
+
+    /// The waiting commands, which count as sent.
+    #[cfg(test)]
+    pub(in crate::console) fn sent(&mut self) -> Vec<Command> {
+        std::mem::take(&mut self.waiting)
     }
 
     fn flush_into(&mut self, mut send: impl FnMut(Command) -> bool) {
@@ -51,6 +60,11 @@ impl Outbox {
     /// Whether a stop is waiting.
     pub fn holds_stop(&self) -> bool {
         self.waiting.contains(&Command::Stop)
+    }
+
+    /// Number of stops that a person asked for: every stop of the window is a person's, and the loop ignores one under a latched fault.
+    pub const fn stops(&self) -> u64 {
+        self.stops
     }
 
     /// Whether the loop's queue had no room for a stop, which the operator must know. Not yet true in the frame of the

@@ -8,6 +8,7 @@ mod blind;
 mod connecting;
 mod console;
 mod contrast;
+mod demo;
 mod desk;
 mod drift;
 mod eyes;

@@ -23,6 +23,8 @@ const ABOVE: f64 = 72.0;
 const BELOW: f64 = 176.0;
 /// The picture may be so much lower, because an alarm stands above it, points.
 const LOWER_MOST: usize = 90;
+/// The button Engage is this far from the right edge, points.
+const ENGAGE_FROM_RIGHT: i32 = 220;
 const LOOK_EVERY: Duration = Duration::from_millis(1);
 /// A picture that is not followed by another one for so long is a stall.
 const STALL: Duration = Duration::from_millis(500);
@@ -168,6 +170,9 @@ fn run(size: &str, endoscope: &str, time: Duration) -> (Seen, serde_json::Value)
         .args(["search", "--name", "NIMA Console", "windowsize", width, height, "windowmove", "0", "0"])
         .status();
     assert!(moved.unwrap().success());
+    thread::sleep(Duration::from_secs(1));
+    // A rig file waits for a person.
+    console.click((width.parse::<i32>().unwrap() - ENGAGE_FROM_RIGHT, 36));
     thread::sleep(Duration::from_secs(3));
     let seen = Seen::watch(&Screen::open(memory.path()), time);
     if let Some(path) = std::env::var_os("NIMA_PICTURE") {

@@ -4,6 +4,7 @@
 use std::{path::Path, thread, time::Duration};
 
 use nima_recording::{messages::foxglove::Log, session::Reader};
+use nima_tests::emulated;
 use prost::Message as _;
 
 use crate::{
@@ -115,4 +116,32 @@ fn each_role_does_its_work_by_mouse_and_keyboard() {
     nima_testing::real_time::judged(|| surgeon(&x));
     nima_testing::real_time::judged(|| technician(&x));
     nima_testing::real_time::judged(|| demo(&x));
+}
+
+/// The states of the loop in a window in which nobody presses anything.
+fn left_alone(x: &Xvfb, folder: tempfile::TempDir, options: &[&str]) -> serde_json::Value {
+    std::fs::write(folder.path().join("console.json"), r#"{"toured":true}"#).unwrap();
+    let mut console = Console::begin(x, folder, options);
+    thread::sleep(Duration::from_secs(6));
+    console.end()
+}
+
+#[test]
+fn the_built_in_rig_engages_by_itself_and_a_rig_file_waits_for_a_person() {
+    let _alone = nima_testing::real_time::alone();
+    let Some(x) = Xvfb::start() else { return };
+    let built_in = left_alone(&x, tempfile::tempdir().unwrap(), &[]);
+    assert!(states(&built_in).contains(&"Engaged"), "{:?}", states(&built_in));
+    // Nothing is missing on it: its sensors at the tips need no calibration.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("finished.toml");
+    let mut file = emulated::rig_file(&emulated::elsewhere(folder.path()));
+    for side in ["right", "left"] {
+        file.set(&format!("devices.{side}.sensor_at"), "tip");
+    }
+    file.save(&path).unwrap();
+    let path = path.display().to_string();
+    let finished = left_alone(&x, folder, &["--rig", &path]);
+    assert_eq!(states(&finished).last(), Some(&"Idle"), "{:?}", states(&finished));
+    assert!(!states(&finished).contains(&"Ready"), "{:?}", states(&finished));
 }

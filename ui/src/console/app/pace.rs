@@ -34,7 +34,7 @@ impl ConsoleApp {
     pub(super) fn rest(&mut self, ctx: &egui::Context) {
         let moves = !(self.live.state().is_latched() || self.live.state() == LoopState::Idle);
         let asks = self.wizards.open.is_some() || self.checking.is_open();
-        let plays = self.past.as_ref().is_some_and(Past::moves);
+        let plays = self.past.as_ref().is_some_and(Past::moves) || self.panels.demo.moves();
         let devices = &self.panels.devices;
         if moves || plays || devices.is_testing() || asks || self.live.first_tick().is_none() {
             self.moved = Instant::now();

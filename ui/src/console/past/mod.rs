@@ -32,8 +32,10 @@ pub(crate) use beside::both_ui;
 
 /// How fast a session can be played.
 const SPEEDS: [f64; 6] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
-/// The screen is at most this much ahead of the ticks that it waits for, s.
+/// The screen is at most this much ahead of the ticks that it waits for, or a frame, s.
 const AHEAD_S: f64 = 0.3;
+/// Of a longer time between two frames only this much is played, s: nobody saw the rest.
+const PAUSE_S: f64 = 1.0;
 /// Figures are brought up to date after so many seconds of the session.
 const SETTLED_S: f64 = 0.02;
 
@@ -129,8 +131,9 @@ impl Past {
             self.take(answer);
         }
         if self.play.runs && self.live.is_some() {
-            let most_s = self.shown_s() + AHEAD_S;
-            self.wanted_s = (self.wanted_s + dt_s * self.play.speed).min(most_s);
+            let step_s = dt_s.min(PAUSE_S) * self.play.speed;
+            let most_s = self.shown_s() + step_s.max(AHEAD_S);
+            self.wanted_s = (self.wanted_s + step_s).min(most_s);
             self.worker.go_on(self.wanted_s);
         }
         if let Some(beside) = &mut self.beside {

@@ -168,6 +168,32 @@ fn a_session_is_played_tick_by_tick() {
 }
 
 #[test]
+fn a_window_that_draws_rarely_plays_as_fast_as_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", 10.0, |_| None);
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    for (speed, frame_s) in [(1.0, 0.05), (1.0, 0.5), (4.0, 0.1), (4.0, 0.5)] {
+        settled(&mut past, 1.0);
+        past.play.speed = speed;
+        past.toggle();
+        for _ in 0..(2.0 / (speed * frame_s)).round() as usize {
+            let before_s = past.shown_s();
+            past.step(frame_s, false);
+            until(&mut past, "went on", |past| past.shown_s() >= before_s + speed * frame_s - 2e-3);
+        }
+        past.toggle();
+        assert!((past.shown_s() - 3.0).abs() < 0.05, "{} s at {speed}, {frame_s} s a frame", past.shown_s());
+    }
+    settled(&mut past, 1.0);
+    past.play.speed = 1.0;
+    past.toggle();
+    past.step(60.0, false);
+    assert!((past.wanted_s - 2.0).abs() < 0.01, "{} s: what nobody saw is not skipped", past.wanted_s);
+}
+
+#[test]
 fn what_happened_is_marked_along_the_time() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");

@@ -110,9 +110,16 @@ pub(in crate::console) const NOTE_IDLE: Text = Text::of(
     "Regelung im Leerlauf. Zum Fortsetzen der Vorführung koppeln.",
 );
 pub(in crate::console) const NOTE_STOPPED: Text = Text::of(
-    "Stopped: no force, no motion. Press Release stop, then Engage.",
-    "Angehalten: keine Kraft, keine Bewegung. Halt lösen, dann koppeln.",
+    "Stopped: no force, no motion. The demonstration waits until you press Release stop, then Engage.",
+    "Angehalten: keine Kraft, keine Bewegung. Die Vorführung wartet, bis der Halt gelöst und gekoppelt wird.",
 );
+/// Why the loop ended an engagement without a fault.
+pub(in crate::console) const HAND_GONE: Text = Text::of(
+    "The governor found no hand at the handle and ended the engagement",
+    "Der Wächter fand keine Hand am Handgerät und hat die Kopplung beendet",
+);
+pub(in crate::console) const NOT_ENGAGED_IN_TIME: Text =
+    Text::of("The loop did not engage in time", "Die Regelung hat nicht rechtzeitig gekoppelt");
 pub(in crate::console) const NOTE_NOT_ENGAGED: Text =
     Text::of("The loop is not engaged yet", "Die Regelung ist noch nicht gekoppelt");
 pub(in crate::console) const NOTE_CHOOSE_SIMULATED: Text = Text::of(
@@ -135,6 +142,45 @@ pub(in crate::console) fn handle_went(travel_mm: f64) -> String {
         told!("The handle moved {travel_mm:.1} mm.", "Weg des Handgeräts: {travel_mm:.1} mm.")
     } else {
         told!("The handle moved {travel_mm:.0} mm.", "Weg des Handgeräts: {travel_mm:.0} mm.")
+    }
+}
+
+/// A fault that the demonstration releases by itself, in so many seconds.
+pub(in crate::console) fn recovers_from_fault(cause: &str, left_s: f64) -> String {
+    let what = told!(
+        "Fault: {cause}. The loop removed force and motion at once",
+        "Störung: {cause}. Die Regelung hat Kraft und Bewegung sofort weggenommen"
+    );
+    recovers(&what, left_s)
+}
+
+/// What ended the engagement, and in how many seconds the chapter restarts.
+pub(in crate::console) fn recovers(what: &str, left_s: f64) -> String {
+    if left_s > 0.0 {
+        told!(
+            "{what}. Nothing here is real: the chapter restarts in {left_s:.0} s, unless you press Stop.",
+            "{what}. Hier ist nichts echt: das Kapitel beginnt in {left_s:.0} s neu, außer bei Halt."
+        )
+    } else {
+        told!(
+            "{what}. Nothing here is real: the chapter restarts as soon as the loop permits it.",
+            "{what}. Hier ist nichts echt: das Kapitel beginnt neu, sobald die Regelung es erlaubt."
+        )
+    }
+}
+
+/// A fault that only a person releases: `stopped` because Stop was pressed, else because the rig has devices.
+pub(in crate::console) fn fault_waits(cause: &str, stopped: bool) -> String {
+    if stopped {
+        told!(
+            "Fault: {cause}. Stop was pressed, so the demonstration waits until you press Release stop, then Engage.",
+            "Störung: {cause}. Halt wurde gedrückt, deshalb wartet die Vorführung, bis der Halt gelöst und gekoppelt wird."
+        )
+    } else {
+        told!(
+            "Fault: {cause}. No force, no motion. Press Release stop, then Engage.",
+            "Störung: {cause}. Keine Kraft, keine Bewegung. Halt lösen, dann koppeln."
+        )
     }
 }
 

@@ -1,0 +1,89 @@
+//! Whether a loop engages by itself at its start: the one place that decides it.
+//!
+//! Force is dangerous, so a person engages. There are two exceptions, both without a real device that renders force or moves:
+//! - the window, on the rigs `simulated` and `emulated` that come with the program, so that a newcomer sees them run. A rig file is a
+//!   user's own, whatever is in it: it waits for its ready check and for **Engage**;
+//! - `nima run`, because it is a command to run this rig, and nobody sits at it.
+//!
+//! Every other command starts an idle loop. An arm at another machine may be a real one, whatever the rig at this machine is. `Plan`
+//! ignores a wish to engage on a rig with real devices.
+
+use nima_machine::config::RigConfig;
+
+/// Rigs that the window engages.
+const BUILT_IN: [&str; 2] = ["simulated", "emulated"];
+
+/// What starts the loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Starter {
+    /// `nima console`.
+    Window,
+    /// `nima run`.
+    Run,
+}
+
+/// Where the arm of the rig is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Arm {
+    Here,
+    /// At a `nima follower` on this machine, to try two machines.
+    Loopback,
+    Elsewhere,
+}
+
+/// Whether the loop of this rig, which was loaded by this name or path, engages by itself.
+pub(crate) fn engages(starter: Starter, name: &str, rig: &RigConfig, arm: Arm) -> bool {
+    let may = match (starter, arm) {
+        (Starter::Window, Arm::Here) => BUILT_IN.contains(&name),
+        (Starter::Run, Arm::Here | Arm::Loopback) => true,
+        (Starter::Window, Arm::Loopback | Arm::Elsewhere) | (Starter::Run, Arm::Elsewhere) => false,
+    };
+    may && rig.is_harmless()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Which of these rigs engage by themselves.
+    fn engaging(starter: Starter, arm: Arm, names: &[String]) -> Vec<String> {
+        let engages = |name: &&String| engages(starter, name, &RigConfig::load(name).unwrap(), arm);
+        names.iter().filter(engages).cloned().collect()
+    }
+
+    #[test]
+    fn the_window_engages_two_built_in_rigs_and_no_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let built_in: Vec<String> = RigConfig::names().map(str::to_owned).collect();
+        let file = |(name, text): (&str, &str)| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).unwrap();
+            path.display().to_string()
+        };
+        let emulated = include_str!("../../config/rigs/emulated.toml");
+        let files: Vec<String> = [
+            ("simulated.toml", include_str!("../../config/rigs/simulated.toml")),
+            ("emulated.toml", emulated),
+            ("at_tip.toml", &emulated.replace("sensor_at = \"wrist\"", "sensor_at = \"tip\"")),
+            ("desk.toml", include_str!("../../config/rigs/desk.toml")),
+            ("paper.toml", include_str!("../../config/rigs/paper.toml")),
+        ]
+        .map(file)
+        .into();
+        assert_eq!(engaging(Starter::Window, Arm::Here, &built_in), ["simulated", "emulated"]);
+        assert_eq!(engaging(Starter::Window, Arm::Here, &files), [""; 0]);
+        // A command to run it is enough where nobody can be hurt.
+        assert_eq!(engaging(Starter::Run, Arm::Here, &built_in), ["simulated", "desk", "emulated"]);
+        assert_eq!(engaging(Starter::Run, Arm::Here, &files), files[..4]);
+    }
+
+    #[test]
+    fn an_arm_at_another_machine_may_be_a_real_one() {
+        let simulated = ["simulated".to_owned()];
+        for arm in [Arm::Loopback, Arm::Elsewhere] {
+            assert_eq!(engaging(Starter::Window, arm, &simulated), [""; 0]);
+        }
+        assert_eq!(engaging(Starter::Run, Arm::Loopback, &simulated), simulated);
+        assert_eq!(engaging(Starter::Run, Arm::Elsewhere, &simulated), [""; 0]);
+    }
+}

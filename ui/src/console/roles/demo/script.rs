@@ -1,0 +1,130 @@
+//! The chapters of the demonstration.
+
+use nima_core::impedance::Mode;
+
+use crate::{console::text, language::Text};
+
+/// One step of the script.
+#[derive(Debug)]
+pub(super) struct Step {
+    /// Name on its button.
+    pub(super) name: Text,
+    /// What can be seen, and why.
+    pub(super) words: Text,
+    /// Rendering mode.
+    pub(super) mode: Mode,
+    /// Delay of the link, s.
+    pub(super) delay_s: f64,
+    /// Whether the hand lets go while it presses, and if so, with the governor or without.
+    pub(super) lets_go: Option<Governor>,
+    /// Duration, s.
+    pub(super) seconds: f64,
+}
+
+/// What the governor does while the hand lets go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Governor {
+    /// It watches, as ever.
+    Watches,
+    /// It is left out, to show what it is for.
+    LeftOut,
+}
+
+/// The script.
+pub(super) const SCRIPT: [Step; 9] = [
+    Step {
+        name: text::roles::DEMO_START,
+        words: text::roles::DEMO_START_CAPTION,
+        mode: Mode::Best,
+        delay_s: 0.05,
+        lets_go: None,
+        seconds: 14.0,
+    },
+    Step {
+        name: text::roles::DEMO_DIRECT,
+        words: text::roles::DEMO_DIRECT_CAPTION,
+        mode: Mode::Dfr,
+        delay_s: 0.3,
+        lets_go: None,
+        seconds: 14.0,
+    },
+    Step {
+        name: text::roles::DEMO_LINEAR,
+        words: text::roles::DEMO_LINEAR_CAPTION,
+        mode: Mode::Linear,
+        delay_s: 0.3,
+        lets_go: None,
+        seconds: 14.0,
+    },
+    Step {
+        name: text::roles::DEMO_LITERAL,
+        words: text::roles::DEMO_LITERAL_CAPTION,
+        mode: Mode::Literal,
+        delay_s: 0.3,
+        lets_go: None,
+        seconds: 14.0,
+    },
+    Step {
+        name: text::roles::DEMO_ANCHORED,
+        words: text::roles::DEMO_ANCHORED_CAPTION,
+        mode: Mode::Anchored,
+        delay_s: 0.3,
+        lets_go: None,
+        seconds: 14.0,
+    },
+    Step {
+        name: text::roles::DEMO_MATCHED,
+        words: text::roles::DEMO_MATCHED_CAPTION,
+        mode: Mode::Matched,
+        delay_s: 0.3,
+        lets_go: None,
+        seconds: 14.0,
+    },
+    Step {
+        name: text::roles::DEMO_LET_GO,
+        words: text::roles::DEMO_LET_GO_CAPTION,
+        mode: Mode::Dfr,
+        delay_s: 0.3,
+        lets_go: Some(Governor::LeftOut),
+        seconds: 16.0,
+    },
+    Step {
+        name: text::roles::DEMO_GOVERNOR,
+        words: text::roles::DEMO_GOVERNOR_CAPTION,
+        mode: Mode::Dfr,
+        delay_s: 0.3,
+        lets_go: Some(Governor::Watches),
+        seconds: 16.0,
+    },
+    Step {
+        name: text::roles::DEMO_YOUR_TURN,
+        words: text::roles::DEMO_YOUR_TURN_CAPTION,
+        mode: Mode::Best,
+        delay_s: 0.05,
+        lets_go: None,
+        seconds: 20.0,
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::language::{self, Language};
+
+    #[test]
+    fn every_chapter_is_long_enough_to_be_read() {
+        for step in &SCRIPT {
+            for language in Language::CHOICES {
+                let words = language::with(language, || step.words.get().split_whitespace().count() as f64);
+                assert!(step.seconds >= words / 4.0, "{}: {words} words in {} s", step.name, step.seconds);
+            }
+        }
+    }
+
+    #[test]
+    fn the_modes_of_the_paper_and_ours_are_all_shown() {
+        for mode in [Mode::Literal, Mode::Linear, Mode::Dfr, Mode::Anchored, Mode::Matched, Mode::Best] {
+            assert!(SCRIPT.iter().any(|step| step.mode == mode), "{mode}");
+        }
+    }
+}

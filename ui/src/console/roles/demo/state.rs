@@ -1,0 +1,203 @@
+//! What the demonstration does in a frame.
+
+use nima_core::impedance::Mode;
+use nima_machine::messages::{Command, LoopState};
+
+use super::{
+    letting_go::LettingGo,
+    pace::Pace,
+    recovery::{PersonsStop, Recovery},
+    script::{Governor, SCRIPT, Step},
+};
+use crate::{
+    console::{live::Live, outbox::Outbox, text},
+    words::Remedy as _,
+};
+
+/// State of the script.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DemoState {
+    pub(super) step: usize,
+    pub(super) held: bool,
+    pace: Pace,
+    /// The last step whose settings were sent to the loop.
+    told: Option<usize>,
+    before: Option<Before>,
+    letting_go: LettingGo,
+    recovery: Option<Recovery>,
+    stop: PersonsStop,
+}
+
+/// What was set before the demonstration.
+#[derive(Clone, Copy, Debug)]
+struct Before {
+    mode: Mode,
+    delay_s: f64,
+    compares: bool,
+    static_hold: bool,
+}
+
+impl DemoState {
+    /// Restores what was set before.
+    pub fn leave(&mut self, outbox: &mut Outbox) {
+        let Self { mut letting_go, before, .. } = *self;
+        self.begin_anew();
+        letting_go.close(0.0, outbox);
+        if let Some(Before { mode, delay_s, compares, static_hold }) = before {
+            outbox.push(Command::SetGovernor(true));
+            outbox.push(Command::SetStaticHold(static_hold));
+            outbox.push(Command::SetMode(mode));
+            outbox.push(Command::SetDelay(delay_s));
+            outbox.push(Command::Compare(compares));
+        }
+    }
+
+    /// Another loop runs, with settings of its own.
+    pub fn begin_anew(&mut self) {
+        *self = Self { step: self.step, held: self.held, ..Self::default() };
+    }
+
+    /// Goes on to the newest tick. Paused while a visitor leads the instrument, by the pause button, or while the loop does not
+    /// run.
+    pub(super) fn play(&mut self, live: &Live, leading: bool, outbox: &mut Outbox) {
+        let Some(tick) = live.first_tick() else { return };
+        let passed_s = self.pace.passed_s(tick.t_s);
+        self.stop.notice(live, tick.t_s, outbox);
+        if outbox.holds_stop() {
+            return;
+        }
+        self.recover(live, passed_s, outbox);
+        // An engagement that the governor ended for the open hand is part of the show.
+        if live.state() != LoopState::Engaged && !self.letting_go.is_open() {
+            return;
+        }
+        let before = self.enter(live, outbox);
+        if !self.held && !leading {
+            self.pace.count(passed_s);
+        }
+        if SCRIPT[self.step].lets_go.is_some() && !leading {
+            self.letting_go.play(live, outbox);
+        }
+        if self.pace.is_over(SCRIPT[self.step].seconds) {
+            let following = (1..=SCRIPT.len()).map(|ahead| (self.step + ahead) % SCRIPT.len());
+            let possible = following.into_iter().find(|step| may_show(live, &SCRIPT[*step]));
+            self.pace.go_on(SCRIPT[self.step].seconds);
+            self.step = possible.unwrap_or_default();
+        }
+        if self.told != Some(self.step) {
+            self.tell(live, before, outbox);
+        }
+    }
+
+    /// Begins the demonstration, if it has not begun; returns what was set before.
+    fn enter(&mut self, live: &Live, outbox: &mut Outbox) -> Before {
+        *self.before.get_or_insert_with(|| {
+            outbox.push(Command::Compare(true));
+            let static_hold = live.gate_settings().static_hold;
+            Before { mode: live.mode(), delay_s: live.delay_s(), compares: live.compares(), static_hold }
+        })
+    }
+
+    /// Sends the settings of the chapter to the loop.
+    fn tell(&mut self, live: &Live, before: Before, outbox: &mut Outbox) {
+        let Step { mode, delay_s, lets_go, .. } = SCRIPT[self.step];
+        self.letting_go.close(live.first_tick().map_or(0.0, |tick| tick.t_s), outbox);
+        self.letting_go.travel_m = None;
+        // The chapter before left the governor out, or the next one must find it.
+        if may_let_go(live) {
+            outbox.push(Command::SetGovernor(lets_go != Some(Governor::LeftOut)));
+        }
+        // A force that fades at standstill would leave nothing to let go.
+        outbox.push(Command::SetStaticHold(lets_go.is_some() || before.static_hold));
+        outbox.push(Command::SetMode(mode));
+        outbox.push(Command::SetDelay(delay_s));
+        self.told = Some(self.step);
+    }
+
+    /// Leads the loop back from a trouble that came while the demonstration ran. A loop that was found in a fault is left as it is.
+    fn recover(&mut self, live: &Live, passed_s: f64, outbox: &mut Outbox) {
+        let state = live.state();
+        if state.is_latched() {
+            // The loop has closed the hand.
+            self.letting_go = LettingGo::default();
+        }
+        let now_s = live.first_tick().map_or(0.0, |tick| tick.t_s);
+        let is_over = !matches!(state, LoopState::Faulted(_) | LoopState::Idle) || self.letting_go.explains_idle(now_s);
+        if is_over || self.before.is_none() || self.stop.holds() || !may_recover(live) {
+            self.recovery = None;
+            return;
+        }
+        if self.recovery.is_none() {
+            self.recovery = Recovery::of(live);
+            if self.recovery.is_some() {
+                self.go_to(self.step);
+                self.told = None;
+            }
+        }
+        if let Some(recovery) = &mut self.recovery {
+            recovery.step(state, passed_s, outbox);
+        }
+    }
+
+    /// Whether something changes with time although the loop is at rest: the hand comes back, or a fault is explained.
+    pub(in crate::console) const fn moves(&self) -> bool {
+        self.letting_go.is_open() || self.recovery.is_some()
+    }
+
+    /// Shows this chapter from its beginning.
+    pub(super) const fn go_to(&mut self, step: usize) {
+        self.step = step;
+        self.pace.begin();
+    }
+
+    /// Progress of the chapter, 0 to 1.
+    pub(super) const fn progress(&self) -> f64 {
+        self.pace.progress(SCRIPT[self.step].seconds)
+    }
+
+    /// What can be seen and why, or why the demonstration waits and what to do.
+    pub(super) fn caption(&self, live: &Live) -> String {
+        let chapter = || SCRIPT[self.step].words.get().to_owned();
+        if !may_play(live) {
+            return text::roles::NOTE_REAL_RIG.get().to_owned();
+        }
+        if let Some(recovery) = &self.recovery {
+            return recovery.words();
+        }
+        let words = match live.state() {
+            LoopState::Engaged => chapter(),
+            LoopState::Idle if self.letting_go.is_open() => chapter(),
+            LoopState::Idle => text::roles::NOTE_IDLE.get().to_owned(),
+            LoopState::Stopped => text::roles::NOTE_STOPPED.get().to_owned(),
+            LoopState::Faulted(fault) => {
+                let cause = live.first_fault().unwrap_or(fault).cause();
+                text::roles::fault_waits(cause, self.stop.holds())
+            }
+            LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => {
+                text::roles::NOTE_NOT_ENGAGED.get().to_owned()
+            }
+        };
+        let went = self.letting_go.travel_m.map(|travel_m| text::roles::handle_went(1e3 * travel_m));
+        went.map_or_else(|| words.clone(), |went| format!("{words} {went}"))
+    }
+}
+
+/// Whether the rig is simulated or emulated, so that nobody can be hurt. An arm at another machine may be a real one.
+pub(super) fn may_play(live: &Live) -> bool {
+    live.rig.is_harmless() && live.line_door.is_none()
+}
+
+/// Whether the hand is simulated, so that it may let go.
+fn may_let_go(live: &Live) -> bool {
+    live.rig.has_simulated_hand()
+}
+
+/// Whether the demonstration may leave a fault and engage: no device belongs to the rig, here or at another machine.
+fn may_recover(live: &Live) -> bool {
+    may_play(live) && live.rig.devices.is_none() && live.rig.desk.is_none()
+}
+
+/// Whether this chapter can be shown on the rig.
+pub(super) fn may_show(live: &Live, step: &Step) -> bool {
+    may_play(live) && (step.lets_go.is_none() || may_let_go(live))
+}

@@ -121,7 +121,7 @@ pub(crate) fn endoscope_of(data: &[u8]) -> Option<Isometry3<f64>> {
     world_from_n.to_homogeneous().iter().all(|number| number.is_finite()).then_some(world_from_n)
 }
 
-/// A force (N) at a place (m); none where there is no force.
+/// A force (N) at a place (m); none where there is no force, or where it is not known.
 fn arrow(at_m: &Vector3<f64>, force_n: &Vector3<f64>, color: Color) -> Option<Arrow> {
     // An arrow lies along its own x axis; opposite to it every half turn does.
     let turned = UnitQuaternion::rotation_between(&Vector3::x(), force_n)

@@ -158,12 +158,12 @@ fn table(reader: &Reader, times_ns: Range<u64>, arguments: &Arguments, leave: &L
     output::line(&format!("{rows} ticks of the {} arm in {}", arm.word(), out.display()))
 }
 
-/// The fewest digits from which the same numbers are read.
+/// The fewest digits from which the same numbers are read; nothing in the place of one that is not known.
 fn row(tick: &PlottedTick) -> String {
     let PlottedTick { time_ns, t_s, tip_m, leader_m, measured_n, delayed_n, asked_n, rendered_n, state } = tick;
     let mut row = format!("{t_s},{time_ns}");
     for value in [tip_m, measured_n, leader_m, delayed_n, asked_n, rendered_n].into_iter().flatten() {
-        write!(row, ",{value}").ok();
+        row += &output::cell(*value);
     }
     writeln!(row, ",{state}").ok();
     row

@@ -60,7 +60,9 @@ fn agrees(session: &str, table: &str, arm: &str) -> usize {
         let time_ns: u64 = row[1].parse().unwrap();
         for (column, signal) in &columns {
             let said = topics.iter().find_map(|topic| topic[&time_ns].get(signal)).unwrap();
-            assert_eq!(row[*column].parse::<f64>().unwrap().to_bits(), said.to_bits(), "{signal} at {time_ns}");
+            // What is not known is an empty field.
+            let field = if row[*column].is_empty() { f64::NAN } else { row[*column].parse().unwrap() };
+            assert_eq!(field.to_bits(), said.to_bits(), "{signal} at {time_ns}");
         }
         rows += 1;
     }
@@ -110,6 +112,23 @@ fn a_table_has_the_values_of_the_messages_and_identify_makes_the_same_of_both() 
     refused(&["identify", &left, "--arm", "left"], "is a table");
     refused(&["identify", &session, "--map", "x=a"], "is a session");
     assert!(!Path::new(&at("new.csv")).exists() && !Path::new(&at("new.mcap")).exists());
+}
+
+#[test]
+fn a_force_that_is_not_known_is_an_empty_field_and_its_ticks_are_no_samples() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let (session, table) = (at("s.mcap"), at("s.csv"));
+    // Its sensor is at the wrist, and nothing is calibrated.
+    record(&session, "palpation", "1");
+    done(&["export", &session, "--out", &table]);
+    assert_eq!(agrees(&session, &table, "right"), 1000);
+    let text = std::fs::read_to_string(&table).unwrap();
+    for row in text.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>()) {
+        assert_eq!((&row[5..8], &row[11..14], &row[17..20]), (&[""; 3][..], &[""; 3][..], &["0"; 3][..]));
+    }
+    refused(&["identify", &session], "0 samples");
+    refused(&["identify", &table], "0 samples");
 }
 
 #[test]

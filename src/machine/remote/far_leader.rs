@@ -267,7 +267,7 @@ fn answer(inputs: &Inputs, bulletin: &Bulletin<'_>, turn: Option<u64>, tells_err
         stop: FarStop::of(bulletin.state),
         source: bulletin.source,
         force_n: parcel.force_n,
-        fresh: parcel.fresh,
+        fresh: parcel.fresh && bulletin.source.is_known(),
         resting: parcel.resting,
         modes: parcel.modes,
         errors_n: tells_errors.then(|| bulletin.report.horizon_error_n.map(|error_n| error_n as f32)),

@@ -321,7 +321,7 @@ impl<L: Link> Pair<L> {
         // Over a network a parcel may be younger than the delay says; its force still ends with the line.
         let age_s = age_s.max(seen.silent_s);
         let is_known = age_s < self.chain.settings().zero_after_s;
-        let delayed_n = parcel.filter(|_| is_known).map_or(UNKNOWN_N, |parcel| parcel.force_n);
+        let delayed_n = parcel.filter(|parcel| is_known && parcel.fresh).map_or(UNKNOWN_N, |parcel| parcel.force_n);
         let is_old = parcel_is_there && age_s > LINK_SILENT_AFTER_S;
         // Right after a silence of the devices the link within this process still delivers what is from before it: an engagement waits for
         // the first new parcel.

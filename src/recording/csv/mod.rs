@@ -229,6 +229,15 @@ mod tests {
     }
 
     #[test]
+    fn rows_without_a_force_are_left_out() {
+        let text = "t_s,x_m,z_m,fx_n,fz_n\n0,1,2,,\n1,1,2,3,4\n2,1,2,,\n3,1,2,3,4\n4,1,2,0,0\n";
+        let recording = read(text, &[]).unwrap();
+        assert_eq!(recording.samples.iter().map(|sample| sample.t_s).collect::<Vec<_>>(), [1.0, 3.0, 4.0]);
+        let half = read("t_s,x_m,z_m,fx_n,fz_n\n0,1,2,,4\n", &[]).unwrap_err().to_string();
+        assert!(half.contains("line 2, column \"fx_n\""), "a part of a force is none: {half}");
+    }
+
+    #[test]
     fn mapped_columns_with_a_scale() {
         let recording = read("t_s,px_mm,torque\n0,1,2\n1,2,3\n2,3,4\n", &["x=px_mm*0.001", "fx=torque*-1"]).unwrap();
         assert!((recording.samples[1].position_m.x - 0.002).abs() < 1e-15);

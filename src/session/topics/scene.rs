@@ -150,6 +150,13 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_force_has_an_arrow_and_an_unknown_one_has_none() {
+        let at = |force_n: Vector3<f64>| arrow(&Vector3::zeros(), &force_n, MEASURED);
+        assert!((at(Vector3::new(0.0, 0.0, 2.0)).unwrap().shaft_length - 0.04).abs() < 1e-12);
+        assert_eq!([at(Vector3::zeros()), at(nima_machine::messages::UNKNOWN_N)], [None, None]);
+    }
+
+    #[test]
     fn the_endoscopes_marker_is_read_as_it_was_written_and_no_other_frame_or_number_is() {
         let world_from_n = Isometry3::new(Vector3::new(0.1, -0.2, 0.3), Vector3::new(0.4, 1.0, -2.0));
         let frame = |name: &str, at_m: Vector3<f64>| FrameTransform {

@@ -216,3 +216,29 @@ fn files(reader: &Reader) -> anyhow::Result<Vec<Attached>> {
     }
     Ok(files)
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    #[test]
+    fn a_force_that_is_not_known_has_empty_fields() {
+        let (known, unknown) = (Vector3::new(0.0, 0.5, -1.0), Vector3::repeat(f64::NAN));
+        let tick = PlottedTick {
+            time_ns: 7,
+            t_s: 0.25,
+            tip_m: known,
+            leader_m: known,
+            measured_n: unknown,
+            delayed_n: unknown,
+            asked_n: Vector3::zeros(),
+            rendered_n: Vector3::zeros(),
+            state: "Idle",
+        };
+        let row = row(&tick);
+        assert_eq!(row, "0.25,7,0,0.5,-1,,,,0,0.5,-1,,,,0,0,0,0,0,0,Idle\n");
+        assert_eq!(row.matches(',').count(), HEADER.matches(',').count());
+    }
+}

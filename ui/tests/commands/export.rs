@@ -115,23 +115,6 @@ fn a_table_has_the_values_of_the_messages_and_identify_makes_the_same_of_both() 
 }
 
 #[test]
-fn a_force_that_is_not_known_is_an_empty_field_and_its_ticks_are_no_samples() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name).display().to_string();
-    let (session, table) = (at("s.mcap"), at("s.csv"));
-    // Its sensor is at the wrist, and nothing is calibrated.
-    record(&session, "palpation", "1");
-    done(&["export", &session, "--out", &table]);
-    assert_eq!(agrees(&session, &table, "right"), 1000);
-    let text = std::fs::read_to_string(&table).unwrap();
-    for row in text.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>()) {
-        assert_eq!((&row[5..8], &row[11..14], &row[17..20]), (&[""; 3][..], &[""; 3][..], &["0"; 3][..]));
-    }
-    refused(&["identify", &session], "0 samples");
-    refused(&["identify", &table], "0 samples");
-}
-
-#[test]
 fn a_layout_for_viewers_comes_out_of_a_session_and_stays_in_an_anonymous_one() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();

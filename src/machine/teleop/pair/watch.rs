@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::Sample,
+    impedance::{Parcel, Sample},
     safety::{CHANNELS, Observed, Seen, Why},
 };
 
@@ -49,9 +49,11 @@ impl<L: Link> Pair<L> {
         self.hand_speed_m_s = self.speed.step(now_s - inputs.age_s, inputs.hand.position_m);
         if !self.far.is_there {
             self.identifier.step(&Sample { t_s: now_s, position_m: inputs.tip_m, force_n: self.force.tip_n });
-            // An unknown force is a missing sample: no parcel is sent for it.
+            // An unusable force is a missing sample: no parcel is sent for it. One that nobody measured may be rendered, and is no judge.
             if is_usable && !self.withholds(Watchdog::Link) {
-                self.link.send(self.identifier.parcel());
+                let parcel = self.identifier.parcel();
+                let fresh = parcel.fresh && self.force.source.is_known();
+                self.link.send(&Parcel { fresh, ..*parcel });
             }
         } else if is_usable {
             self.far.parcel.force_n = self.force.tip_n;

@@ -82,12 +82,13 @@ class Environment(_Base):
     Notes
     -----
     The observation is what a controller at the leader can know, each (3,), float64: ``handle_m``, ``handle_m_s``,
-    ``command_m`` (commanded tip), ``delayed_tip_m`` and ``delayed_n`` (tip and force one delay ago), ``rendered_n``.
+    ``command_m`` (commanded tip), ``delayed_tip_m`` and ``delayed_n`` (tip and force one delay ago), ``rendered_n``. A space of
+    gymnasium has no NaN: until the first force has come over the link, ``delayed_n`` is 0 and ``info["has_force"]`` false.
 
     The reward is the share of the scene's task that was done in this step (0 in a scene without one). ``terminated``: the
     task is done, or a fault of the loop ended the engagement (``info["fault"]``). ``info`` has what only a simulation knows:
     ``t_s``, ``state``, ``fault``, ``mode``, ``tip_m`` and ``measured_n`` of now, ``asked_n`` (before the gates), ``gate`` (the
-    first that acted), ``task``.
+    first that acted), ``has_force`` (a force has come over the link), ``task``. An unknown ``measured_n`` is NaN.
 
     Deterministic: the same seed and actions give the same numbers to the last bit.
 

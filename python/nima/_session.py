@@ -27,9 +27,9 @@ class Ticks:
     leader_m: Floats
     """Commanded position of the tip, shape (n, 3), m."""
     measured_n: Floats
-    """Force at the tip, shape (n, 3), N."""
+    """Force at the tip, shape (n, 3), N; NaN where it was unknown."""
     delayed_n: Floats
-    """The same as the link delivered it then, shape (n, 3), N."""
+    """The same as the link delivered it then, shape (n, 3), N; NaN before the first, and once it was too old."""
     asked_n: Floats
     """Force of the mode before the gates, shape (n, 3), N."""
     rendered_n: Floats

@@ -59,7 +59,7 @@ class ArmNow:
     leader_m: Floats
     """Where the hand leads it, shape (3,), m."""
     measured_n: Floats
-    """Force of the tissue on the tip, shape (3,), N."""
+    """Force of the tissue on the tip, shape (3,), N; NaN while it is unknown."""
     rendered_n: Floats
     """Force on the hand after all gates, shape (3,), N."""
 

@@ -8,7 +8,7 @@
 //! Numbers are little-endian.
 
 /// Version of the protocol. Two machines of different versions refuse each other.
-pub const VERSION: u8 = 2;
+pub const VERSION: u8 = 3;
 /// Longest datagram, bytes: passes through every usual network in one piece.
 pub const DATAGRAM_MAX: usize = 1200;
 /// What stands before the encrypted part of a datagram of a session, bytes.

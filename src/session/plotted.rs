@@ -50,7 +50,9 @@ pub struct PlottedTick {
     pub t_s: f64,
     pub tip_m: Vector3<f64>,
     pub leader_m: Vector3<f64>,
+    /// No numbers while it was not known.
     pub measured_n: Vector3<f64>,
+    /// The same.
     pub delayed_n: Vector3<f64>,
     pub asked_n: Vector3<f64>,
     pub rendered_n: Vector3<f64>,
@@ -137,7 +139,7 @@ pub fn each_tick<E: From<PlottedError>>(
     Ok(())
 }
 
-/// Motion and force at the tip of an arm, as the same from an exported table.
+/// Motion and force at the tip of an arm, as the same from an exported table. Ticks in which the force was not known are left out.
 ///
 /// # Errors
 /// [`PlottedError`] for a file that cannot be read, no such arm, a value that is not finite, or too few ticks.
@@ -147,6 +149,9 @@ pub fn recording(path: &Path, asked: Option<Side>) -> Result<Recording, PlottedE
     let mut samples: Vec<Sample> = Vec::new();
     each_tick(&reader, path, arm, 0..u64::MAX, |tick| {
         let PlottedTick { t_s, tip_m: position_m, measured_n: force_n, .. } = tick;
+        if force_n.iter().all(|value| value.is_nan()) {
+            return Ok(());
+        }
         let is_finite = |vector: &Vector3<f64>| vector.iter().all(|value| value.is_finite());
         for (vector, what) in [(&position_m, "the place of the tip"), (&force_n, "the force at the tip")] {
             if !is_finite(vector) {

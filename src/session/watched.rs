@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// Version of the bundles; another one is refused.
-const VERSION: u8 = 3;
+const VERSION: u8 = 4;
 /// Time between two ticks of a bundle, s: what a trace on a screen can show.
 const STEP_S: f64 = 0.005;
 /// Most moments of a bundle, and most events of a moment.

@@ -111,8 +111,9 @@ impl Tally {
         let mut adversary = Adversary::<D>::new(rng);
         for _ in 0..count {
             meddle(&mut chain, &mut watch, adversary.meddling());
-            let (force_n, report) = chain.step(&adversary.request());
-            watch.look(&force_n, &report, chain.settings().gain, &mut self.breaches);
+            let request = adversary.request();
+            let (force_n, report) = chain.step(&request);
+            watch.look(request.t_s, &force_n, &report, chain.settings().gain, &mut self.breaches);
             self.forces += u64::from(force_n.norm() > 0.0);
         }
         for (sum, acted) in self.acted.iter_mut().zip(chain.counts().acted) {
@@ -139,7 +140,7 @@ fn meddle<const D: usize>(chain: &mut Chain<D>, watch: &mut Watch<D>, meddling: 
         Meddling::Reset => {
             chain.reset();
             watch.last_n = SVector::zeros();
-            watch.governed = false;
+            watch.let_go = false;
         }
     }
 }

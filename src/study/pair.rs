@@ -235,8 +235,15 @@ impl Pair {
 
     fn gated(&mut self, asked_n: Option<Vector3<f64>>, age_s: f64, hand_m: Vector3<f64>) -> Vector3<f64> {
         let speed_m_s = self.speed_m_s;
-        let (force_n, report) =
-            self.chain.step(&Request { force_n: asked_n, age_s, speed_m_s, hand_m: Some(hand_m), permitted: true });
+        let (force_n, report) = self.chain.step(&Request {
+            t_s: self.now_s,
+            force_n: asked_n,
+            age_s,
+            speed_m_s,
+            hand_m: Some(hand_m),
+            hand_age_s: 0.0,
+            permitted: true,
+        });
         self.report = report;
         force_n
     }

@@ -195,15 +195,14 @@ pub fn replay_motion(
         };
         let held = i.checked_sub(delay).filter(|then| *then >= begin).map(|then| sample(then).force_n);
         let speed_m_s = (now.position_m - last.unwrap_or(now).position_m).norm() * rate_hz;
-        let (_, gate) =
-            gates.step(&Request {
-                t_s: now.t_s,
-                force_n: rendered,
-                age_s: 0.0,
-                speed_m_s,
-                permitted: true,
-                ..Request::default()
-            });
+        let (_, gate) = gates.step(&Request {
+            t_s: now.t_s,
+            force_n: rendered,
+            age_s: 0.0,
+            speed_m_s,
+            permitted: true,
+            ..Request::default()
+        });
         let row = Row {
             t_s: now.t_s,
             measured: now.force_n,

@@ -14,5 +14,6 @@ mod simulated_calibration;
 mod simulated_experiments;
 mod tip_force_loop;
 mod training;
+mod unknown_force;
 mod virtual_loop;
 mod watchdogs;

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use nima_core::{impedance::Mode, safety::Implausible};
 use nima_machine::{
     config::RigConfig,
-    messages::{Command, Event, FarStop, Fault, LoopState, Refusal, Tick},
+    messages::{Command, Event, FarStop, Fault, ForceSource, LoopState, Refusal, Tick},
     remote::{FarFollower, FarLeader, Wire, at_follower},
     rig::Rig,
     runtime::tick,
@@ -191,6 +191,20 @@ fn the_force_is_as_good_as_over_the_same_delay_in_one_place() {
         assert!(peak_n > 0.5, "{peak_n} N: nothing was touched");
         assert!(apart_n < 1.15 * together_n, "{mode}, {delay_s} s: {apart_n} N, in one place {together_n} N");
     }
+}
+
+#[test]
+fn a_force_that_the_line_no_longer_brings_is_unknown_before_the_line_is_a_fault() {
+    let mut bench = Bench::engaged(0.005, Mode::Best);
+    assert!(bench.leader.tick.unwrap().known_n().is_some());
+    bench.cut(true);
+    bench.run(40);
+    let tick = bench.leader.tick.unwrap();
+    assert_eq!((tick.state, tick.force.source), (LoopState::Engaged, ForceSource::NoSample));
+    assert!(tick.measured_n.iter().chain(&tick.delayed_n).all(|x| x.is_nan()), "{tick:?}");
+    bench.cut(false);
+    bench.run(20);
+    assert!(bench.leader.tick.unwrap().known_n().is_some());
 }
 
 #[test]

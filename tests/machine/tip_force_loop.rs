@@ -82,6 +82,7 @@ fn friction_of_unknown_direction_is_not_taken_for_tissue_until_the_instrument_ha
     assert_eq!(all[0].0.source, not_moved);
     for (report, _) in all.iter().filter(|(report, _)| report.source == not_moved) {
         assert_eq!(report.tip_n, Vector3::zeros());
+        assert!(report.measured_n().iter().all(|x| x.is_nan()), "nobody measured it");
     }
     assert!(all.iter().any(|(report, _)| report.source == ForceSource::Network));
 }

@@ -195,7 +195,7 @@ fn calibrations_put_in_force_while_the_loop_runs_are_in_the_journal() {
     states.dedup();
     assert_eq!((outcome.differs, outcome.hole, outcome.closed), (None, None, true));
     assert!(outcome.ticks > 3000, "{outcome:?}");
-    let (none, wrist) = (ForceSource::Uncalibrated, ForceSource::Wrist);
+    let (none, wrist) = (ForceSource::Unidentified, ForceSource::Wrist);
     assert!(sources.ends_with(&[none, wrist, none, wrist]), "{sources:?}");
     let lost = LoopState::Faulted(Fault::DeviceLost { device: 0, loss: Loss::Disconnected });
     assert!(states.contains(&LoopState::Engaged) && states.contains(&lost), "{states:?}");

@@ -12,3 +12,4 @@ mod network;
 mod objects;
 mod pictures;
 mod round_trip;
+mod unknown_force;

@@ -232,6 +232,7 @@ fn info<'py>(py: Python<'py>, known: &Known) -> PyResult<Bound<'py, PyDict>> {
     all.set_item("measured_n", array(py, &tick.measured_n))?;
     all.set_item("asked_n", array(py, &tick.asked_n[tick.mode.index()]))?;
     all.set_item("gate", tick.gates.first_closed())?;
+    all.set_item("has_force", known.has_force)?;
     let Some(training) = &known.training else {
         all.set_item("task", py.None())?;
         return Ok(all);

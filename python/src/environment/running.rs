@@ -47,6 +47,8 @@ pub(super) struct Known {
     pub(super) delayed_tip_m: Vector3<f64>,
     /// Force at the tip, one delay ago, N.
     pub(super) delayed_n: Vector3<f64>,
+    /// Whether the link has delivered a force.
+    pub(super) has_force: bool,
     pub(super) training: Option<Training>,
 }
 
@@ -149,6 +151,8 @@ impl Running {
             handle_m,
             handle_m_s: (handle_m - before_m) / self.period_s,
             delayed_tip_m: self.tips_m.front().copied().unwrap_or(tick.tip_m),
+            // An observation has no NaN.
+            has_force: delivered_n.is_some(),
             delayed_n: delivered_n.unwrap_or_else(Vector3::zeros),
             training: self.training,
         };

@@ -71,7 +71,7 @@ impl FarStop {
         Some(match fault {
             Fault::SourceSilent => Self::SourceSilent,
             Fault::LoopStalled { .. } => Self::LoopStalled,
-            Fault::ForceUnknown => Self::ForceUnknown,
+            Fault::ForceUnknown { .. } => Self::ForceUnknown,
             Fault::DeviceLost { .. } => Self::DeviceLost,
             Fault::DrivesOff => Self::DrivesOff,
             Fault::SamplesLost => Self::SamplesLost,

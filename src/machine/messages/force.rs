@@ -6,7 +6,10 @@ use nima_core::{
     tip_force::{Fallback, TipForceReport, Unsure},
 };
 
-/// Source of the tip force of a tick.
+/// A force that is not known, N. One constant, because a computed NaN has other bits on another processor, and digests compare bits.
+pub const UNKNOWN_N: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
+
+/// Source of the tip force of a tick, or the reason why it is unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the names say it")]
 pub enum ForceSource {
@@ -26,12 +29,25 @@ pub enum ForceSource {
     NoOrientation,
     /// A calibration or the network turned a valid sample into an impossible force.
     Poisoned,
+    /// Nothing has been measured yet, or the last sample is too old.
+    NoSample,
+    /// The sensor at the wrist was connected or lost, and has not been identified since: its calibrations do not apply.
+    Unidentified,
 }
 
 impl ForceSource {
+    /// Each reason for which there is no force to render.
+    pub const UNUSABLE: [Self; 5] =
+        [Self::Uncalibrated, Self::NoOrientation, Self::Poisoned, Self::NoSample, Self::Unidentified];
+
     /// Whether the tip force may be rendered.
     pub const fn is_usable(self) -> bool {
-        !matches!(self, Self::Uncalibrated | Self::NoOrientation | Self::Poisoned)
+        !matches!(self, Self::Uncalibrated | Self::NoOrientation | Self::Poisoned | Self::NoSample | Self::Unidentified)
+    }
+
+    /// Whether the tip force is known. A force that the network's fallback holds and fades may be rendered, but nothing measures it.
+    pub const fn is_known(self) -> bool {
+        self.is_usable() && !matches!(self, Self::InDoubt { fallback: Fallback::HoldAndFade, .. })
     }
 
     /// The least force that tells a touch, N: several times the noise of a sensor at the tip, and five times the error that
@@ -54,7 +70,7 @@ impl ForceSource {
 pub struct ForceReport {
     /// Where the tip force comes from.
     pub source: ForceSource,
-    /// Force of the tissue on the tip, N, world frame; zero if there is no usable one.
+    /// Force at the tip that the loop works with, N, world frame; [`UNKNOWN_N`] if there is no usable one.
     pub tip_n: Vector3<f64>,
     /// Wrench at the wrist without weight and bias (`s1`), if gravity is calibrated.
     pub gravity_free: Option<Wrench>,
@@ -65,6 +81,17 @@ pub struct ForceReport {
 impl ForceReport {
     /// A report without a force, for this reason.
     pub const fn none(source: ForceSource, gravity_free: Option<Wrench>) -> Self {
-        Self { source, tip_n: Vector3::new(0.0, 0.0, 0.0), gravity_free, tip_force: None }
+        Self { source, tip_n: UNKNOWN_N, gravity_free, tip_force: None }
+    }
+
+    /// A force that was computed at another machine.
+    pub const fn of_far_end(source: ForceSource, force_n: Vector3<f64>) -> Self {
+        let none = Self::none(source, None);
+        if source.is_usable() { Self { tip_n: force_n, ..none } } else { none }
+    }
+
+    /// Force of the tissue on the tip, N, world frame; [`UNKNOWN_N`] while it is not known.
+    pub const fn measured_n(&self) -> Vector3<f64> {
+        if self.source.is_known() { self.tip_n } else { UNKNOWN_N }
     }
 }

@@ -16,7 +16,7 @@ use nima_core::{
 use nima_devices::Loss;
 
 pub use bulletin::{Bulletin, FarStop};
-pub use force::{ForceReport, ForceSource};
+pub use force::{ForceReport, ForceSource, UNKNOWN_N};
 pub use refusal::Refusal;
 pub use scheduling::Scheduling;
 pub use watchdog::Watchdog;
@@ -109,11 +109,11 @@ pub struct Tick {
     pub leader_m: Vector3<f64>,
     /// Instrument tip (follower), m.
     pub tip_m: Vector3<f64>,
-    /// Present tip force measured at the follower, N (on the instrument).
+    /// Present tip force measured at the follower, N (on the instrument); [`UNKNOWN_N`] while it is not known.
     pub measured_n: Vector3<f64>,
     /// How the tip force was obtained.
     pub force: ForceReport,
-    /// Readings of the wrist sensor and of the sensors used for calibration, if the rig has them.
+    /// Readings of the wrist sensor and of the sensors used for calibration, if the rig has them and they are not too old.
     pub wrist: Option<WristSample>,
     /// What the frame calibrations are made of; empty without a new measurement.
     pub frames: FrameSample,
@@ -123,7 +123,7 @@ pub struct Tick {
     pub prompt: Prompt,
     /// Position to which the screen leads the handle, m.
     pub guide_m: Option<Vector3<f64>>,
-    /// The tip force as the link delivers it now: delayed DFR, N.
+    /// The tip force as the link delivers it now: delayed DFR, N; [`UNKNOWN_N`] before the first one, and once it is too old.
     pub delayed_n: Vector3<f64>,
     /// Force of each mode in this tick before the gates, N, indexed by [`Mode::index`].
     pub asked_n: [Vector3<f64>; SLOTS],
@@ -147,6 +147,13 @@ pub struct Tick {
     pub dropped: u64,
 }
 
+impl Tick {
+    /// The tip force measured at the follower, N; `None` while it is not known.
+    pub fn known_n(&self) -> Option<Vector3<f64>> {
+        Some(self.measured_n).filter(|force_n| force_n.iter().all(|x| x.is_finite()))
+    }
+}
+
 /// A fault: zero force, shown with its cause and cure. The first fault is kept until it is released.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the names say it")]
@@ -158,8 +165,11 @@ pub enum Fault {
         /// Periods missed in a row.
         periods: u64,
     },
-    /// Engaged while the force at the tip is not known: a calibration, or a measurement that it needs, is missing.
-    ForceUnknown,
+    /// Engaged while the force at the tip is not known.
+    ForceUnknown {
+        /// Why.
+        source: ForceSource,
+    },
     /// A device of the force path was lost.
     DeviceLost {
         /// Index into the rig's roster.

@@ -2,7 +2,7 @@
 
 use nima_core::safety::Implausible;
 
-use super::{Fault, LoopState};
+use super::{Fault, ForceSource, LoopState};
 use crate::rig::Obstacle;
 
 /// Why a command was refused, or an engagement given up.
@@ -13,8 +13,8 @@ pub enum Refusal {
     State(LoopState),
     /// The cause of a fault is still present.
     StillPresent(Fault),
-    /// The force at the tip is not known.
-    ForceUnknown,
+    /// The force at the tip is not known, for this reason.
+    ForceUnknown(ForceSource),
     /// A measurement is not plausible.
     Implausible(Implausible),
     /// The arm cannot be engaged from its present position.

@@ -36,7 +36,7 @@ pub use session::{Entry, Session};
 
 use crate::{
     config::RigConfig,
-    messages::{Fault, Refusal, Watchdog},
+    messages::{Fault, ForceSource, Refusal, Watchdog},
     rig::{Exchange, Part, Prompt, SIDES, Side, checkup::Finding},
 };
 
@@ -201,6 +201,8 @@ pub enum Cause {
     DateBehind,
     /// There is no gravity calibration for this sensor and tool.
     Uncalibrated,
+    /// The force at the tip is not known, for this reason.
+    ForceUnknown(ForceSource),
     /// The bias has moved, or something rests on the tool.
     BiasMoved {
         /// Force that remains at rest, N.

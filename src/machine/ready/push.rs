@@ -7,7 +7,7 @@ use super::{
     item::{Item, Progress},
 };
 use crate::{
-    messages::Tick,
+    messages::{ForceSource, Tick},
     rig::{Exchange, Side},
 };
 
@@ -27,8 +27,8 @@ pub(super) struct Push {
     side: Side,
     /// There is a calibration, or none is needed.
     is_calibrated: bool,
-    /// The force is known at present: not while the sensor is being opened.
-    is_known: bool,
+    /// Why the force is not known at present: it is not while the sensor is being opened.
+    source: Option<ForceSource>,
     most_n: f64,
     /// Since when it is felt, s on the loop's clock; sum of the forces, N.
     felt: Option<(f64, Vector3<f64>)>,
@@ -45,7 +45,7 @@ impl Push {
         Self {
             side,
             is_calibrated,
-            is_known: false,
+            source: Some(ForceSource::NoSample),
             most_n: 0.0,
             felt: None,
             by_deg: None,
@@ -60,14 +60,17 @@ impl Push {
 fn force_n(tick: &Tick) -> Option<Vector3<f64>> {
     match (&tick.force.gravity_free, tick.wrist.as_ref().and_then(|sample| sample.world_from_s1)) {
         (Some(wrench), Some(world_from_s1)) => Some(world_from_s1 * wrench.force_n),
-        _ => tick.force.source.is_usable().then_some(tick.force.tip_n),
+        _ => tick.known_n(),
     }
 }
 
 impl Push {
     /// The other instrument is at rest, so a change of what its sensor measures is a force on it.
     fn other(&mut self, tick: &Tick) {
-        let force_n = tick.wrist.as_ref().map_or(tick.force.tip_n, |sample| sample.raw.force_n);
+        let Some(force_n) = tick.wrist.as_ref().map(|sample| sample.raw.force_n).or_else(|| tick.known_n()) else {
+            self.other_felt_s = None;
+            return;
+        };
         let change_n = (force_n - *self.other_n.get_or_insert(force_n)).norm();
         if change_n < FELT_N || self.felt.is_some() {
             self.other_felt_s = None;
@@ -87,7 +90,7 @@ impl Item for Push {
             return;
         }
         let force_n = force_n(tick);
-        self.is_known = force_n.is_some();
+        self.source = force_n.is_none().then_some(tick.force.source);
         let Some(force_n) = force_n.filter(|force_n| force_n.norm() >= FELT_N) else {
             self.most_n = force_n.map_or(self.most_n, |force_n| self.most_n.max(force_n.norm()));
             self.felt = None;
@@ -114,6 +117,9 @@ impl Item for Push {
     }
 
     fn late(&self) -> Cause {
-        if self.is_known { Cause::NoPush { most_n: self.most_n } } else { Cause::Uncalibrated }
+        match self.source {
+            Some(source) => Cause::ForceUnknown(source),
+            None => Cause::NoPush { most_n: self.most_n },
+        }
     }
 }

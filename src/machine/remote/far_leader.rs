@@ -1,7 +1,11 @@
 //! The follower's rig: arm and sensor here, the hand at the other end of a network.
 
 use nalgebra::Vector3;
-use nima_core::{impedance::Packed, kinematics::Hand, safety::{ChainSettings, RawReadings}};
+use nima_core::{
+    impedance::Packed,
+    kinematics::Hand,
+    safety::{ChainSettings, RawReadings},
+};
 
 use super::{
     GONE_AFTER_S, MESSAGE_MAX, Wire,
@@ -268,7 +272,7 @@ fn answer(inputs: &Inputs, bulletin: &Bulletin<'_>, turn: Option<u64>, tells_err
         stop: FarStop::of(bulletin.state),
         source: bulletin.source,
         force_n: parcel.force_n,
-        fresh: parcel.fresh,
+        fresh: parcel.fresh && bulletin.source.is_known(),
         resting: parcel.resting,
         modes: parcel.modes,
         errors_n: tells_errors.then(|| bulletin.report.horizon_error_n.map(|error_n| error_n as f32)),

@@ -45,7 +45,7 @@ pub(super) struct FollowerMessage {
 }
 
 const UNSURE: [Unsure; 3] = [Unsure::OutsideTraining, Unsure::NotMoved, Unsure::Missing];
-const PLAIN: [ForceSource; 7] = [
+const PLAIN: [ForceSource; 9] = [
     ForceSource::AtTip,
     ForceSource::Wrist,
     ForceSource::Network,
@@ -53,6 +53,8 @@ const PLAIN: [ForceSource; 7] = [
     ForceSource::Uncalibrated,
     ForceSource::NoOrientation,
     ForceSource::Poisoned,
+    ForceSource::NoSample,
+    ForceSource::Unidentified,
 ];
 
 fn number_of_source(source: ForceSource) -> u8 {
@@ -192,7 +194,7 @@ mod tests {
         for source in PLAIN.into_iter().chain(doubts) {
             assert_eq!(source_of(number_of_source(source)), Some(source));
         }
-        assert_eq!(source_of(13), None);
+        assert_eq!(source_of(15), None);
         for mode in modes() {
             let set = ModeSet::only(mode);
             assert_eq!(set_of(bits_of(set)), set, "{mode}");

@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn a_sensor_that_comes_or_goes_takes_its_calibrations_with_it() {
         let mut bench = Bench::new();
-        assert_eq!(bench.tick(), ForceSource::Uncalibrated, "nobody knows which sensor is there");
+        assert_eq!(bench.tick(), ForceSource::Unidentified, "nobody knows which sensor is there");
         assert!(!bench.door.change(Side::Right).is_there());
         bench.sensor_is(Standing::Connected);
         let met = bench.door.change(Side::Right);
@@ -213,12 +213,12 @@ mod tests {
         assert_eq!(bench.tick(), ForceSource::Wrist);
         for standing in [Standing::Lost(Loss::Disconnected), Standing::Connected] {
             bench.sensor_is(standing);
-            assert_eq!(bench.tick(), ForceSource::Uncalibrated, "it may be another sensor now");
+            assert_eq!(bench.tick(), ForceSource::Unidentified, "it may be another sensor now");
             assert_eq!(bench.door.change(Side::Right).is_there(), standing == Standing::Connected);
         }
         // Prepared for the sensor before: refused.
         assert!(bench.door.put_in_force(met, &calibrated()));
-        assert_eq!(bench.tick(), ForceSource::Uncalibrated);
+        assert_eq!(bench.tick(), ForceSource::Unidentified);
         assert!(bench.door.put_in_force(bench.door.change(Side::Right), &calibrated()));
         assert_eq!(bench.tick(), ForceSource::Wrist);
     }
@@ -230,7 +230,7 @@ mod tests {
             bench.load_n = 2.0;
             bench.sensor_is(Standing::Connected);
             for _ in 0..100 {
-                assert_eq!(bench.tick(), ForceSource::Uncalibrated);
+                assert_eq!(bench.tick(), ForceSource::Unidentified);
             }
             assert!(bench.door.put_in_force(bench.door.change(Side::Right), &calibrated()));
             for _ in 0..after {

@@ -93,7 +93,7 @@ impl ForcePath {
         // An impossible force from a plausible sample means a wrong calibration, so there is no fallback to the last
         // good force.
         let possible = report.tip_n.iter().all(|f| f.abs() <= PLAUSIBLE_N);
-        if possible { report } else { ForceReport::none(ForceSource::Poisoned, None) }
+        if possible || !report.source.is_usable() { report } else { ForceReport::none(ForceSource::Poisoned, None) }
     }
 
     fn report(&mut self, t_s: f64, sensed: &Sensed) -> ForceReport {
@@ -101,14 +101,15 @@ impl ForcePath {
             Sensed::AtTip(tip_n) => ForceReport { tip_n: *tip_n, ..ForceReport::none(ForceSource::AtTip, None) },
             Sensed::AtWrist(sample) => self.at_wrist(t_s, sample),
             // Computed at the other machine already.
-            Sensed::FarEnd(identified) => {
-                ForceReport { tip_n: identified.force_n, ..ForceReport::none(identified.source, None) }
-            }
+            Sensed::FarEnd(identified) => ForceReport::of_far_end(identified.source, identified.force_n),
         }
     }
 
     fn at_wrist(&mut self, t_s: f64, sample: &WristSample) -> ForceReport {
-        let Some(gravity) = self.gravity.as_mut().filter(|_| !self.suspended) else {
+        if self.suspended {
+            return ForceReport::none(ForceSource::Unidentified, None);
+        }
+        let Some(gravity) = &mut self.gravity else {
             return ForceReport::none(ForceSource::Uncalibrated, None);
         };
         let gravity_free = gravity.step(sample);

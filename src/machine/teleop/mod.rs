@@ -143,7 +143,7 @@ impl<L: Link> Loop<L> {
             let knows = |inputs: &Inputs| {
                 pair.force_path().knows(&inputs.sensed) && !matches!(inputs.obstacle, Some(Obstacle::Waiting(_)))
             };
-            pair.state() == LoopState::Idle && pair.knows_force() && !pair.is_waiting() && inputs.is_some_and(knows)
+            pair.state() == LoopState::Idle && pair.may_know_force() && !pair.is_waiting() && inputs.is_some_and(knows)
         })
     }
 

@@ -20,12 +20,12 @@ use nima_devices::Standing;
 
 use self::{
     far::Far,
-    told::{NO_FORCE_YET, NOWHERE},
+    told::{NO_FORCE, NOWHERE},
 };
 use super::{Accuracy, Calibrations, ForcePath, Link, ProgrammedLink, Tracking};
 use crate::{
     config::{RigConfig, Teleoperation},
-    messages::{Event, Fault, ForceReport, LoopState, Tick, Watchdog},
+    messages::{Event, Fault, ForceReport, LoopState, Tick, UNKNOWN_N, Watchdog},
     rig::{Acts, DeviceEvent, Inputs, Outputs, Prompt, Side},
 };
 
@@ -156,7 +156,7 @@ impl<L: Link> Pair<L> {
             renderer: Renderer::new(&settings)?,
             settings,
             force_path: ForcePath::new(calibrations, 1.0 / rig.rate_hz),
-            force: NO_FORCE_YET,
+            force: NO_FORCE,
             prompt: Prompt::Rest,
             guide_m: None,
             grip_rad: None,
@@ -201,9 +201,10 @@ impl<L: Link> Pair<L> {
         &self.force_path
     }
 
-    /// The force at the tip was known in the last tick.
-    pub(super) const fn knows_force(&self) -> bool {
-        self.force.source.is_usable()
+    /// The force at the tip could be rendered in the last tick. Before the first sample nothing is known against it: an engagement
+    /// waits for that sample.
+    pub(super) const fn may_know_force(&self) -> bool {
+        self.force.source.is_usable() || self.last_inputs.is_none()
     }
 
     /// Ticks per second.
@@ -298,23 +299,29 @@ impl<L: Link> Pair<L> {
             self.identifier.step(&Sample { t_s: now_s, position_m: NOWHERE, force_n: NOWHERE });
         }
         self.watch(inputs.as_ref(), moved_m, timing);
+        // After the fault of the silence, which is the cause.
+        if self.is_silent(now_s) {
+            self.force = NO_FORCE;
+        }
         // No new sample: the link keeps delivering what is under way, which grows older, and the age gate removes the
         // force.
         let seen = self.last_inputs.unwrap_or(Inputs::NOTHING);
         let target = self.hand_eye.step(&seen.hand);
         let tip_command_m = self.follow(&seen, &target);
         let motion_m = self.motion_at_leader(&seen, &target.tip_m, tip_command_m);
-        let parcel = if self.far.is_there { Some(&self.far.parcel) } else { self.link.receive(now_s) };
+        let far = Some(&self.far.parcel).filter(|_| self.force.source.is_usable());
+        let parcel = if self.far.is_there { far } else { self.link.receive(now_s) };
         if let Some(parcel) = parcel {
             self.plausibility.delivered(&parcel.force_n, parcel.t_s);
         }
         // Until the first parcel arrives, the delay line is still filling.
         let parcel_is_there = parcel.is_some();
         let rendered = self.renderer.step(&motion_m, parcel);
-        let delayed_n = parcel.map_or_else(Vector3::zeros, |parcel| parcel.force_n);
         let age_s = parcel.map_or(f64::INFINITY, |parcel| now_s - parcel.t_s - self.delay_s + seen.age_s);
         // Over a network a parcel may be younger than the delay says; its force still ends with the line.
         let age_s = age_s.max(seen.silent_s);
+        let is_known = age_s < self.chain.settings().zero_after_s;
+        let delayed_n = parcel.filter(|parcel| is_known && parcel.fresh).map_or(UNKNOWN_N, |parcel| parcel.force_n);
         let is_old = parcel_is_there && age_s > LINK_SILENT_AFTER_S;
         // Right after a silence of the devices the link within this process still delivers what is from before it: an engagement waits for
         // the first new parcel.
@@ -340,7 +347,7 @@ impl<L: Link> Pair<L> {
         self.hand_is_gone |= gates.reason(Gate::Governor) == Reason::HandGone;
         let gripper_n = self.grip(inputs.as_ref(), now_s, age_s, permitted);
         // Over a network the force of now is not known here: the other machine judges.
-        if inputs.is_some() && !self.far.is_there {
+        if inputs.is_some() && self.force.source.is_known() && !self.far.is_there {
             self.accuracy.add(&rendered, self.identifier.report().modes, &self.force.tip_n);
         }
         let outputs = Outputs {

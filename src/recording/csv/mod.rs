@@ -3,7 +3,7 @@
 //! Columns: `t_s`; `x_m, y_m, z_m` with `fx_n, fy_n, fz_n`, one to three axes. Other names can be mapped to these, and the leader's own
 //! motion can be mapped beside them. SI
 //! units, or any consistent ones (rad and Nm of a lever). A missing column, a field that is not a number and a time
-//! that does not rise are errors that state their position. A file is read as a stream, so it may be a pipe, up to
+//! that does not rise are errors that state their position. A row whose force fields are all empty is left out: the force was not known. A file is read as a stream, so it may be a pipe, up to
 //! [`nima_files::TABLE_MAX`] bytes.
 
 mod mapping;
@@ -86,7 +86,7 @@ pub enum RecordingError {
     TooShort { path: PathBuf, found: usize, needed: usize },
 }
 
-/// Motion and force over time at a nearly constant rate.
+/// Motion and force over time at a nearly constant rate. Rows without a force are left out: it was not known.
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// The path as given by the user.
@@ -146,6 +146,9 @@ impl Recording {
                 return Err(RecordingError::Clock { path: path.to_owned(), line: table.line(), before_s, now_s: t_s });
             }
             let [mut position_m, mut force_n, mut handle_m] = [Vector3::zeros(); 3];
+            if columns.iter().all(|(_, force, _)| table.is_empty(force)) {
+                continue;
+            }
             for (lane, (position, force, leader)) in columns.iter().enumerate() {
                 position_m[lane] = table.number(position)?;
                 force_n[lane] = table.number(force)?;
@@ -223,6 +226,15 @@ mod tests {
         assert!((recording.rate_hz - 100.0).abs() < f64::EPSILON);
         assert_eq!(recording.samples[2].position_m, Vector3::new(3.0, 2.0, 0.0));
         assert_eq!(recording.samples[2].force_n, Vector3::new(5.0, 1.0, 0.0));
+    }
+
+    #[test]
+    fn rows_without_a_force_are_left_out() {
+        let text = "t_s,x_m,z_m,fx_n,fz_n\n0,1,2,,\n1,1,2,3,4\n2,1,2,,\n3,1,2,3,4\n4,1,2,0,0\n";
+        let recording = read(text, &[]).unwrap();
+        assert_eq!(recording.samples.iter().map(|sample| sample.t_s).collect::<Vec<_>>(), [1.0, 3.0, 4.0]);
+        let half = read("t_s,x_m,z_m,fx_n,fz_n\n0,1,2,,4\n", &[]).unwrap_err().to_string();
+        assert!(half.contains("line 2, column \"fx_n\""), "a part of a force is none: {half}");
     }
 
     #[test]

@@ -105,6 +105,11 @@ impl Table {
         Ok(UnitQuaternion::from_quaternion(quaternion))
     }
 
+    /// Whether the field has nothing in it.
+    pub(super) fn is_empty(&self, column: &Column) -> bool {
+        self.row.get(column.index).is_none_or(str::is_empty)
+    }
+
     pub(super) fn number(&self, column: &Column) -> Result<f64, RecordingError> {
         let field = self.row.get(column.index).unwrap_or_default();
         match field.parse::<f64>() {

@@ -76,6 +76,8 @@ choice!(ForceSource {
     5 => Uncalibrated {},
     6 => NoOrientation {},
     7 => Poisoned {},
+    8 => NoSample {},
+    9 => Unidentified {},
 });
 
 choice!(Unsure { 0 => OutsideTraining {}, 1 => NotMoved {}, 2 => Missing {} });
@@ -200,7 +202,7 @@ choice!(State<Fault> {
 choice!(Fault {
     0 => SourceSilent {},
     1 => LoopStalled { periods: periods: u64 },
-    2 => ForceUnknown {},
+    2 => ForceUnknown { source: source: ForceSource },
     3 => DeviceLost { device: device: u8, loss: loss: Loss },
     4 => DrivesOff {},
     5 => OtherArm {},
@@ -250,7 +252,7 @@ record!(Scheduling { fifo: bool, deadline: bool, memory_locked: bool });
 choice!(Refusal {
     0 => State { 0: state: State<Fault> },
     1 => StillPresent { 0: fault: Fault },
-    2 => ForceUnknown {},
+    2 => ForceUnknown { 0: source: ForceSource },
     3 => Implausible { 0: what: Implausible },
     4 => Obstacle { 0: obstacle: Obstacle },
     5 => EndoscopeUnseen {},

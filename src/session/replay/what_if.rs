@@ -68,8 +68,12 @@ pub struct Difference {
 }
 
 impl Difference {
+    /// One that is not finite is left out: a force was not known.
     fn add(&mut self, difference_n: &Vector3<f64>) {
         let length_n = difference_n.norm();
+        if !length_n.is_finite() {
+            return;
+        }
         self.count += 1;
         self.mean_n += (length_n - self.mean_n) / self.count as f64;
         self.max_n = self.max_n.max(length_n);

@@ -12,7 +12,7 @@ use crate::outlet::Outlet;
 
 /// Written once per this time, s: an error is a mean over half a second.
 const EVERY_S: f64 = 0.1;
-/// Behind one for each mode, in the order of [`Mode::index`]. What is not computed is no number.
+/// Behind one for each mode, in the order of [`Mode::index`]. What is not computed is no number, nor an error while the force is not known.
 const NAMES: [&str; 9] = [
     "baseline.error_n",
     "anchored.degree",
@@ -69,7 +69,7 @@ impl Identified {
         let report = &tick.identification;
         let mut errors_n = [f64::NAN; SLOTS];
         for mode in Mode::ALL.into_iter().chain(report.modes.baseline().map(Mode::Baseline)) {
-            if report.modes.contains(mode) {
+            if report.modes.contains(mode) && tick.force.source.is_known() {
                 errors_n[mode.index()] = report.horizon_error_n[mode.index()];
             }
         }

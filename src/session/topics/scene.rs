@@ -121,7 +121,7 @@ pub(crate) fn endoscope_of(data: &[u8]) -> Option<Isometry3<f64>> {
     world_from_n.to_homogeneous().iter().all(|number| number.is_finite()).then_some(world_from_n)
 }
 
-/// A force (N) at a place (m); none where there is no force.
+/// A force (N) at a place (m); none where there is no force, or where it is not known.
 fn arrow(at_m: &Vector3<f64>, force_n: &Vector3<f64>, color: Color) -> Option<Arrow> {
     // An arrow lies along its own x axis; opposite to it every half turn does.
     let turned = UnitQuaternion::rotation_between(&Vector3::x(), force_n)
@@ -148,6 +148,13 @@ pub(super) fn quaternion(of: &UnitQuaternion<f64>) -> Quaternion {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_force_has_an_arrow_and_an_unknown_one_has_none() {
+        let at = |force_n: Vector3<f64>| arrow(&Vector3::zeros(), &force_n, MEASURED);
+        assert!((at(Vector3::new(0.0, 0.0, 2.0)).unwrap().shaft_length - 0.04).abs() < 1e-12);
+        assert_eq!([at(Vector3::zeros()), at(nima_machine::messages::UNKNOWN_N)], [None, None]);
+    }
 
     #[test]
     fn the_endoscopes_marker_is_read_as_it_was_written_and_no_other_frame_or_number_is() {

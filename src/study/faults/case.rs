@@ -41,9 +41,12 @@ struct Errors {
 }
 
 impl Errors {
+    /// Adds an error; none where the force at the tip is not known.
     fn add(&mut self, error_n: f64) {
-        self.sum_n += error_n;
-        self.most_n = self.most_n.max(error_n);
+        if error_n.is_finite() {
+            self.sum_n += error_n;
+            self.most_n = self.most_n.max(error_n);
+        }
     }
 }
 
@@ -250,7 +253,7 @@ fn told(step: &Step) -> Option<String> {
     if step.refused {
         return Some("command refused".to_owned());
     }
-    if !machine.force.source.is_usable() {
+    if !machine.force.source.is_usable() && twin.force.source.is_usable() {
         return Some("force unknown".to_owned());
     }
     [Gate::Validity, Gate::Age].into_iter().find_map(|gate| {

@@ -47,6 +47,7 @@ pub(super) enum Meddling {
 #[derive(Debug)]
 pub(super) struct Adversary<'a, const D: usize> {
     rng: &'a mut Rng,
+    t_s: f64,
     pattern: Pattern,
     left: u32,
     force_n: SVector<f64, D>,
@@ -90,7 +91,16 @@ fn odd(rng: &mut Rng, most: f64) -> f64 {
 impl<'a, const D: usize> Adversary<'a, D> {
     pub(super) fn new(rng: &'a mut Rng) -> Self {
         let zeros = SVector::zeros();
-        Self { rng, pattern: Pattern::Honest, left: 0, force_n: zeros, hand_m: zeros, running: false, permitted: true }
+        Self {
+            rng,
+            t_s: 0.0,
+            pattern: Pattern::Honest,
+            left: 0,
+            force_n: zeros,
+            hand_m: zeros,
+            running: false,
+            permitted: true,
+        }
     }
 
     fn vector(&mut self, size: f64) -> SVector<f64, D> {
@@ -152,11 +162,24 @@ impl<'a, const D: usize> Adversary<'a, D> {
         if self.rng.u32(..if self.permitted { 200 } else { 20 }) == 0 {
             self.permitted = !self.permitted;
         }
+        // Late, early, repeated and backward times; a clock that jumps far.
+        self.t_s += match self.rng.u32(..32) {
+            0 => odd(self.rng, 0.05),
+            1 => -self.rng.f64() * 1e-3,
+            2 => 0.0,
+            3..12 => self.rng.f64() * 5e-3,
+            _ => 1e-3,
+        };
+        if !self.t_s.is_finite() {
+            self.t_s = 0.0;
+        }
         Request {
+            t_s: self.t_s,
             force_n: self.force(),
             age_s: if self.rng.u32(..4) == 0 { odd(self.rng, 0.05) } else { 0.0 },
             speed_m_s: odd(self.rng, 0.01),
             hand_m: self.hand(),
+            hand_age_s: if self.rng.u32(..8) == 0 { odd(self.rng, 0.01) } else { 0.0 },
             permitted: self.permitted,
         }
     }

@@ -14,7 +14,7 @@ pub struct Breaches {
     pub not_finite: u64,
     /// A force above the ceiling, or above the device's maximum.
     pub ceiling: u64,
-    /// A change between consecutive forces above the slew limit, unless a gate has withdrawn the force.
+    /// A change between consecutive forces above the slew limit, but for a fall to zero where a gate withdraws the force at once.
     pub slew: u64,
     /// A gain that changed faster than its rate.
     pub gain_rate: u64,
@@ -38,12 +38,14 @@ impl Breaches {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watch<const D: usize> {
     pub(super) most_n: f64,
-    pub(super) step_n: f64,
-    pub(super) gain_step: f64,
+    pub(super) slew_n_per_s: f64,
+    pub(super) gain_per_s: f64,
+    pub(super) period_s: f64,
+    pub(super) last_s: Option<f64>,
     pub(super) last_n: SVector<f64, D>,
     pub(super) gain: f64,
-    /// The governor acted on the last one.
-    pub(super) governed: bool,
+    /// The governor found before the last one that the hand has let go.
+    pub(super) let_go: bool,
     /// Whether a gain above 1 has been confirmed and not withdrawn.
     pub(super) above_one: bool,
 }
@@ -53,23 +55,35 @@ impl<const D: usize> Watch<D> {
     pub(crate) fn of(settings: &ChainSettings, period_s: f64) -> Self {
         Self {
             most_n: settings.ceiling_n.min(settings.device_limit_n),
-            step_n: settings.slew_n_per_s * period_s,
-            gain_step: settings.gain_rate_per_s * period_s,
+            slew_n_per_s: settings.slew_n_per_s,
+            gain_per_s: settings.gain_rate_per_s,
+            period_s,
+            last_s: None,
             last_n: SVector::zeros(),
             gain: settings.gain,
-            governed: false,
+            let_go: false,
             above_one: false,
         }
     }
 
-    /// Checks one force (N) and its report; `chosen` is the gain that was set.
-    pub(crate) fn look(&mut self, now_n: &SVector<f64, D>, report: &GateReport, chosen: f64, breaches: &mut Breaches) {
+    /// Checks the force (N) at a time (s) and its report; `chosen` is the gain that was set.
+    pub(crate) fn look(
+        &mut self,
+        t_s: f64,
+        now_n: &SVector<f64, D>,
+        report: &GateReport,
+        chosen: f64,
+        breaches: &mut Breaches,
+    ) {
+        let dt_s = self.last_s.replace(t_s).map_or(self.period_s, |last_s| (t_s - last_s).max(0.0));
         let within = |value: f64, limit: f64| value <= limit * (1.0 + ROUNDING) + f64::MIN_POSITIVE;
         let finite = now_n.iter().all(|f| f.is_finite()) && report.gain.is_finite();
         let let_go = [Gate::Permission, Gate::Validity].iter().any(|gate| report.acted(*gate))
             || [Reason::HandGone, Reason::NotFinite].contains(&report.reason(Gate::Governor));
-        // The governor takes a force away as fast as a handle flies, and gives it back so; the force before it keeps the limit.
-        let governs = report.acted(Gate::Governor) || self.governed;
+        // Only a handle that was let go, or just was, loses its force or its brake faster: to zero.
+        let lets_go = report.reason(Gate::Governor) == Reason::LetGo;
+        let falls = (let_go || lets_go || self.let_go) && now_n.norm() == 0.0;
+        let step_n = self.slew_n_per_s * dt_s.min(self.period_s);
         let change_n = (now_n - self.last_n).norm();
         // The rounding of a gain near 3 is larger than the relative rounding of a slow ramp.
         let gain_change = (report.gain - self.gain).abs() - 4.0 * f64::EPSILON;
@@ -77,12 +91,12 @@ impl<const D: usize> Watch<D> {
         breaches.not_finite += u64::from(!finite);
         breaches.ceiling += u64::from(!within(now_n.norm(), self.most_n));
         // The tolerance is the rounding of the two forces, which is larger than that of their small difference.
-        breaches.slew += u64::from(!let_go && !governs && !within(change_n - 1e-14 * self.most_n, self.step_n));
-        breaches.gain_rate += u64::from(!within(gain_change, self.gain_step));
+        breaches.slew += u64::from(!falls && !within(change_n - 1e-14 * self.most_n, step_n));
+        breaches.gain_rate += u64::from(!within(gain_change, self.gain_per_s * dt_s));
         breaches.gain_range += u64::from(!chosen_well || !(0.0..=MAX_GAIN).contains(&report.gain));
         breaches.uncalled += u64::from(let_go && now_n.norm() != 0.0);
         breaches.energy += u64::from(!within(report.stored_j.abs(), MOST_J));
-        (self.last_n, self.gain, self.governed) = (*now_n, report.gain, report.acted(Gate::Governor));
+        (self.last_n, self.gain, self.let_go) = (*now_n, report.gain, lets_go);
     }
 }
 
@@ -94,15 +108,17 @@ mod tests {
     fn seen(now_n: Vector3<f64>, report: GateReport, chosen: f64) -> Breaches {
         let mut watch = Watch {
             most_n: 4.0,
-            step_n: 0.5,
-            gain_step: 0.002,
+            slew_n_per_s: 500.0,
+            gain_per_s: 2.0,
+            period_s: 1e-3,
+            last_s: None,
             last_n: Vector3::new(3.8, 0.0, 0.0),
             gain: 1.0,
-            governed: false,
+            let_go: false,
             above_one: false,
         };
         let mut breaches = Breaches::default();
-        watch.look(&now_n, &report, chosen, &mut breaches);
+        watch.look(0.0, &now_n, &report, chosen, &mut breaches);
         breaches
     }
 

@@ -55,7 +55,7 @@ impl Counting {
     fn look(&mut self, seen: &Seen, is_judged: bool) {
         let tick = &seen.console;
         if seen.is_new {
-            self.watch.look(&tick.rendered_n, &tick.gates, 1.0, &mut self.breaches);
+            self.watch.look(tick.t_s, &tick.rendered_n, &tick.gates, 1.0, &mut self.breaches);
         }
         self.silent = if seen.under_way[1].1 > 0 { 0 } else { self.silent + 1 };
         if tick.rendered_n.norm() > 0.0 {

@@ -158,12 +158,12 @@ fn table(reader: &Reader, times_ns: Range<u64>, arguments: &Arguments, leave: &L
     output::line(&format!("{rows} ticks of the {} arm in {}", arm.word(), out.display()))
 }
 
-/// The fewest digits from which the same numbers are read.
+/// The fewest digits from which the same numbers are read; nothing in the place of one that is not known.
 fn row(tick: &PlottedTick) -> String {
     let PlottedTick { time_ns, t_s, tip_m, leader_m, measured_n, delayed_n, asked_n, rendered_n, state } = tick;
     let mut row = format!("{t_s},{time_ns}");
     for value in [tip_m, measured_n, leader_m, delayed_n, asked_n, rendered_n].into_iter().flatten() {
-        write!(row, ",{value}").ok();
+        row += &output::cell(*value);
     }
     writeln!(row, ",{state}").ok();
     row
@@ -215,4 +215,30 @@ fn files(reader: &Reader) -> anyhow::Result<Vec<Attached>> {
         files.extend(text.transpose()?.map(|text| toml_file(name, text)));
     }
     Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    #[test]
+    fn a_force_that_is_not_known_has_empty_fields() {
+        let (known, unknown) = (Vector3::new(0.0, 0.5, -1.0), Vector3::repeat(f64::NAN));
+        let tick = PlottedTick {
+            time_ns: 7,
+            t_s: 0.25,
+            tip_m: known,
+            leader_m: known,
+            measured_n: unknown,
+            delayed_n: unknown,
+            asked_n: Vector3::zeros(),
+            rendered_n: Vector3::zeros(),
+            state: "Idle",
+        };
+        let row = row(&tick);
+        assert_eq!(row, "0.25,7,0,0.5,-1,,,,0,0.5,-1,,,,0,0,0,0,0,0,Idle\n");
+        assert_eq!(row.matches(',').count(), HEADER.matches(',').count());
+    }
 }

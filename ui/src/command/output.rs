@@ -21,6 +21,11 @@ pub(super) fn line(text: &str) -> anyhow::Result<()> {
     }
 }
 
+/// A number as a field of a table, behind its comma; empty for one that is not known.
+pub(super) fn cell(number: f64) -> String {
+    if number.is_finite() { format!(",{number}") } else { ",".to_owned() }
+}
+
 /// Checks before the work that `out` can be written and is not one of the input files.
 pub(super) fn check(out: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
     nima_files::check_output(out, inputs).with_context(|| format!("cannot write {}", out.display()))

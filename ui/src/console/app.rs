@@ -34,7 +34,7 @@ use super::{
     Options,
     alarms::judge,
     canvas::{Canvas, Surface, renderer_of},
-    commands::Action,
+    commands::{Action, Reach},
     diary::Diary,
     door::{Door, News},
     frames::Meter,
@@ -316,6 +316,10 @@ impl ConsoleApp {
         let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
             let (calibrating, before) = (self.is_calibrating(), self.role());
+            self.live.engage_closed = match self.may(Action::Engage) {
+                Reach::Cannot(why) => Some(why),
+                Reach::Can | Reach::Absent => None,
+            };
             self.top_bar.participant = self.studies.trial.as_ref().map(|trial| trial.participant.clone());
             self.top_bar.asked = self.checking.ask();
             self.top_bar.past = self.past.is_some();

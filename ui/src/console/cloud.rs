@@ -11,6 +11,8 @@ use nalgebra::{Matrix3, Vector3};
 /// Stored time, s, and time between samples, s.
 pub const SECONDS: f64 = 6.0;
 const STEP_S: f64 = 0.02;
+/// A longer time without a sample, s, is one in which a force was not known.
+pub const GAP_S: f64 = 0.1;
 /// 95 % quantile of chi squared with three degrees of freedom.
 const CHI2_95: f64 = 7.814_728;
 /// Fewest samples for an ellipsoid.

@@ -125,7 +125,7 @@ pub struct Live {
     pub degrees: DegreeShares,
     /// Degrees that the paper's in-window rule would choose.
     pub paper_degrees: DegreeShares,
-    /// Error of each mode at the horizon, N, one value per second, oldest first.
+    /// Error of each mode at the horizon, N, one value per second, oldest first; no number while the force was not known.
     pub trend_n: VecDeque<[f64; SLOTS]>,
     /// Recent activity of each side's gates.
     pub gates: [Gates; SIDES],
@@ -147,6 +147,8 @@ pub struct Live {
     pub bias_moved_n: Option<f64>,
     /// No ready check of today has passed on this rig.
     pub is_unchecked: bool,
+    /// Why the loop cannot be engaged now, as the button has it; `None` where it can.
+    pub engage_closed: Option<&'static str>,
     /// The devices of the rig; empty if everything is simulated.
     pub roster: Roster,
     /// Where nothing may act on the devices: their names, and how each is at the moment that is shown.
@@ -209,6 +211,7 @@ impl Live {
             rough_edges: false,
             bias_moved_n: None,
             is_unchecked: false,
+            engage_closed: None,
             roster: Roster::new(),
             line: None,
             line_door: None,

@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use nima_machine::messages::LoopState;
+use nima_machine::messages::{LoopState, Tick};
 
 use super::{
     desk::{Layout, Panel},
@@ -84,8 +84,9 @@ impl Photographer {
         let least = if self.next == 0 { FILLED } else { SETTLED };
         let shown = self.since.elapsed();
         let engaged = live.state() == LoopState::Engaged;
-        let touching =
-            live.first_tick().is_some_and(|tick| tick.measured_n.norm().min(tick.rendered_n.norm()) > CONTACT_N);
+        let touches =
+            |tick: &Tick| tick.known_n().is_some_and(|force_n| force_n.norm().min(tick.rendered_n.norm()) > CONTACT_N);
+        let touching = live.first_tick().is_some_and(touches);
         // At the start of the contact, because the screenshot is taken a frame or two later.
         let before = std::mem::replace(&mut self.touching, touching);
         let contact = touching && !before;

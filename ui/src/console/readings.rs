@@ -37,14 +37,14 @@ pub struct Change {
 /// Figures for display, smoothed so that they can be read.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Figures {
-    /// Mean magnitude of the measured force of each side, N, indexed by `Side::index`.
-    pub measured_n: [f64; SIDES],
+    /// Mean magnitude of the measured force of each side, N, indexed by `Side::index`; `None` while it is not known.
+    pub measured_n: [Option<f64>; SIDES],
     /// Mean magnitude of the rendered force of each side, N.
     pub rendered_n: [f64; SIDES],
     /// Torque about the shaft of each side, Nm.
     pub twist: [Twist; SIDES],
-    /// Error of each mode at the horizon, N, mean over the last seconds.
-    pub horizon_n: [f64; SLOTS],
+    /// Error of each mode at the horizon, N, mean over the last seconds; `None` while the force at the tip is not known.
+    pub horizon_n: [Option<f64>; SLOTS],
     /// Lateness of wake-ups, us.
     pub wake_us: Quantiles,
     /// Work of a tick, us.

@@ -59,6 +59,11 @@ impl Fading {
         self.value = Some(self.value.map_or(value, |old| old + share * (value - old)));
     }
 
+    /// The present mean; `None` before the first value.
+    pub const fn known(self) -> Option<f64> {
+        self.value
+    }
+
     /// The present mean; zero before the first value.
     pub fn get(self) -> f64 {
         self.value.unwrap_or(0.0)

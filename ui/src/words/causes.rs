@@ -25,6 +25,7 @@ pub(crate) fn cause_words(cause: &Cause, roster: &Roster) -> [String; 2] {
         Cause::BiasUnseen(why) => return bias_unseen(why),
         Cause::OtherFault(fault) => return other_fault(fault),
         Cause::Refused(why) => return refused(why),
+        Cause::ForceUnknown(source) => return refused(Refusal::ForceUnknown(source)),
         Cause::Missed { share } => return missed(share),
         Cause::LoopClock { by_s } => return clocks_apart(by_s),
         Cause::BiasMoved { by_n, limit_n } => return bias_moved(by_n, limit_n),

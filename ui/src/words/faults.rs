@@ -2,7 +2,7 @@
 
 use nima_core::safety::{Implausible, State};
 use nima_devices::Loss;
-use nima_machine::messages::{FarStop, Fault, LoopState};
+use nima_machine::messages::{FarStop, Fault, ForceSource, LoopState};
 
 use super::Remedy;
 use crate::language::word;
@@ -23,6 +23,37 @@ pub(crate) fn trouble_of(state: LoopState) -> String {
     }
 }
 
+/// Why the force at the tip is unknown.
+fn unknown_because(source: ForceSource) -> &'static str {
+    match source {
+        ForceSource::Uncalibrated => word(
+            "The force at the tip is not known: the wrist sensor is not calibrated for this tool",
+            "Die Kraft an der Spitze ist unbekannt: Handgelenksensor nicht für dieses Instrument kalibriert",
+        ),
+        ForceSource::NoOrientation => word(
+            "The force at the tip is not known: the orientation of the wrist is missing",
+            "Die Kraft an der Spitze ist unbekannt: die Orientierung des Handgelenks fehlt",
+        ),
+        ForceSource::Poisoned => word(
+            "The force at the tip is not known: the calibration or the network gives invalid numbers",
+            "Die Kraft an der Spitze ist unbekannt: Kalibrierung oder Netz liefert ungültige Zahlen",
+        ),
+        ForceSource::Unidentified => word(
+            "The force at the tip is not known: the wrist sensor was reconnected",
+            "Die Kraft an der Spitze ist unbekannt: der Handgelenksensor wurde neu verbunden",
+        ),
+        ForceSource::NoSample
+        | ForceSource::AtTip
+        | ForceSource::Wrist
+        | ForceSource::Network
+        | ForceSource::Extrapolated
+        | ForceSource::InDoubt { .. } => word(
+            "The force at the tip is not known: the devices send no measurement",
+            "Die Kraft an der Spitze ist unbekannt: die Geräte senden keine Messung",
+        ),
+    }
+}
+
 impl Remedy for Fault {
     fn cause(self) -> &'static str {
         match self {
@@ -35,10 +66,7 @@ impl Remedy for Fault {
                 "The control loop was blocked: drives and force were switched off",
                 "Die Regelung war blockiert: Antriebe und Kraft abgeschaltet",
             ),
-            Self::ForceUnknown => word(
-                "The force at the tip is not known: the wrist sensor is not calibrated for this tool",
-                "Die Kraft an der Spitze ist unbekannt: Handgelenksensor nicht für dieses Instrument kalibriert",
-            ),
+            Self::ForceUnknown { source } => unknown_because(source),
             Self::DeviceLost { loss, .. } => match loss {
                 Loss::Disconnected => {
                     word("A device was lost: its connection is gone", "Ein Gerät ist ausgefallen: Verbindung getrennt")
@@ -93,9 +121,13 @@ impl Remedy for Fault {
                 "Close other programs or grant real-time priority, then release the stop and engage again",
                 "Andere Programme schließen oder Echtzeitpriorität gewähren, dann Halt lösen und neu koppeln",
             ),
-            Self::ForceUnknown => word(
+            Self::ForceUnknown { source: ForceSource::Uncalibrated | ForceSource::Poisoned } => word(
                 "Calibrate gravity (Calibration panel), then release the stop and engage again",
                 "Schwerkraft kalibrieren (Panel Kalibrierung), dann Halt lösen und neu koppeln",
+            ),
+            Self::ForceUnknown { .. } => word(
+                "Check the wrist sensor and the arm in Devices, then release the stop and engage again",
+                "Handgelenksensor und Arm unter Geräte prüfen, dann Halt lösen und neu koppeln",
             ),
             Self::DeviceLost { .. } => word(
                 "See Devices: the device reconnects automatically; then release the stop and engage again",

@@ -101,6 +101,43 @@ impl Words for ForceSource {
                 "unknown: the calibration or the network gives invalid numbers",
                 "unbekannt: Kalibrierung oder Netz liefert ungültige Zahlen",
             ),
+            Self::NoSample => {
+                word("unknown: the devices send no measurement", "unbekannt: die Geräte senden keine Messung")
+            }
+            Self::Unidentified => word(
+                "unknown: the wrist sensor was reconnected and has not told its serial number",
+                "unbekannt: der Handgelenksensor hat seit dem Verbinden keine Seriennummer genannt",
+            ),
+        }
+    }
+}
+
+/// What the operator can do about a force that is unknown for this reason, a clause without a full stop.
+pub(super) fn cure_of_unknown(source: ForceSource) -> &'static str {
+    match source {
+        ForceSource::Uncalibrated => word(
+            "calibrate gravity for this sensor and tool",
+            "Schwerkraft für diesen Sensor und dieses Instrument kalibrieren",
+        ),
+        ForceSource::NoOrientation => word(
+            "check that the arm and the sensor's accelerometer send data",
+            "prüfen, ob der Arm und der Beschleunigungssensor im Kraftsensor Daten senden",
+        ),
+        ForceSource::Poisoned => word(
+            "calibrate gravity again, then train the network again",
+            "Schwerkraft neu kalibrieren, dann das Netz neu trainieren",
+        ),
+        ForceSource::Unidentified => word(
+            "wait a moment; if it lasts, disconnect the wrist sensor and connect it again",
+            "kurz warten; falls es bleibt, Handgelenksensor trennen und neu verbinden",
+        ),
+        ForceSource::NoSample
+        | ForceSource::AtTip
+        | ForceSource::Wrist
+        | ForceSource::Network
+        | ForceSource::Extrapolated
+        | ForceSource::InDoubt { .. } => {
+            word("see the devices for what sends nothing and why", "siehe Geräte: was nichts sendet und warum")
         }
     }
 }

@@ -12,7 +12,7 @@ use nima_core::{
 };
 use nima_devices::{Loss, Standing};
 use nima_machine::{
-    messages::{Command, Event, Fault, LoopState, Refusal, Scheduling, Watchdog},
+    messages::{Command, Event, Fault, ForceSource, LoopState, Refusal, Scheduling, Watchdog},
     rig::{Act, Awaited, DeviceEvent, Exchange, Obstacle, Part, Prompt, SIDES, Side},
     runtime::Operation,
 };
@@ -90,14 +90,14 @@ fn faults() -> impl Iterator<Item = Fault> {
     let others = [
         Fault::SourceSilent,
         Fault::LoopStalled { periods: 0 },
-        Fault::ForceUnknown,
         Fault::DrivesOff,
         Fault::OtherArm,
         Fault::SamplesLost,
         Fault::LinkSilent,
         Fault::ClockJumped,
     ];
-    others.into_iter().chain(lost).chain(implausible)
+    let unknown = ForceSource::UNUSABLE.map(|source| Fault::ForceUnknown { source });
+    others.into_iter().chain(unknown).chain(lost).chain(implausible)
 }
 
 const fn losses() -> [Loss; 5] {

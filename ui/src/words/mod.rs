@@ -44,7 +44,7 @@ pub(crate) use names::{
     device_name, exchange_words, goal_words, loss_words, obstacle_words, part_name, scheduling_advice, side_word,
     state_name, within,
 };
-pub(crate) use numbers::three_digits;
+pub(crate) use numbers::{newtons, newtons_in_three, newtons_read, three_digits};
 pub(crate) use ready::{ask_words, check_name, figure_words, lacks_words, unit};
 pub(crate) use refusals::{cure_of_refusal, refused_because};
 

@@ -14,9 +14,34 @@ pub(crate) fn three_digits(value: f64) -> String {
     }
 }
 
+/// Stands in place of a number that is not known.
+const UNKNOWN: &str = "–";
+
+/// A force (N) with about three digits and its unit, or the sign for one that is not known.
+pub(crate) fn newtons_in_three(force_n: Option<f64>) -> String {
+    force_n.map_or_else(|| UNKNOWN.to_owned(), |force_n| format!("{} N", three_digits(force_n)))
+}
+
+/// A force (N) with this many decimals and its unit, or the sign for one that is not known.
+pub(crate) fn newtons(force_n: Option<f64>, decimals: usize) -> String {
+    force_n.map_or_else(|| UNKNOWN.to_owned(), |force_n| format!("{force_n:.decimals$} N"))
+}
+
+/// The same for a screen reader, which does not read the sign.
+pub(crate) fn newtons_read(force_n: Option<f64>, decimals: usize) -> String {
+    if force_n.is_some() { newtons(force_n, decimals) } else { word("unknown", "unbekannt").to_owned() }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::three_digits;
+    use super::{newtons, newtons_in_three, newtons_read, three_digits};
+
+    #[test]
+    fn an_unknown_number_is_never_zero() {
+        assert_eq!([newtons(None, 2), newtons(Some(0.0), 2)], ["–", "0.00 N"]);
+        assert_eq!([newtons_read(None, 1), newtons_read(Some(1.26), 1)], ["unknown", "1.3 N"]);
+        assert_eq!([newtons_in_three(None), newtons_in_three(Some(0.0))], ["–", "0.000 N"]);
+    }
 
     #[test]
     fn numbers_keep_three_digits() {

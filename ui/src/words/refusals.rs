@@ -1,11 +1,11 @@
 //! Texts: why a command was refused, and what the operator can do.
 
 use nima_machine::{
-    messages::{Fault, LoopState, Refusal},
+    messages::{Fault, ForceSource, LoopState, Refusal},
     rig::Obstacle,
 };
 
-use super::{Remedy as _, exchange_words, obstacle_words};
+use super::{Remedy as _, Words as _, exchange_words, force::cure_of_unknown, obstacle_words};
 use crate::language::{told, word};
 
 /// The reason, a clause without a full stop.
@@ -17,8 +17,8 @@ pub(crate) fn refused_because(why: Refusal) -> String {
             "die Ursache einer Störung besteht noch: {}",
             lower(fault.cause())
         ),
-        Refusal::ForceUnknown => {
-            word("the force at the tip is not known", "die Kraft an der Spitze ist unbekannt").to_owned()
+        Refusal::ForceUnknown(source) => {
+            told!("the force at the tip is {}", "die Kraft an der Spitze ist {}", source.words())
         }
         Refusal::Implausible(what) => {
             told!("a measurement is not plausible: {}", "eine Messung ist nicht plausibel: {}", lower(what.cause()))
@@ -78,11 +78,7 @@ pub(crate) fn cure_of_refusal(why: Refusal) -> &'static str {
             "Ursache dort beseitigen, dann hier Halt und Halt lösen drücken: das gibt beide Rechner frei",
         ),
         Refusal::StillPresent(_) => word("remove the cause first", "erst die Ursache beseitigen"),
-        Refusal::ForceUnknown => word(
-            "calibrate gravity for this sensor and tool",
-            "Schwerkraft für diesen Sensor und dieses Instrument \
-             kalibrieren",
-        ),
+        Refusal::ForceUnknown(source) => cure_of_unknown(source),
         Refusal::Implausible(_) => word("see the sensor and its cable", "Sensor und sein Kabel prüfen"),
         Refusal::Obstacle(Obstacle::Exchanged(_)) => word(
             "put what is exchanged back, in the room or in the rig file; the ready check tells which it is",
@@ -140,8 +136,12 @@ fn lower(words: &str) -> String {
 }
 
 /// The refusals whose words depend on nothing else.
-pub(super) const REFUSALS: [Refusal; 11] = [
-    Refusal::ForceUnknown,
+pub(super) const REFUSALS: [Refusal; 15] = [
+    Refusal::ForceUnknown(ForceSource::Uncalibrated),
+    Refusal::ForceUnknown(ForceSource::NoOrientation),
+    Refusal::ForceUnknown(ForceSource::Poisoned),
+    Refusal::ForceUnknown(ForceSource::NoSample),
+    Refusal::ForceUnknown(ForceSource::Unidentified),
     Refusal::EndoscopeUnseen,
     Refusal::DrivesOff,
     Refusal::Moving,

@@ -214,6 +214,22 @@ mod tests {
     }
 
     #[test]
+    fn an_unknown_force_is_left_out_and_never_zero() {
+        let (tip_m, rendered_n) = (Vector3::zeros(), Vector3::zeros());
+        let measured_n = nima_machine::messages::UNKNOWN_N;
+        let arm = Arm { state: State::Idle, tip_m, leader_m: tip_m, measured_n, rendered_n };
+        let moment = Moment { t_s: 1.0, arms: [Some(arm), None] };
+        let writer = Writer { moment: &moment, outline: &Outline { trocars_m: [None; SIDES] }, time_ns: 0 };
+        let mut bytes = Vec::new();
+        writer.put(Kind::Sensor, &mut bytes);
+        let has = |name: &str| bytes.windows(name.len()).any(|part| part == name.as_bytes());
+        assert!(has("right.rendered") && !has("right.measured"));
+        let told: Value = serde_json::from_str(&writer.text()).unwrap();
+        assert_eq!(told["right"]["measured_n"], json!([null, null, null]));
+        assert_eq!(told["right"]["rendered_n"], json!([0.0, 0.0, 0.0]));
+    }
+
+    #[test]
     fn the_worse_the_state_the_worse_the_code() {
         let code = |state| status(state, String::new()).code;
         for state in [State::Idle, State::Ready, State::Engaged, State::Clutched] {

@@ -41,7 +41,7 @@ impl Far {
             behind: 0,
             renewed_s: [f64::NEG_INFINITY; SLOTS],
             stop: None,
-            source: ForceSource::AtTip,
+            source: ForceSource::NoSample,
         })
     }
 }
@@ -84,7 +84,7 @@ impl<L: Link> Pair<L> {
                 report.horizon_error_n = errors_n.map(f64::from);
             }
         }
-        ForceReport { tip_n: self.far.parcel.force_n, ..ForceReport::none(self.far.source, None) }
+        ForceReport::of_far_end(self.far.source, self.far.parcel.force_n)
     }
 
     /// The fault that the other machine's stop is here.

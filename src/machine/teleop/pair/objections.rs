@@ -19,8 +19,8 @@ impl<L: Link> Pair<L> {
             return Err(Refusal::NotChecked);
         }
         // A force that is mostly weight and bias must never be rendered.
-        if !self.force.source.is_usable() {
-            return Err(Refusal::ForceUnknown);
+        if !self.may_know_force() {
+            return Err(Refusal::ForceUnknown(self.force.source));
         }
         if let Some(what) = self.plausibility.doubt() {
             return Err(Refusal::Implausible(what));
@@ -57,7 +57,7 @@ impl<L: Link> Pair<L> {
         } else if inputs.is_none_or(|inputs| inputs.view == View::Unseen) {
             Refusal::EndoscopeUnseen
         } else if !self.force.source.is_usable() {
-            Refusal::ForceUnknown
+            Refusal::ForceUnknown(self.force.source)
         } else if self.link_is_old() {
             Refusal::StillPresent(Fault::LinkSilent)
         } else if !seen.present {

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use nima_core::{calibration::frames::FrameSample, impedance::Rendered, safety::GateReport};
 
-use super::{Pair, Timing};
+use super::{Pair, SILENT_AFTER_S, Timing};
 use crate::{
     messages::{ForceReport, ForceSource, Tick},
     rig::Inputs,
@@ -13,9 +13,8 @@ use crate::{
 /// Marks a sample that was not measured.
 pub(super) const NOWHERE: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 
-/// Used until the first sample. The source `AtTip` with no force is not usable, and shows a rig that measures at the
-/// tip correctly from the start.
-pub(super) const NO_FORCE_YET: ForceReport = ForceReport::none(ForceSource::AtTip, None);
+/// The force before the first sample, and when the last one is too old.
+pub(super) const NO_FORCE: ForceReport = ForceReport::none(ForceSource::NoSample, None);
 
 impl<L: Link> Pair<L> {
     #[expect(clippy::too_many_arguments, reason = "all that one tick tells")]
@@ -29,6 +28,9 @@ impl<L: Link> Pair<L> {
         gates: GateReport,
         timing: &Timing,
     ) -> Tick {
+        let silent = self.is_silent(timing.now_s);
+        // Over a network a gap is no fault until it has lasted for [`super::LINK_SILENT_AFTER_S`], but its force is not that of now.
+        let force = if seen.silent_s > SILENT_AFTER_S { NO_FORCE } else { self.force };
         Tick {
             index: self.ticks,
             t_s: timing.now_s,
@@ -38,9 +40,9 @@ impl<L: Link> Pair<L> {
             delay_s: self.delay_s,
             leader_m,
             tip_m: seen.tip_m,
-            measured_n: self.force.tip_n,
-            force: self.force,
-            wrist: seen.sensed.wrist().copied(),
+            measured_n: force.measured_n(),
+            force,
+            wrist: seen.sensed.wrist().filter(|_| !silent).copied(),
             // A pose that is not new would look as if it were held still.
             frames: if self.was_there { seen.frames } else { FrameSample::default() },
             view: seen.view,

@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::Sample,
+    impedance::{Parcel, Sample},
     safety::{Observed, Seen, Why},
 };
 
@@ -17,18 +17,20 @@ use crate::{
 impl<L: Link> Pair<L> {
     /// Checks a sample; returns it with impossible jumps replaced by the last plausible value.
     pub(super) fn take_in(&mut self, mut inputs: Inputs, now_s: f64) -> Inputs {
-        let was_known = self.force.source.is_usable();
+        let was_usable = self.force.source.is_usable();
         self.force = match &inputs.sensed {
             Sensed::FarEnd(identified) => self.hear(identified),
             sensed => self.force_path.step(now_s, sensed),
         };
-        if self.force.source.is_usable() && !was_known {
+        let is_usable = self.force.source.is_usable();
+        if is_usable && !was_usable {
             self.plausibility.force_is_new();
         }
         let admitted = self.plausibility.step(&Observed {
             t_s: now_s,
             raw: inputs.raw,
-            force_n: self.force.tip_n,
+            // An unknown force is none to this check; the first known one begins it anew.
+            force_n: if is_usable { self.force.tip_n } else { Vector3::zeros() },
             least_n: self.force.source.least_n(),
             world_from_s1: inputs.sensed.wrist().and_then(|sample| sample.world_from_s1),
             tip_m: inputs.tip_m,
@@ -39,15 +41,21 @@ impl<L: Link> Pair<L> {
             tip_silent_s: if self.far.is_there { inputs.silent_s } else { 0.0 },
             hand_silent_s: if self.far.is_there { 0.0 } else { inputs.silent_s },
         });
-        (self.force.tip_n, inputs.tip_m, inputs.hand.position_m) = (admitted.force_n, admitted.tip_m, admitted.hand_m);
+        (inputs.tip_m, inputs.hand.position_m) = (admitted.tip_m, admitted.hand_m);
+        if is_usable {
+            self.force.tip_n = admitted.force_n;
+        }
         self.hand_speed_m_s = self.speed.step(inputs.hand_s(now_s), inputs.hand.position_m);
-        if self.far.is_there {
-            self.far.parcel.force_n = self.force.tip_n;
-        } else {
+        if !self.far.is_there {
             self.identifier.step(&Sample { t_s: now_s, position_m: inputs.tip_m, force_n: self.force.tip_n });
-            if !self.withholds(Watchdog::Link) {
-                self.link.send(self.identifier.parcel());
+            // An unusable force is a missing sample: no parcel is sent for it. One that nobody measured may be rendered, and is no judge.
+            if is_usable && !self.withholds(Watchdog::Link) {
+                let parcel = self.identifier.parcel();
+                let fresh = parcel.fresh && self.force.source.is_known();
+                self.link.send(&Parcel { fresh, ..*parcel });
             }
+        } else if is_usable {
+            self.far.parcel.force_n = self.force.tip_n;
         }
         self.last_inputs = Some(inputs);
         self.last_input_s = now_s - inputs.age_s;
@@ -112,7 +120,7 @@ impl<L: Link> Pair<L> {
             self.fail_if_driven(fault, now_s);
         }
         if coupled && !self.force.source.is_usable() {
-            self.fail(Fault::ForceUnknown, now_s);
+            self.fail(Fault::ForceUnknown { source: self.force.source }, now_s);
         }
         if coupled && inputs.is_some_and(|inputs| !inputs.powered) {
             self.fail(Fault::DrivesOff, now_s);

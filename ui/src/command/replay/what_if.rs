@@ -132,7 +132,7 @@ fn row(was: &Tick, would: &Tick) -> String {
     let mut row = format!("{},{},{},{}", was.t_s, was.side.word(), was.state.word(), would.state.word());
     for force_n in [&was.rendered_n, &would.rendered_n, &was.measured_n] {
         for axis in force_n {
-            write!(row, ",{axis}").ok();
+            row += &output::cell(*axis);
         }
     }
     row + "\n"

@@ -11,7 +11,7 @@ use nima_machine::{
     runtime::Handle,
 };
 
-use crate::telling::tell;
+use crate::{telling::tell, words::newtons};
 
 /// Reports why a device cannot be opened, once per cause.
 #[derive(Default)]
@@ -74,11 +74,11 @@ impl StatusLine {
             return self.write(&format!("{:8.1} s  {}: {missing}", tick.t_s, tick.state.word()));
         }
         let text = format!(
-            "{:8.1} s  {:8}  {:8}  measured {:5.2} N  rendered {:5.2} N  degree {}  missed {}",
+            "{:8.1} s  {:8}  {:8}  measured {:>7}  rendered {:5.2} N  degree {}  missed {}",
             tick.t_s,
             tick.state.word(),
             tick.mode,
-            tick.measured_n.norm(),
+            newtons(tick.known_n().map(|force_n| force_n.norm()), 2),
             tick.rendered_n.norm(),
             tick.identification.degree,
             tick.missed,

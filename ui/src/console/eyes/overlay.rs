@@ -9,7 +9,10 @@ use nima_endoscope::Camera;
 use nima_machine::rig::Side;
 
 use super::{hidden::Shaft, place::Place, poses::Pose};
-use crate::console::{scene3d::side_name, text, theme};
+use crate::{
+    console::{scene3d::side_name, text, theme},
+    words::newtons,
+};
 
 /// Length of an arrow, m per N; a force beyond the second is drawn no longer, N.
 const M_PER_N: f64 = 0.005;
@@ -151,6 +154,10 @@ impl Seen<'_> {
 
     fn arrow(&self, instrument: &Instrument, tip: Pos2) {
         let Pose { tip_m, measured_n } = instrument.pose;
+        let Some(measured_n) = measured_n else {
+            let place = tip - vec2(0.0, FREE + 4.0);
+            return self.label(place, Align2::CENTER_BOTTOM, &newtons(None, 1), 17.0, theme::DARK.measured);
+        };
         let size_n = measured_n.norm();
         if !(LEAST_N..1e6).contains(&size_n) {
             return;

@@ -22,11 +22,11 @@ const KEPT_S: f64 = 1.5;
 /// The loop's clock may run this much slower than the window's.
 const DRIFT: f64 = 1e-3;
 
-/// A tip and the force on it, in the workspace.
+/// A tip and the force on it, where that is known, in the workspace.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pose {
     pub(super) tip_m: Vector3<f64>,
-    pub(super) measured_n: Vector3<f64>,
+    pub(super) measured_n: Option<Vector3<f64>>,
 }
 
 #[derive(Debug, Default)]
@@ -41,7 +41,7 @@ pub(super) struct Poses {
 
 impl Poses {
     pub(super) fn note(&mut self, tick: &Tick, now: Instant) {
-        let pose = Pose { tip_m: tick.tip_m, measured_n: tick.measured_n };
+        let pose = Pose { tip_m: tick.tip_m, measured_n: tick.known_n() };
         let begin = *self.begin.get_or_insert(now);
         self.take(tick.side, tick.t_s, pose, now.duration_since(begin).as_secs_f64());
         if let Some(world_from_n) = tick.view.world_from_n() {
@@ -81,7 +81,7 @@ impl Poses {
     }
 
     fn take(&mut self, side: Side, t_s: f64, pose: Pose, now_s: f64) {
-        if !pose.tip_m.iter().chain(&pose.measured_n).all(|x| x.is_finite()) {
+        if !pose.tip_m.iter().all(|x| x.is_finite()) {
             return;
         }
         let kept = &mut self.kept[side.index()];
@@ -116,7 +116,8 @@ impl Poses {
             return nearest.map(|(_, pose)| *pose);
         };
         let share = (t_s - from_s) / (to_s - from_s);
-        Some(Pose { tip_m: from.tip_m.lerp(&to.tip_m, share), measured_n: from.measured_n.lerp(&to.measured_n, share) })
+        let measured_n = from.measured_n.zip(to.measured_n).map(|(from_n, to_n)| from_n.lerp(&to_n, share));
+        Some(Pose { tip_m: from.tip_m.lerp(&to.tip_m, share), measured_n })
     }
 }
 
@@ -129,7 +130,7 @@ mod tests {
         let mut poses = Poses::default();
         for tick in 0..3000 {
             let t_s = f64::from(tick) * 1e-3;
-            let pose = Pose { tip_m: Vector3::new(t_s, 0.0, 0.0), measured_n: Vector3::zeros() };
+            let pose = Pose { tip_m: Vector3::new(t_s, 0.0, 0.0), measured_n: None };
             // The window's clock is 7 s ahead, and it has the ticks of up to 16 ms at once.
             let now_s = 7.0 + f64::from(tick / 16 * 16 + 15) * 1e-3;
             poses.take(Side::Right, t_s, pose, now_s);
@@ -146,7 +147,7 @@ mod tests {
     #[test]
     fn the_marker_is_that_of_the_pictures_moment_and_nothing_once_it_is_not_seen() {
         let mut poses = Poses::default();
-        let rest = Pose { tip_m: Vector3::zeros(), measured_n: Vector3::zeros() };
+        let rest = Pose { tip_m: Vector3::zeros(), measured_n: None };
         for tick in 0..1500 {
             let t_s = f64::from(tick) * 1e-3;
             poses.take(Side::Right, t_s, rest, 5.0 + t_s);
@@ -168,7 +169,7 @@ mod tests {
     #[test]
     fn a_loop_that_began_again_is_followed() {
         let mut poses = Poses::default();
-        let pose = |x| Pose { tip_m: Vector3::new(x, 0.0, 0.0), measured_n: Vector3::zeros() };
+        let pose = |x| Pose { tip_m: Vector3::new(x, 0.0, 0.0), measured_n: None };
         poses.take(Side::Right, 100.0, pose(1.0), 100.0);
         poses.take(Side::Right, 0.0, pose(2.0), 110.0);
         assert!((poses.at_s(Side::Right, 110.0).unwrap().tip_m.x - 2.0).abs() < 1e-12);

@@ -233,7 +233,8 @@ impl Projection {
         Side::ALL.map(|side| {
             let mut pose = None;
             let read = plotted::each_tick(reader, &self.session, side, times_ns.clone(), |tick| {
-                pose = Some(Pose { tip_m: tick.tip_m, measured_n: tick.measured_n });
+                let measured_n = Some(tick.measured_n).filter(|force_n| force_n.iter().all(|x| x.is_finite()));
+                pose = Some(Pose { tip_m: tick.tip_m, measured_n });
                 Ok::<_, PlottedError>(())
             });
             read.ok().and(pose)

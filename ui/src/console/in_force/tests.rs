@@ -226,7 +226,7 @@ fn a_calibration_comes_into_force_with_its_sensor_and_leaves_with_it() {
     assert_eq!(bench.in_force.uncalibrated(), None);
     // Another sensor at the same address.
     drop(first);
-    bench.until("it is out of force", |bench| bench.source == Some(ForceSource::Uncalibrated));
+    bench.until("it is out of force", |bench| bench.source == Some(ForceSource::Unidentified));
     let second = sensor("4243", &port);
     bench.until("the other one is known", |bench| bench.is_bound_to("SN004243"));
     let told = bench.in_force.told();

@@ -2,7 +2,11 @@
 
 use std::time::Instant;
 
-use nima_core::{frames::WristSample, impedance::Mode, statistics::Quantiles};
+use nima_core::{
+    frames::WristSample,
+    impedance::{Mode, SLOTS},
+    statistics::Quantiles,
+};
 use nima_machine::{
     messages::{Event, Fault, LoopState, Tick},
     rig::{Gauges, SIDES, Side},
@@ -128,13 +132,18 @@ impl Live {
         if identification.modes.contains(Mode::Literal) {
             self.paper_degrees.push(identification.paper_degree);
         }
+        // Without a measured force there is nothing to err from.
+        let errors_n = tick.known_n().map(|_| identification.horizon_error_n);
         if before.is_some_and(|before| before.t_s.floor() < tick.t_s.floor()) {
-            self.trend_n.push_back(tick.identification.horizon_error_n);
+            self.trend_n.push_back(errors_n.unwrap_or([f64::NAN; SLOTS]));
             if self.trend_n.len() > TREND_S {
                 self.trend_n.pop_front();
             }
         }
-        for (mean, error_n) in self.horizon.iter_mut().zip(tick.identification.horizon_error_n) {
+        if errors_n.is_none() {
+            self.horizon = Default::default();
+        }
+        for (mean, error_n) in self.horizon.iter_mut().zip(errors_n.into_iter().flatten()) {
             mean.push(error_n, dt_s, 4.0);
         }
         self.wake.record(tick.wake_s);
@@ -150,7 +159,10 @@ impl Live {
         let (side, dt_s) = (tick.side.index(), before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0)));
         let (m, r) = (tick.measured_n, tick.rendered_n);
         self.history[side].push(tick.t_s, &forces_of(tick));
-        self.measured[side].push(m.norm(), dt_s, 0.05);
+        match tick.known_n() {
+            Some(force_n) => self.measured[side].push(force_n.norm(), dt_s, 0.05),
+            None => self.measured[side] = Fading::default(),
+        }
         self.rendered[side].push(r.norm(), dt_s, 0.05);
         self.gates[side].push(tick, dt_s);
         self.clouds[side].push(tick.t_s, m, r);
@@ -175,7 +187,7 @@ impl Live {
     }
 
     fn refresh_readings(&mut self) {
-        self.figures.measured_n = self.measured.map(Fading::get);
+        self.figures.measured_n = self.measured.map(Fading::known);
         self.figures.rendered_n = self.rendered.map(Fading::get);
         self.figures.twist = Side::ALL.map(|side| self.twist(side).unwrap_or_default());
         self.readings_at = Instant::now();
@@ -196,7 +208,7 @@ impl Live {
     /// All other figures; the ticks since the last time took so many seconds.
     fn refresh_others(&mut self, seconds: f64) {
         self.figures = Figures {
-            horizon_n: self.horizon.map(Fading::get),
+            horizon_n: self.horizon.map(Fading::known),
             wake_us: self.wake.quantiles(),
             work_us: self.work.quantiles(),
             sample_to_force_us: self.sample_to_force.quantiles(),
@@ -213,7 +225,7 @@ impl Live {
     }
 }
 
-/// The forces of a tick, N, in the order of their channels.
+/// The forces of a tick, N, in the order of their channels; no numbers where they are not known.
 pub(in crate::console) fn forces_of(tick: &Tick) -> [f32; CHANNELS] {
     let (m, r) = (tick.measured_n, tick.rendered_n);
     [m.x, m.y, m.z, r.x, r.y, r.z].map(|x| x as f32)

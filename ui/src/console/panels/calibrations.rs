@@ -96,10 +96,7 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
 fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWish> {
     let mut wish = None;
     let closed = text::calibrations::closed(live.state());
-    let is_known = live.first_tick().is_some_and(|tick| tick.force.source.is_usable());
-    let next = (live.rig.devices.is_some() && live.state() == LoopState::Idle && open.is_none())
-        .then_some(if is_known { Page::Check } else { Page::All })
-        .filter(|page| *page == Page::All || live.is_unchecked);
+    let next = next_page(live).filter(|_| live.rig.devices.is_some() && open.is_none());
     let width = (ui.available_width() - ui.spacing().item_spacing.x) / 2.0;
     ui.horizontal(|ui| {
         for (page, name, meaning, opens) in [
@@ -130,6 +127,19 @@ fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWis
     wish
 }
 
+/// What is to be done before a rig that is idle can be engaged: a calibration that is missing, then the ready check. Where the force is
+/// unknown for another reason, neither helps.
+fn next_page(live: &Live) -> Option<Page> {
+    let is_idle = live.state() == LoopState::Idle;
+    let mut sources = live.ticks.iter().flatten().filter(|_| is_idle).map(|tick| tick.force.source);
+    let first = sources.clone().find(|source| !source.is_usable()).or_else(|| sources.next())?;
+    match first {
+        ForceSource::Uncalibrated | ForceSource::Poisoned => Some(Page::All),
+        source if !source.is_usable() => None,
+        _ => live.is_unchecked.then_some(Page::Check),
+    }
+}
+
 /// Selection of the arm to calibrate.
 fn side_ui(ui: &mut Ui, now: Side) -> Option<CalibrationWish> {
     let mut wish = None;
@@ -147,8 +157,8 @@ fn side_ui(ui: &mut Ui, now: Side) -> Option<CalibrationWish> {
 }
 
 fn source_ui(ui: &mut Ui, live: &Live) {
-    let source = live.first_tick().map_or(ForceSource::AtTip, |tick| tick.force.source);
-    let sure = source.is_usable() && source.doubt().is_none();
+    let source = live.first_tick().map_or(ForceSource::NoSample, |tick| tick.force.source);
+    let sure = source.is_known() && source.doubt().is_none();
     let (what, colour) = if sure { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().text) };
     ui.horizontal(|ui| {
         sign_ui(ui, what, 5.0, colour);
@@ -157,5 +167,36 @@ fn source_ui(ui: &mut Ui, live: &Live) {
     });
     if let Some(unsure) = source.doubt() {
         ui.label(small(sentence(unsure.words())));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::config::RigConfig;
+    use nima_world::{Plan, run_virtual, scene::Scene};
+
+    use super::*;
+
+    #[test]
+    fn a_button_leads_to_the_calibrations_only_where_one_is_missing() {
+        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
+        let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false };
+        let mut live = Live::new(rig, scene);
+        assert_eq!(next_page(&live), None);
+        run_virtual(&plan, 0.1, |tick| {
+            live.ticks[0] = Some(*tick);
+            None
+        })
+        .unwrap();
+        let mut next = |source: ForceSource, is_unchecked| {
+            live.is_unchecked = is_unchecked;
+            live.ticks[0].as_mut().unwrap().force.source = source;
+            next_page(&live)
+        };
+        for source in ForceSource::UNUSABLE {
+            let is_calibration = matches!(source, ForceSource::Uncalibrated | ForceSource::Poisoned);
+            assert_eq!(next(source, true), is_calibration.then_some(Page::All), "{source:?}");
+        }
+        assert_eq!([true, false].map(|unchecked| next(ForceSource::Wrist, unchecked)), [Some(Page::Check), None]);
     }
 }

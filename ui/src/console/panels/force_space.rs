@@ -10,7 +10,7 @@ use nima_machine::rig::Side;
 
 use super::forces_state::stepped;
 use crate::console::{
-    cloud::{Ellipsoid, SECONDS},
+    cloud::{Ellipsoid, GAP_S, Pair, SECONDS},
     live::Live,
     text, theme,
     widgets::fitting,
@@ -60,16 +60,18 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     let cloud = &live.clouds[side.index()];
     let newest_s = cloud.pairs().next_back().map_or(0.0, |pair| pair.t_s);
-    let shown_s = stepped(newest_s, live.least_step_s());
+    let now_s = live.tick_of(side).map_or(newest_s, |tick| tick.t_s);
+    let is_known = now_s - newest_s < GAP_S;
+    let shown_s = stepped(now_s, live.least_step_s());
     let (count, until_s, _) = state.ellipsoid;
     if count != cloud.pairs().len() || until_s.total_cmp(&shown_s).is_ne() {
         state.ellipsoid = (cloud.pairs().len(), shown_s, cloud.ellipsoid());
     }
-    let ellipsoid = state.ellipsoid.2;
+    let ellipsoid = state.ellipsoid.2.filter(|_| is_known);
     // Slightly less than what is stored: the oldest samples are dropped between two frames.
     let shown = (shown_s - SECONDS + 2.0 * live.least_step_s())..=shown_s;
-    let pairs = || cloud.pairs().filter(|pair| shown.contains(&pair.t_s));
-    let words = caption(ellipsoid.as_ref());
+    let pairs: Vec<&Pair> = cloud.pairs().filter(|pair| shown.contains(&pair.t_s)).collect();
+    let words = if is_known { caption(ellipsoid.as_ref()) } else { text::force_space::unknown(SECONDS) };
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, text::force_space::canvas(&words)));
     if response.dragged() {
         state.yaw += response.drag_delta().x * 0.01;
@@ -81,23 +83,27 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
     response.on_hover_text(text::force_space::HOVER.get());
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
-    let most_n = pairs().map(|pair| pair.measured_n.amax().max(pair.rendered_n.amax())).fold(0.0, f64::max);
+    let most_n = pairs.iter().map(|pair| pair.measured_n.amax().max(pair.rendered_n.amax())).fold(0.0, f64::max);
     state.reach_n = reach_n(most_n as f32, state.reach_n);
     let place = Rect::from_min_max(rect.min, rect.max - vec2(0.0, CAPTION));
     let view = view(state, place);
     axes(&painter, &view, state.reach_n);
     ceiling(&painter.with_clip_rect(place), &view, live.gate_settings().ceiling_n as f32);
     for (colour, width, rendered) in [(theme::now().measured, 2.2, false), (theme::now().rendered, 1.6, true)] {
-        let force_n = |pair: &crate::console::cloud::Pair| if rendered { pair.rendered_n } else { pair.measured_n };
-        let points: Vec<Pos2> = pairs().map(|pair| view.place(&force_n(pair).cast())).collect();
-        painter.line(points, Stroke::new(width, colour.gamma_multiply(0.75)));
-        // The newest sample, or the one at the cursor of a trace.
-        let pointed_at = cursor_s.and_then(|at_s| cloud.pairs().find(|pair| pair.t_s >= at_s));
-        if let Some(pair) = pointed_at.or_else(|| pairs().next_back()) {
+        let force_n = |pair: &Pair| if rendered { pair.rendered_n } else { pair.measured_n };
+        // A line for each time in which the measured force was known.
+        for run in pairs.chunk_by(|before, after| after.t_s - before.t_s < GAP_S) {
+            let points = run.iter().map(|pair| view.place(&force_n(pair).cast())).collect();
+            painter.line(points, Stroke::new(width, colour.gamma_multiply(0.75)));
+        }
+        // The newest sample, or the one at the cursor of a trace, if the force was known then.
+        let at_s = cursor_s.unwrap_or(now_s);
+        let pointed_at = pairs.iter().min_by(|a, b| (a.t_s - at_s).abs().total_cmp(&(b.t_s - at_s).abs()));
+        if let Some(pair) = pointed_at.filter(|pair| (pair.t_s - at_s).abs() < GAP_S) {
             painter.circle_filled(view.place(&force_n(pair).cast()), 4.5, colour);
         }
     }
-    if let (Some(ellipsoid), Some(pair)) = (ellipsoid, pairs().next_back()) {
+    if let (Some(ellipsoid), Some(pair)) = (ellipsoid, pairs.last()) {
         rings(&painter.with_clip_rect(place), &view, &pair.measured_n.cast(), &ellipsoid);
     }
     let at = pos2(rect.left() + 10.0, rect.bottom() - CAPTION + 4.0);

@@ -10,7 +10,7 @@ use egui_plot::{
 use nima_machine::rig::Side;
 
 use super::{
-    axis::{marks, near_end, plain, signed},
+    axis::{marks, near_end, plain, signed_n},
     forces_state::{ForcesState, LEAST_RANGE_N},
 };
 use crate::console::{
@@ -21,7 +21,7 @@ use crate::console::{
     text, theme,
     widgets::{at_the_right, describe, force_sign, small, still, width_of},
 };
-use crate::words::side_word;
+use crate::words::{newtons_read, side_word};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// Additional height of the lowest plot, which has the time axis.
@@ -73,25 +73,27 @@ pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[
 /// The forces along an axis at the end of this time, and the largest in it.
 fn summary(history: &History, axis: usize, (from_s, to_s): (f64, f64)) -> String {
     let both = [axis, axis + 3].map(|channel| {
-        let now_n = history.value_at(channel, to_s.min(history.latest_s())).unwrap_or_default();
-        let most_n = history.extent(&[channel], (from_s, to_s)).map_or(0.0, |(low, high)| high.max(-low));
-        (signed(now_n), most_n)
+        let now_n = history.value_at(channel, to_s.min(history.latest_s()));
+        let most_n = history.extent(&[channel], (from_s, to_s)).map(|(low, high)| high.max(-low));
+        [signed_n(now_n), newtons_read(most_n, 1)]
     });
     text::forces::summary(both, to_s - from_s)
 }
 
 /// Values at the cursor of another plot, in the corner of this one.
 fn read_at(ui: &Ui, history: &History, axis: usize, (now_s, at_s): (f64, f64), rect: Rect) {
-    let [measured, rendered] = [axis, axis + 3].map(|channel| history.value_at(channel, now_s + at_s));
-    let (Some(measured), Some(rendered)) = (measured, rendered) else { return };
+    let both_n = [axis, axis + 3].map(|channel| history.value_at(channel, now_s + at_s));
+    if both_n == [None; 2] {
+        return;
+    }
+    let [measured, rendered] = both_n.map(signed_n);
     let corner = rect.right_top() + vec2(-8.0, 4.0);
-    let told = text::forces::at_cursor(AXES[axis], &signed(measured), &signed(rendered));
+    let told = text::forces::at_cursor(AXES[axis], &measured, &rendered);
     let place = Rect::from_min_max(corner - vec2(160.0, 0.0), corner + vec2(0.0, 16.0));
     ui.interact(place, ui.scope_id().with(("cursor", axis)), Sense::hover())
         .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &told));
     let mut right = corner.x;
-    for (value_n, colour) in [(rendered, theme::now().rendered), (measured, theme::now().measured)] {
-        let words = format!("{} N", signed(value_n));
+    for (words, colour) in [(rendered, theme::now().rendered), (measured, theme::now().measured)] {
         let place = ui.painter().text(pos2(right, corner.y), Align2::RIGHT_TOP, words, theme::strong(13.0), colour);
         right = place.left() - 10.0;
     }
@@ -240,9 +242,9 @@ fn plot_ui(
 }
 
 fn readout(history: &History, axis: usize, now_s: f64, at_s: f64) -> Option<String> {
-    let measured = history.value_at(axis, now_s + at_s)?;
-    let rendered = history.value_at(axis + 3, now_s + at_s)?;
-    Some(text::forces::before_now(-at_s, AXES[axis], &signed(measured), &signed(rendered)))
+    let both_n = [axis, axis + 3].map(|channel| history.value_at(channel, now_s + at_s));
+    let [measured, rendered] = both_n.map(signed_n);
+    (both_n != [None; 2]).then(|| text::forces::before_now(-at_s, AXES[axis], &measured, &rendered))
 }
 
 fn interact(ui: &Ui, state: &mut ForcesState, plot: &PlotResponse<()>) {

@@ -3,7 +3,7 @@
 use egui::{Button, Color32, Label, RichText, TextStyle, Ui, vec2};
 use nima_core::safety::{EnergyMode, GATES, Gate as Which, Reason};
 use nima_machine::{
-    messages::{Fault, LoopState},
+    messages::{Fault, ForceSource, LoopState},
     rig::Side,
 };
 
@@ -61,28 +61,37 @@ pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
 
 /// The summary: the first closed gate, or that nothing is wrong.
 fn answer(live: &Live, side: Side) -> String {
-    why_no_force(live, side).unwrap_or_else(|| match live.figures {
-        figures if figures.measured_n[side.index()] < CONTACT_N => text::gates::FREE_MOTION.get().to_owned(),
-        figures => text::gates::rendered(figures.rendered_n[side.index()]),
+    let is_free = live.figures.measured_n[side.index()].is_none_or(|measured_n| measured_n < CONTACT_N);
+    why_no_force(live, side).unwrap_or_else(|| {
+        if is_free {
+            text::gates::FREE_MOTION.get().to_owned()
+        } else {
+            text::gates::rendered(live.figures.rendered_n[side.index()])
+        }
     })
 }
 
 /// Why this hand gets no force, or less than it should; `None` if nothing is wrong.
 pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
     let (gates, hand) = (&live.gates[side.index()], side.index());
-    let (measured_n, rendered_n) = (live.figures.measured_n[hand], live.figures.rendered_n[hand]);
+    let rendered_n = live.figures.rendered_n[hand];
     let withheld_n = gates.withheld_n.get();
-    let words = match live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state) {
+    let Some(tick) = live.tick_of(side) else { return Some(text::gates::NONE_STARTING.get().to_owned()) };
+    let source = tick.force.source;
+    let words = match tick.state {
         LoopState::Disconnected => text::gates::NONE_DEVICE_MISSING.get(),
-        LoopState::Idle => text::gates::NONE_IDLE.get(),
+        LoopState::Idle => return Some(why_idle(live, source)),
         LoopState::Ready => text::gates::NONE_GETTING_READY.get(),
         LoopState::Clutched => text::gates::NONE_CLUTCH.get(),
         LoopState::Stopped => text::gates::NONE_STOPPED.get(),
         LoopState::Faulted(Fault::OtherArm) => text::gates::NONE_OTHER_ARM.get(),
         LoopState::Faulted(_) => text::gates::NONE_FAULT.get(),
+        LoopState::Engaged if !source.is_known() => return Some(text::gates::none_unknown(source.words())),
         LoopState::Engaged if gates.closed(Which::Validity) => text::gates::NONE_INVALID.get(),
         LoopState::Engaged if gates.closed(Which::Age) => text::gates::NONE_STALE.get(),
-        LoopState::Engaged if measured_n < CONTACT_N => return None,
+        LoopState::Engaged if live.figures.measured_n[hand].is_none_or(|measured_n| measured_n < CONTACT_N) => {
+            return None;
+        }
         LoopState::Engaged if gates.closed(Which::DeadBand) && withheld_n > 0.05 => {
             return Some(text::gates::withheld_by_dead_band(withheld_n));
         }
@@ -95,6 +104,18 @@ pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
         LoopState::Engaged => return None,
     };
     Some(words.to_owned())
+}
+
+/// Why nothing is engaged: the first cause that is in the way of pressing Engage.
+fn why_idle(live: &Live, source: ForceSource) -> String {
+    if live.is_shown_only() {
+        return text::gates::NONE_IDLE_THEN.get().to_owned();
+    }
+    match live.engage_closed {
+        _ if !source.is_usable() => text::gates::none_unknown(source.words()),
+        Some(why) => text::gates::none_idle_closed(why),
+        None => text::gates::NONE_IDLE.get().to_owned(),
+    }
 }
 
 /// One gate as displayed.
@@ -187,4 +208,81 @@ fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate) {
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(small(&gate.note).font(font)));
     });
     row.response.on_hover_text(format!("{}\n{}", gate.meaning, history(live, side, gate.which)));
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::{config::RigConfig, messages::Tick, rig::SIDES};
+    use nima_world::{Plan, run_virtual, scene::Scene};
+
+    use super::*;
+
+    /// A tick of this scene on the simulated rig at rest, without calibrations.
+    fn idle(scene: &str) -> (Live, Tick) {
+        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
+        let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false };
+        let mut last = None;
+        run_virtual(&plan, 0.1, |tick| {
+            last = Some(*tick);
+            None
+        })
+        .unwrap();
+        (Live::new(rig, scene), last.unwrap())
+    }
+
+    fn told(live: &mut Live, tick: &Tick) -> String {
+        live.replay([].iter(), &[Some(*tick), None]);
+        live.settle(0.1);
+        why_no_force(live, Side::Right).unwrap()
+    }
+
+    #[test]
+    fn press_engage_stands_only_where_it_can_be_pressed() {
+        let (mut live, tick) = idle("peg_transfer");
+        assert_eq!(why_no_force(&live, Side::Right).unwrap(), text::gates::NONE_STARTING.get());
+        assert_eq!(told(&mut live, &tick), text::gates::NONE_IDLE.get());
+        live.engage_closed = Some(text::start::OPEN_DISABLED_HOVER.get());
+        let closed = told(&mut live, &tick);
+        assert!(closed.contains("Close the calibration wizard") && !closed.contains("press Engage"), "{closed}");
+        let mut past = Live::of_past(live.rig.clone(), live.scene.clone());
+        assert_eq!(told(&mut past, &tick), text::gates::NONE_IDLE_THEN.get());
+    }
+
+    #[test]
+    fn a_force_that_is_not_known_is_the_cause_before_all_that_follows_from_it() {
+        let (mut live, tick) = idle("palpation");
+        let told = told(&mut live, &tick);
+        assert!(told.contains("the wrist sensor is not calibrated") && !told.contains("Engage"), "{told}");
+        for source in ForceSource::UNUSABLE {
+            let mut tick = tick;
+            (tick.force.source, tick.state) = (source, LoopState::Engaged);
+            live.replay([].iter(), &[Some(tick), None]);
+            assert!(why_no_force(&live, Side::Right).unwrap().contains(source.words()));
+        }
+    }
+
+    #[test]
+    fn an_unknown_force_is_no_number_on_the_screen_and_a_known_one_is_again() {
+        let (mut live, mut tick) = idle("peg_transfer");
+        let mut show = |live: &mut Live, force_n: Option<f64>| {
+            for _ in 0..200 {
+                tick.t_s += 1e-3;
+                tick.measured_n = nalgebra::Vector3::new(0.0, 0.0, force_n.unwrap_or(f64::NAN));
+                tick.identification.horizon_error_n = [0.25; nima_core::impedance::SLOTS];
+                live.replay([].iter(), &[Some(tick), None]);
+            }
+            live.settle(0.2);
+            tick.t_s
+        };
+        let known_s = show(&mut live, Some(1.5));
+        assert_eq!(live.figures.measured_n, [Some(1.5), None], "there is no left arm");
+        assert!(live.figures.horizon_n.iter().all(Option::is_some));
+        let unknown_s = show(&mut live, None);
+        assert_eq!((live.figures.measured_n, live.figures.horizon_n[0]), ([None; SIDES], None));
+        let history = &live.history[Side::Right.index()];
+        assert_eq!([known_s, unknown_s].map(|t_s| history.value_at(2, t_s - 0.05)), [Some(1.5), None]);
+        assert!(history.value_at(5, unknown_s - 0.05).is_some(), "the force in the hand is known");
+        show(&mut live, Some(0.0));
+        assert!(live.figures.measured_n[0].unwrap() < 1e-9, "zero is a fact again");
+    }
 }

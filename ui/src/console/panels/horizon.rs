@@ -10,7 +10,7 @@ use crate::console::{
     text, theme,
     widgets::{Sign, bar, sign, small},
 };
-use crate::words::{mode_meaning, mode_name, three_digits};
+use crate::words::{mode_meaning, mode_name, newtons_in_three, three_digits};
 
 /// Upper end of the bars, as a multiple of the error of delayed DFR.
 const LONGEST: f64 = 2.5;
@@ -39,15 +39,18 @@ pub fn horizon_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
     trend_ui(ui, live);
 }
 
+/// Mean error of a mode over the last minutes, N; `None` if the force was never known.
+fn mean_n(live: &Live, mode: Mode) -> Option<f64> {
+    let errors_n = live.trend_n.iter().map(|errors_n| errors_n[mode.index()]).filter(|error_n| error_n.is_finite());
+    let (count, sum_n) = errors_n.fold((0.0, 0.0), |(count, sum_n), error_n| (count + 1.0, sum_n + error_n));
+    (count > 0.0).then(|| sum_n / count)
+}
+
 /// Errors of the active mode and of delayed DFR over the last minutes, one point per second.
 fn trend_ui(ui: &mut Ui, live: &Live) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TREND_HEIGHT), Sense::hover());
-    let mean = |mode: Mode| {
-        live.trend_n.iter().map(|errors_n| errors_n[mode.index()]).sum::<f64>() / live.trend_n.len().max(1) as f64
-    };
-    let (ours_n, dfr_n) = (mean(live.mode()), mean(Mode::Dfr));
-    let words =
-        text::horizon::trend(live.trend_n.len(), mode_name(live.mode()), &three_digits(ours_n), &three_digits(dfr_n));
+    let [ours, dfr] = [live.mode(), Mode::Dfr].map(|mode| newtons_in_three(mean_n(live, mode)));
+    let words = text::horizon::trend(live.trend_n.len(), mode_name(live.mode()), &ours, &dfr);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::horizon::trend_name(&words)));
     response.on_hover_text(text::horizon::trend_meaning(&words));
     let painter = ui.painter();
@@ -56,10 +59,15 @@ fn trend_ui(ui: &mut Ui, live: &Live) {
     for (mode, colour) in [(Mode::Dfr, theme::now().reference), (live.mode(), theme::now().rendered)] {
         let points = live.trend_n.iter().rev().enumerate().map(|(age_s, errors_n)| {
             let along = 1.0 - age_s as f32 / (TREND_S - 1) as f32;
-            let up = (errors_n[mode.index()] / highest_n).min(1.0) as f32;
-            egui::pos2(rect.left() + along * rect.width(), rect.bottom() - 2.0 - up * (rect.height() - 4.0))
+            let error_n = Some(errors_n[mode.index()]).filter(|error_n| error_n.is_finite())?;
+            let up = (error_n / highest_n).min(1.0) as f32;
+            let (x, y) = (rect.left() + along * rect.width(), rect.bottom() - 2.0 - up * (rect.height() - 4.0));
+            Some(egui::pos2(x, y))
         });
-        painter.line(points.collect(), egui::Stroke::new(1.5, colour));
+        let points: Vec<_> = points.collect();
+        for run in points.split(Option::is_none) {
+            painter.line(run.iter().flatten().copied().collect(), egui::Stroke::new(1.5, colour));
+        }
     }
     let note = format!("{} N", three_digits(highest_n));
     painter.text(
@@ -79,9 +87,10 @@ fn trend_ui(ui: &mut Ui, live: &Live) {
     );
 }
 
-fn mode_ui(ui: &mut Ui, mode: Mode, error_n: f64, dfr_n: f64, active: bool) {
+fn mode_ui(ui: &mut Ui, mode: Mode, error_n: Option<f64>, dfr_n: Option<f64>, active: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 38.0), Sense::hover());
-    let ratio = if dfr_n > LEAST_N { error_n / dfr_n } else { f64::NAN };
+    let dfr_n = dfr_n.filter(|dfr_n| *dfr_n > LEAST_N);
+    let ratio = error_n.zip(dfr_n).map_or(f64::NAN, |(error_n, dfr_n)| error_n / dfr_n);
     let ratio_text = if mode == Mode::Dfr {
         text::horizon::REFERENCE.get().to_owned()
     } else if ratio.is_finite() {
@@ -89,7 +98,7 @@ fn mode_ui(ui: &mut Ui, mode: Mode, error_n: f64, dfr_n: f64, active: bool) {
     } else {
         String::new()
     };
-    let words = format!("{}: {} N, {ratio_text}", mode_name(mode), three_digits(error_n));
+    let words = format!("{}: {}, {ratio_text}", mode_name(mode), newtons_in_three(error_n));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::horizon::error(&words)));
     response.on_hover_text(format!(
         "{words}{}\n{}",
@@ -103,7 +112,7 @@ fn mode_ui(ui: &mut Ui, mode: Mode, error_n: f64, dfr_n: f64, active: bool) {
     }
     let font = if active { theme::strong(14.0) } else { theme::regular(14.0) };
     painter.text(egui::pos2(rect.left() + 14.0, top), Align2::LEFT_CENTER, mode_name(mode), font.clone(), ink);
-    let number = format!("{} N", three_digits(error_n));
+    let number = newtons_in_three(error_n);
     painter.text(egui::pos2(rect.left() + 200.0, top), Align2::RIGHT_CENTER, number, font, ink);
     painter.text(
         egui::pos2(rect.right(), top),

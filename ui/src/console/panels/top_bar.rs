@@ -85,10 +85,11 @@ pub fn top_bar_ui(
         ui.add_space(10.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let (place, _) = ui.allocate_exact_size(theme::STOP_SIZE, Sense::hover());
-            let blocked = state.past || calibrating && now == LoopState::Idle;
+            let of_past = state.past.then_some(text::past::BLOCKED.get());
+            let closed = if now == LoopState::Idle { of_past.or(live.engage_closed) } else { of_past };
             let next = state.asked == Some(Ask::Release);
-            let ready = since_s >= STEP_WAITS_S && !blocked;
-            step_ui(ui, now, Step { ready, next, wanted: wants_step, past: state.past }, outbox);
+            let ready = since_s >= STEP_WAITS_S && closed.is_none();
+            step_ui(ui, now, Step { ready, next, wanted: wants_step, closed }, outbox);
             // After the step, which is at its left: in the order in which they are read.
             stop_ui(ui, place, now, state.asked == Some(Ask::PressStop), outbox);
             ui.add_space(6.0);
@@ -233,12 +234,12 @@ struct Step {
     next: bool,
     /// What is wanted from elsewhere.
     wanted: Option<Action>,
-    /// The past is on the screen.
-    past: bool,
+    /// Why it cannot be pressed.
+    closed: Option<&'static str>,
 }
 
 /// The button for the next step, beside the stop button and never below it.
-fn step_ui(ui: &mut Ui, state: LoopState, Step { ready, next, wanted, past }: Step, outbox: &mut Outbox) {
+fn step_ui(ui: &mut Ui, state: LoopState, Step { ready, next, wanted, closed }: Step, outbox: &mut Outbox) {
     let (action, command, meaning) = match state {
         LoopState::Idle => (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER.get()),
         LoopState::Stopped => (Action::Release, Command::ReleaseStop, text::top_bar::RELEASE_STOP_HOVER.get()),
@@ -252,7 +253,10 @@ fn step_ui(ui: &mut Ui, state: LoopState, Step { ready, next, wanted, past }: St
     let text = RichText::new(name).font(theme::strong(17.0));
     let button = next_button(text, next).min_size(theme::STOP_SIZE).corner_radius(theme::CORNER);
     let response = ui.add_enabled(ready, button).on_hover_text(meaning);
-    let response = if past { response.on_disabled_hover_text(text::past::BLOCKED.get()) } else { response };
+    let response = match closed {
+        Some(why) => response.on_disabled_hover_text(why),
+        None => response,
+    };
     if response.clicked() || ready && wanted == Some(action) {
         outbox.push(command);
     }

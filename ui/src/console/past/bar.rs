@@ -16,6 +16,7 @@ use crate::console::{
     text, theme,
     widgets::{Sign, fitting_style, sign, weak},
 };
+use crate::words::newtons;
 
 const HEAD: f32 = 54.0;
 const BAR: f32 = 118.0;
@@ -223,7 +224,8 @@ fn point(past: &mut Past, response: Response, strip: Rect, end_s: f64) {
     let lines: Vec<String> = notes.iter().take(6).map(|note| text::past::at(note.t_s, &note.words)).collect();
     let bucket = past.overview.buckets.get((t_s / BUCKET_S) as usize).copied().unwrap_or_default();
     let words = if lines.is_empty() {
-        text::past::largest(t_s, bucket.measured_n, bucket.rendered_n)
+        let measured = newtons(bucket.measured_n.map(f64::from), 2);
+        text::past::largest(t_s, &measured, bucket.rendered_n)
     } else {
         lines.join("\n")
     };
@@ -246,7 +248,8 @@ fn mark(painter: &egui::Painter, strip: Rect, x: f32, kind: LineKind) {
 
 /// The largest forces and the states, a column for each point of the strip.
 fn forces(painter: &egui::Painter, strip: Rect, overview: &Overview, end_s: f64) {
-    let largest_n = overview.buckets.iter().fold(0.5, |most: f32, one| most.max(one.measured_n).max(one.rendered_n));
+    let largest = |most: f32, one: &Bucket| most.max(one.measured_n.unwrap_or_default()).max(one.rendered_n);
+    let largest_n = overview.buckets.iter().fold(0.5, largest);
     let room = strip.height() - STATES - MARKS - 2.0;
     let foot = strip.bottom() - STATES;
     let columns = strip.width() as usize;
@@ -259,10 +262,13 @@ fn forces(painter: &egui::Painter, strip: Rect, overview: &Overview, end_s: f64)
             most.merge(one);
         }
         let x = strip.left() + column as f32 + 0.5;
-        let [measured, rendered] = [most.measured_n, most.rendered_n].map(|force_n| foot - room * force_n / largest_n);
-        painter.vline(x, measured..=foot, Stroke::new(1.0, theme::now().measured.gamma_multiply(0.6)));
+        let top = |force_n: f32| foot - room * force_n / largest_n;
+        if let Some(measured_n) = most.measured_n {
+            painter.vline(x, top(measured_n)..=foot, Stroke::new(1.0, theme::now().measured.gamma_multiply(0.6)));
+        }
         // A line over the measured force, as in the traces.
         if most.rendered_n > 0.0 {
+            let rendered = top(most.rendered_n);
             painter.vline(x, rendered - 1.0..=rendered + 1.0, Stroke::new(1.0, theme::now().rendered));
         }
         if let Some(state) = most.state {

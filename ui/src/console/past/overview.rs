@@ -17,7 +17,8 @@ pub(super) const BUCKET_S: f64 = 0.5;
 /// The largest forces and the state that needs most attention in a short time.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Bucket {
-    pub(super) measured_n: f32,
+    /// `None` where it was never known.
+    pub(super) measured_n: Option<f32>,
     pub(super) rendered_n: f32,
     pub(super) state: Option<LoopState>,
 }
@@ -60,7 +61,8 @@ impl Overview {
         }
         for tick in frame.ticks.iter().flatten() {
             let state = Some(tick.state);
-            let (measured_n, rendered_n) = (tick.measured_n.norm() as f32, tick.rendered_n.norm() as f32);
+            let measured_n = tick.known_n().map(|force_n| force_n.norm() as f32);
+            let rendered_n = tick.rendered_n.norm() as f32;
             self.buckets[place].merge(&Bucket { measured_n, rendered_n, state });
         }
         self.in_force.extend(frame.in_force.iter().map(|(side, number)| (frame.t_s, *side, *number)));
@@ -100,7 +102,7 @@ impl Overview {
 impl Bucket {
     /// `f32::max` leaves out what is not a number.
     pub(super) fn merge(&mut self, other: &Self) {
-        self.measured_n = self.measured_n.max(other.measured_n);
+        self.measured_n = self.measured_n.into_iter().chain(other.measured_n).reduce(f32::max);
         self.rendered_n = self.rendered_n.max(other.rendered_n);
         self.state = self.state.into_iter().chain(other.state).max_by_key(|state| attention(*state));
     }

@@ -13,7 +13,7 @@ use crate::console::{
     text, theme,
     widgets::{bar, fitting, force_sign, small},
 };
-use crate::words::mode_name;
+use crate::words::{mode_name, newtons, newtons_read};
 
 const STRIP: f32 = 176.0;
 const GAIN_WIDTH: f32 = 330.0;
@@ -85,7 +85,7 @@ fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
     let (measured_n, rendered_n) = (live.figures.measured_n[side.index()], live.figures.rendered_n[side.index()]);
     let response = ui.allocate_rect(place, Sense::hover());
     let name = text::common::hand(side_name(side));
-    let words = text::roles::hand(&name, measured_n, rendered_n, ceiling_n);
+    let words = text::roles::hand(&name, &newtons_read(measured_n, 1), rendered_n, ceiling_n);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
     response.on_hover_text(text::roles::BARS_HOVER.get());
     let painter = ui.painter_at(place);
@@ -95,7 +95,9 @@ fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
     let bars = Rect::from_min_max(inner.left_top() + vec2(190.0, 34.0), inner.max);
     let mark = bars.left() + bars.width() / BEYOND_CEILING as f32;
     for (i, (force_n, rendered, colour)) in
-        [(measured_n, false, theme::now().measured), (rendered_n, true, theme::now().rendered)].into_iter().enumerate()
+        [(measured_n, false, theme::now().measured), (Some(rendered_n), true, theme::now().rendered)]
+            .into_iter()
+            .enumerate()
     {
         let y = bars.top() + (0.25 + 0.5 * i as f32) * bars.height();
         force_sign(
@@ -104,10 +106,14 @@ fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
             Rect::from_center_size(pos2(inner.left() + 18.0, y), vec2(36.0, 16.0)),
             rendered,
         );
-        let number = format!("{force_n:.1} N");
-        painter.text(pos2(inner.left() + 172.0, y), Align2::RIGHT_CENTER, number, theme::strong(38.0), colour);
+        let at = pos2(inner.left() + 172.0, y);
+        painter.text(at, Align2::RIGHT_CENTER, newtons(force_n, 1), theme::strong(38.0), colour);
         let groove = Rect::from_center_size(pos2(bars.center().x, y), vec2(bars.width(), 26.0));
-        bar(&painter, groove, force_n / (BEYOND_CEILING * ceiling_n), colour);
+        bar(&painter, groove, force_n.map_or(0.0, |force_n| force_n / (BEYOND_CEILING * ceiling_n)), colour);
+        if force_n.is_none() {
+            let unknown = text::roles::UNKNOWN.get();
+            painter.text(groove.center(), Align2::CENTER_CENTER, unknown, theme::regular(15.0), theme::now().text);
+        }
     }
     painter.vline(mark, bars.top()..=bars.bottom(), egui::Stroke::new(2.5, theme::now().text));
     let words = text::roles::ceiling(ceiling_n);

@@ -237,11 +237,7 @@ mod tests {
     #[test]
     fn every_frame_is_right_handed_and_of_unit_length() {
         let scene = Scene::load("bimanual").unwrap();
-        let pose = stage::Pose {
-            tip_m: Vector3::new(0.0, 0.02, 0.0),
-            measured_n: Vector3::zeros(),
-            rendered_n: Vector3::zeros(),
-        };
+        let pose = stage::Pose { tip_m: Vector3::new(0.0, 0.02, 0.0), measured_n: None, rendered_n: Vector3::zeros() };
         let arm =
             |side, x| Arm { side, trocar_m: Vector3::new(x, -0.06, 0.14), targets_m: vec![], pose, trail_m: vec![] };
         let frames = frames(&scene, &[arm(Side::Right, 0.05), arm(Side::Left, 0.0)]);

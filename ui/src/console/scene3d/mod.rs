@@ -241,13 +241,15 @@ fn arm(live: &Live, side: Side, view: &SceneView) -> Option<Arm> {
     let scene = live.scene.of_side(side)?;
     let finite = |v: Vector3<f64>| v.iter().all(|x| x.is_finite());
     let start_m = view.starts_m[side.index()].unwrap_or_default();
-    let rest = Pose { tip_m: start_m.cast(), measured_n: Vector3::zeros(), rendered_n: Vector3::zeros() };
+    let rest = Pose { tip_m: start_m.cast(), measured_n: None, rendered_n: Vector3::zeros() };
     let pose = live.tick_of(side).filter(|tick| finite(tick.tip_m)).map_or(rest, |tick| Pose {
         tip_m: tick.tip_m.cast(),
-        measured_n: tick.measured_n.cast(),
+        measured_n: tick.known_n().map(|force_n| force_n.cast()),
         rendered_n: tick.rendered_n.cast(),
     });
-    let pose = if view.arrows { pose } else { Pose { tip_m: pose.tip_m, ..rest } };
+    // Hidden forces say nothing, not even that they are unknown.
+    let hidden = Pose { measured_n: Some(Vector3::zeros()), rendered_n: Vector3::zeros(), ..pose };
+    let pose = if view.arrows { pose } else { hidden };
     Some(Arm {
         side,
         trocar_m: scene.trocar_m.cast(),

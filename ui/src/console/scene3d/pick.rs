@@ -30,8 +30,9 @@ fn of_arm(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arm: &Arm, 
     let [measured, rendered] = stage::arrow_bases_m(pose, trocar_m, &camera.right());
     for (name, base_m, force_n) in [
         (text::field::ARROW_MEASURED.get(), measured, pose.measured_n),
-        (text::field::ARROW_RENDERED.get(), rendered, pose.rendered_n),
+        (text::field::ARROW_RENDERED.get(), rendered, Some(pose.rendered_n)),
     ] {
+        let Some(force_n) = force_n else { continue };
         let ends = [at(&base_m), at(&(base_m + force_n * stage::ARROW_M_PER_N))];
         if let ([Some(from), Some(to)], true) = (ends, stage::has_arrow(&force_n))
             && distance(pointer, from, to) < 0.6 * REACH
@@ -84,7 +85,7 @@ mod tests {
     fn arm() -> Arm {
         let pose = stage::Pose {
             tip_m: Vector3::new(0.01, 0.018, -0.004),
-            measured_n: Vector3::new(0.5, 0.0, 2.0),
+            measured_n: Some(Vector3::new(0.5, 0.0, 2.0)),
             rendered_n: Vector3::zeros(),
         };
         let targets_m = vec![Vector3::new(-0.03, 0.02, 0.0)];
@@ -105,7 +106,7 @@ mod tests {
         assert!(at(&arm.targets_m[0]).unwrap().starts_with("Target 1"));
         let scene = Scene::load("peg_transfer").unwrap();
         let [base_m, _] = stage::arrow_bases_m(&arm.pose, &arm.trocar_m, &Camera::of(&scene).right());
-        let force = at(&(base_m + arm.pose.measured_n * 0.5 * stage::ARROW_M_PER_N)).unwrap();
+        let force = at(&(base_m + arm.pose.measured_n.unwrap() * 0.5 * stage::ARROW_M_PER_N)).unwrap();
         assert!(force.contains("2.06 N") && force.contains("x +0.50"), "{force}");
         assert!(at(&arm.trocar_m).unwrap().contains("remote centre"));
     }

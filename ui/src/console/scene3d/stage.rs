@@ -43,8 +43,8 @@ const TRAIL: Paint = Paint(Color32::from_rgb(0xc8, 0xcf, 0xd8), Material::Plain)
 pub struct Pose {
     /// Tip of the instrument, m.
     pub tip_m: Vector3<f32>,
-    /// Force measured at it, N.
-    pub measured_n: Vector3<f32>,
+    /// Force measured at it, N; `None` while it is not known.
+    pub measured_n: Option<Vector3<f32>>,
     /// Force rendered to the hand, N.
     pub rendered_n: Vector3<f32>,
 }
@@ -139,7 +139,7 @@ pub fn build(scene: &Scene, arms: &[Arm], shown: Option<&Shown>, style: Style<'_
     // Front objects first, so that hidden pixels are not shaded.
     for Arm { side, trocar_m, pose, .. } in arms {
         let [measured, rendered] = arrow_bases_m(pose, trocar_m, right);
-        measured_arrow(&mut mesh, measured, &pose.measured_n);
+        pose.measured_n.iter().for_each(|force_n| measured_arrow(&mut mesh, measured, force_n));
         rendered_arrow(&mut mesh, rendered, &pose.rendered_n);
         let tool = shown.and_then(|shown| {
             let jaws = objects::jaws(&mut mesh, scene, shown, *side, &pose.tip_m, &mut shadows);
@@ -292,7 +292,7 @@ mod tests {
     const STYLE: Style<'static> = Style { eye_m: &EYE_M, right: &RIGHT, fine: true, shadows: true };
 
     fn pose(z: f32, force_n: Vector3<f32>) -> Pose {
-        Pose { tip_m: Vector3::new(0.0, 0.018, z), measured_n: force_n, rendered_n: force_n * 0.5 }
+        Pose { tip_m: Vector3::new(0.0, 0.018, z), measured_n: Some(force_n), rendered_n: force_n * 0.5 }
     }
 
     fn arm(pose: Pose) -> Arm {

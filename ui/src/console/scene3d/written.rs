@@ -2,10 +2,13 @@
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, pos2, vec2};
 use nalgebra::Vector3;
-use nima_machine::rig::Side;
+use nima_machine::{messages::Tick, rig::Side};
 
 use super::{Camera, Look, SceneView, stage, stage::Arm, training};
-use crate::console::{live::Live, text, theme, widgets::force_sign};
+use crate::{
+    console::{live::Live, text, theme, widgets::force_sign},
+    words::newtons,
+};
 
 /// Distance up the shaft at which the name of a hand is shown, m: above the numbers of the forces or, without them, low
 /// enough for the endoscope to see it.
@@ -55,14 +58,14 @@ pub(super) fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera
     };
     for (base, force_n, colour, align, shift) in [
         (measured, pose.measured_n, theme::DARK.measured, outside, shift),
-        (rendered, pose.rendered_n, theme::DARK.rendered, Align2::CENTER_BOTTOM, vec2(0.0, -4.0)),
+        (rendered, Some(pose.rendered_n), theme::DARK.rendered, Align2::CENTER_BOTTOM, vec2(0.0, -4.0)),
     ] {
-        let size_n = force_n.norm();
-        if !figures || !(0.15..1e6).contains(&size_n) {
+        let size_n = force_n.map(|force_n| f64::from(force_n.norm()));
+        if !figures || size_n.is_some_and(|size_n| !(0.15..1e6).contains(&size_n)) {
             continue;
         }
-        if let Some(place) = at(base + force_n * stage::ARROW_M_PER_N) {
-            label(painter, place + shift, align, &format!("{size_n:.1} N"), theme::strong(15.0), colour);
+        if let Some(place) = at(base + force_n.unwrap_or_default() * stage::ARROW_M_PER_N) {
+            label(painter, place + shift, align, &newtons(size_n, 1), theme::strong(15.0), colour);
         }
     }
 }
@@ -106,14 +109,14 @@ pub(super) fn readings(painter: &Painter, rect: Rect, live: &Live) {
     painter.rect_filled(plate, theme::CORNER, theme::VEIL);
     let rows = [
         (text::common::MEASURED.get(), figures.measured_n, theme::DARK.measured),
-        (text::common::RENDERED.get(), figures.rendered_n, theme::DARK.rendered),
+        (text::common::RENDERED.get(), figures.rendered_n.map(Some), theme::DARK.rendered),
     ];
     for (i, (name, forces_n, colour)) in rows.into_iter().enumerate() {
         let y = corner.y + 14.0 + 34.0 * i as f32;
         force_sign(painter, &theme::DARK, Rect::from_center_size(pos2(corner.x + 18.0, y), vec2(36.0, 16.0)), i == 1);
         painter.text(pos2(corner.x + 48.0, y), Align2::LEFT_CENTER, name, theme::regular(15.0), theme::DARK.text);
         for (k, side) in sides.iter().enumerate() {
-            let number = format!("{:.2} N", forces_n[side.index()]);
+            let number = newtons(forces_n[side.index()], 2);
             painter.text(pos2(column(k), y), Align2::RIGHT_CENTER, number, theme::strong(25.0), colour);
         }
     }
@@ -123,9 +126,9 @@ pub(super) fn readings(painter: &Painter, rect: Rect, live: &Live) {
     let gauges = Rect::from_min_size(pos2(first, rect.top() + 36.0), vec2(26.0, height));
     for (k, side) in sides.iter().enumerate() {
         let place = gauges.translate(vec2(38.0 * k as f32, 0.0));
-        let (measured_n, rendered_n) =
-            live.tick_of(*side).map_or((0.0, 0.0), |tick| (tick.measured_n.norm(), tick.rendered_n.norm()));
-        gauge(painter, place, measured_n, rendered_n, ceiling_n);
+        let measured_n = live.tick_of(*side).and_then(Tick::known_n).map(|force_n| force_n.norm());
+        let rendered_n = live.tick_of(*side).map_or(0.0, |tick| tick.rendered_n.norm());
+        gauge(painter, place, [measured_n, Some(rendered_n)], ceiling_n);
         if both {
             let over = pos2(column(k), corner.y - 13.0);
             painter.text(over, Align2::RIGHT_CENTER, side_name(*side), theme::regular(15.0), theme::DARK.text_weak);
@@ -139,15 +142,19 @@ pub(super) fn readings(painter: &Painter, rect: Rect, live: &Live) {
     label(painter, at, Align2::RIGHT_CENTER, &words, theme::regular(12.5), theme::DARK.text_weak);
 }
 
-/// A vertical gauge of both forces and the ceiling, in `rect`.
-fn gauge(painter: &Painter, rect: Rect, measured_n: f64, rendered_n: f64, ceiling_n: f64) {
+/// A vertical gauge of measured and rendered force and the ceiling, in `rect`; a force that is not known has the sign for that.
+fn gauge(painter: &Painter, rect: Rect, forces_n: [Option<f64>; 2], ceiling_n: f64) {
     painter.rect_filled(rect, 3.0, Color32::from_black_alpha(120));
     let top_n = ceiling_n * 1.25;
     let y = |force_n: f64| rect.bottom() - rect.height() * (force_n / top_n).clamp(0.0, 1.0) as f32;
     let half = 0.5 * rect.width();
-    for (force_n, left, colour) in
-        [(measured_n, rect.left(), theme::DARK.measured), (rendered_n, rect.left() + half, theme::DARK.rendered)]
-    {
+    let columns = [(rect.left(), theme::DARK.measured), (rect.left() + half, theme::DARK.rendered)];
+    for (force_n, (left, colour)) in forces_n.into_iter().zip(columns) {
+        let Some(force_n) = force_n else {
+            let at = pos2(left + 0.5 * half, rect.bottom() - 2.0);
+            painter.text(at, Align2::CENTER_BOTTOM, newtons(None, 0), theme::strong(15.0), colour);
+            continue;
+        };
         let filled = Rect::from_min_max(pos2(left + 2.0, y(force_n)), pos2(left + half - 2.0, rect.bottom() - 2.0));
         painter.rect_filled(filled, 1.0, colour);
     }

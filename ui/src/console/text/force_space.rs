@@ -20,6 +20,14 @@ pub(in crate::console) fn canvas(words: &str) -> String {
     told!("Force space. {words}", "Kraftraum. {words}")
 }
 
+/// The measured force is not known now; two lines, separated by a semicolon.
+pub(in crate::console) fn unknown(seconds: f64) -> String {
+    told!(
+        "Last {seconds:.0} s; the measured force is unknown now",
+        "Letzte {seconds:.0} s; die gemessene Kraft ist jetzt unbekannt"
+    )
+}
+
 /// Not enough data for the ellipsoid yet; two lines, separated by a semicolon.
 pub(in crate::console) fn too_short(seconds: f64) -> String {
     told!(

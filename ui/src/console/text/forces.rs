@@ -31,11 +31,11 @@ pub(in crate::console) const LAST_TEN_SECONDS_HOVER: Text =
     Text::of("Shows the last ten seconds again", "Zeigt wieder die letzten zehn Sekunden");
 pub(in crate::console) const TIME_AXIS: Text = Text::of("Time before now (s)", "Zeit vor jetzt (s)");
 
-/// Both forces of an axis (signed, N) at the cursor of another plot.
-pub(in crate::console) fn at_cursor(axis: &str, measured_n: &str, rendered_n: &str) -> String {
+/// Both forces of an axis (signed, with their unit) at the cursor of another plot.
+pub(in crate::console) fn at_cursor(axis: &str, measured: &str, rendered: &str) -> String {
     told!(
-        "At the cursor, {axis}: measured {measured_n} N, rendered {rendered_n} N",
-        "Am Zeiger, {axis}: gemessen {measured_n} N, dargestellt {rendered_n} N"
+        "At the cursor, {axis}: measured {measured}, rendered {rendered}",
+        "Am Zeiger, {axis}: gemessen {measured}, dargestellt {rendered}"
     )
 }
 
@@ -44,13 +44,10 @@ pub(in crate::console) fn plot(axis: &str, side: &str) -> String {
     told!("Force along {axis}, {side} hand", "Kraft längs {axis}, Hand {side}")
 }
 
-/// What that plot shows: the force now (signed) and the largest in this time, N, measured and rendered.
-pub(in crate::console) fn summary([measured, rendered]: [(String, f64); 2], seconds: f64) -> String {
-    let told = |(now_n, most_n): (String, f64)| {
-        told!(
-            "{now_n} N now, {most_n:.1} N at most in {seconds:.0} s",
-            "{now_n} N jetzt, höchstens {most_n:.1} N in {seconds:.0} s"
-        )
+/// What that plot shows: the force now (signed) and the largest in this time with their units, measured and rendered.
+pub(in crate::console) fn summary([measured, rendered]: [[String; 2]; 2], seconds: f64) -> String {
+    let told = |[now, most]: [String; 2]| {
+        told!("{now} now, {most} at most in {seconds:.0} s", "{now} jetzt, höchstens {most} in {seconds:.0} s")
     };
     told!("Measured {}; rendered {}", "Gemessen {}; dargestellt {}", told(measured), told(rendered))
 }
@@ -60,11 +57,11 @@ pub(in crate::console) fn forces_of(side: &str) -> String {
     told!("Shows the forces of the {side} hand", "Zeigt die Kräfte der Hand {side}")
 }
 
-/// Both forces of an axis (signed, N) this many seconds ago.
-pub(in crate::console) fn before_now(ago_s: f64, axis: &str, measured_n: &str, rendered_n: &str) -> String {
+/// Both forces of an axis (signed, with their unit) this many seconds ago.
+pub(in crate::console) fn before_now(ago_s: f64, axis: &str, measured: &str, rendered: &str) -> String {
     told!(
-        "{ago_s:.2} s before now\nmeasured {axis} {measured_n} N\nrendered {axis} {rendered_n} N",
-        "{ago_s:.2} s vor jetzt\ngemessen {axis} {measured_n} N\ndargestellt {axis} {rendered_n} N"
+        "{ago_s:.2} s before now\nmeasured {axis} {measured}\nrendered {axis} {rendered}",
+        "{ago_s:.2} s vor jetzt\ngemessen {axis} {measured}\ndargestellt {axis} {rendered}"
     )
 }
 

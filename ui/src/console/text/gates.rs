@@ -10,6 +10,10 @@ pub(in crate::console) const NONE_DEVICE_MISSING: Text =
     Text::of("No force: a device is missing (see Devices)", "Keine Kraft: ein Gerät fehlt (siehe Geräte)");
 pub(in crate::console) const NONE_IDLE: Text =
     Text::of("No force: the loop is idle, press Engage", "Keine Kraft: Regelung im Leerlauf, Koppeln drücken");
+pub(in crate::console) const NONE_STARTING: Text =
+    Text::of("No force: the loop has not started yet", "Keine Kraft: Regelung noch nicht gestartet");
+pub(in crate::console) const NONE_IDLE_THEN: Text =
+    Text::of("No force: the loop was idle", "Keine Kraft: Regelung war im Leerlauf");
 pub(in crate::console) const NONE_GETTING_READY: Text =
     Text::of("No force yet: the drives are switching on", "Noch keine Kraft: Antriebe schalten ein");
 pub(in crate::console) const NONE_CLUTCH: Text = Text::of(
@@ -54,6 +58,16 @@ pub(in crate::console) const ENERGY_OFF: Text = Text::of("off", "aus");
 /// Switch: gates of which side.
 pub(in crate::console) fn gates_of(side: &str) -> String {
     told!("Shows why there is no force in the {side} hand", "Zeigt, warum in der Hand {side} keine Kraft ist")
+}
+
+/// Summary: no force, because that at the tip is not known; what its source is, or why it is unknown.
+pub(in crate::console) fn none_unknown(source: &str) -> String {
+    told!("No force; tip force: {source}", "Keine Kraft; Kraft an der Spitze: {source}")
+}
+
+/// Summary: no force, and why the loop cannot be engaged; a sentence.
+pub(in crate::console) fn none_idle_closed(why: &str) -> String {
+    told!("No force: the loop is idle. {why}", "Keine Kraft: Regelung im Leerlauf. {why}")
 }
 
 /// Summary: a force is rendered.

@@ -21,11 +21,11 @@ pub(in crate::console) fn ahead(delay_ms: f64) -> String {
     )
 }
 
-/// Mean errors of the two curves of the trend (N).
-pub(in crate::console) fn trend(seconds: usize, mode: &str, error_n: &str, dfr_n: &str) -> String {
+/// Mean errors of the two curves of the trend, with their unit.
+pub(in crate::console) fn trend(seconds: usize, mode: &str, error: &str, dfr: &str) -> String {
     told!(
-        "Last {seconds} s: {mode} {error_n} N, delayed DFR {dfr_n} N",
-        "Letzte {seconds} s: {mode} {error_n} N, verzögerte DFR {dfr_n} N"
+        "Last {seconds} s: {mode} {error}, delayed DFR {dfr}",
+        "Letzte {seconds} s: {mode} {error}, verzögerte DFR {dfr}"
     )
 }
 

@@ -185,11 +185,11 @@ pub(in crate::console) fn half(name: &str, position: &str) -> String {
     format!("{name}  \u{b7}  {position}")
 }
 
-/// Largest forces in a short time, N.
-pub(in crate::console) fn largest(t_s: f64, measured_n: f32, rendered_n: f32) -> String {
+/// Largest forces in a short time: the measured one with its unit or the sign for one that is not known, and the rendered one, N.
+pub(in crate::console) fn largest(t_s: f64, measured: &str, rendered_n: f32) -> String {
     told!(
-        "{}\nLargest forces: measured {measured_n:.2} N, rendered {rendered_n:.2} N",
-        "{}\nGrößte Kräfte: gemessen {measured_n:.2} N, dargestellt {rendered_n:.2} N",
+        "{}\nLargest forces: measured {measured}, rendered {rendered_n:.2} N",
+        "{}\nGrößte Kräfte: gemessen {measured}, dargestellt {rendered_n:.2} N",
         short_clock(t_s)
     )
 }

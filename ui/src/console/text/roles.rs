@@ -189,11 +189,14 @@ pub(in crate::console) fn meaning_and_key(meaning: &str, key: &str) -> String {
     told!("{meaning}\nKey {key}", "{meaning}\nTaste {key}")
 }
 
-/// Both forces of a hand and the ceiling, N.
-pub(in crate::console) fn hand(name: &str, measured_n: f64, rendered_n: f64, ceiling_n: f64) -> String {
+/// In the place of a bar.
+pub(in crate::console) const UNKNOWN: Text = Text::of("unknown", "unbekannt");
+
+/// Both forces of a hand, the measured one with its unit or "unknown", and the ceiling, N.
+pub(in crate::console) fn hand(name: &str, measured: &str, rendered_n: f64, ceiling_n: f64) -> String {
     told!(
-        "{name}: measured {measured_n:.1} N, rendered {rendered_n:.1} N, ceiling {ceiling_n:.0} N",
-        "{name}: gemessen {measured_n:.1} N, dargestellt {rendered_n:.1} N, Höchstkraft {ceiling_n:.0} N"
+        "{name}: measured {measured}, rendered {rendered_n:.1} N, ceiling {ceiling_n:.0} N",
+        "{name}: gemessen {measured}, dargestellt {rendered_n:.1} N, Höchstkraft {ceiling_n:.0} N"
     )
 }
 

@@ -32,6 +32,11 @@ pub(super) fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
     line_ui(ui, what, colour, &format!("{name}: {words}"));
 }
 
+/// A check that waits for an earlier one.
+pub(super) fn waiting_line(ui: &mut Ui, name: &str) {
+    line_ui(ui, Sign::Ring, theme::now().at_rest, &format!("{name}: {}", text::wizards::WAITING.get()));
+}
+
 fn line_ui(ui: &mut Ui, what: Sign, colour: egui::Color32, words: &str) {
     ui.horizontal_wrapped(|ui| {
         sign_ui(ui, what, 6.0, colour);

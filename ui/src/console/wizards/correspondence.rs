@@ -13,7 +13,7 @@ use nima_machine::{messages::Tick, rig::Prompt};
 
 use super::{
     Binding, Saving,
-    checks::{check_line, switch_ui},
+    checks::{check_line, switch_ui, waiting_line},
     frame::{Frame, Step, Wish, Wizard},
     pictures::{progress, sphere_picture},
     report::{Report, result_ui, verdict_line},
@@ -118,17 +118,25 @@ impl CorrespondenceWizard {
         card(ui, text::correspondence::CHECKS_TITLE.get(), text::correspondence::CHECKS_HOVER.get(), |ui| {
             ui.label(text::correspondence::CHECKS_TASK.get());
             ui.add_space(6.0);
-            let Sources { gravity, tissue, chain } = self.sources.unwrap_or_default();
-            check_line(ui, text::correspondence::CHECK_WRIST.get(), gravity, Missing::WristForce.words());
-            check_line(ui, text::correspondence::CHECK_TISSUE.get(), tissue, Missing::TissueForce.words());
             let tracker = if self.session.settings().chain {
                 text::correspondence::CHECK_TRACKER.get()
             } else {
                 text::correspondence::CHECK_TRACKER_UNUSED.get()
             };
-            check_line(ui, tracker, chain || !self.session.settings().chain, Missing::Chain.words());
+            let names = [text::correspondence::CHECK_TISSUE.get(), tracker, text::correspondence::CHECK_REST.get()];
+            let Some(Sources { gravity, tissue, chain }) = self.sources else {
+                let why = text::correspondence::NEEDS_WRIST_SENSOR.get();
+                check_line(ui, text::correspondence::CHECK_WRIST.get(), false, why);
+                // Without the wrist sensor nothing is known of the others.
+                names.into_iter().for_each(|name| waiting_line(ui, name));
+                return;
+            };
             let (_, words) = phase_words(&self.session.phase());
-            check_line(ui, text::correspondence::CHECK_REST.get(), self.may_push().is_ok(), &words);
+            let rests = self.may_push().is_ok();
+            check_line(ui, text::correspondence::CHECK_WRIST.get(), gravity, Missing::WristForce.words());
+            check_line(ui, names[0], tissue, Missing::TissueForce.words());
+            check_line(ui, names[1], chain || !self.session.settings().chain, Missing::Chain.words());
+            check_line(ui, names[2], rests, &words);
         });
         card(ui, text::wizards::OPTIONS_TITLE.get(), text::wizards::OPTIONS_HOVER.get(), |ui| {
             let SessionSettings { chain, options, .. } = *self.session.settings();

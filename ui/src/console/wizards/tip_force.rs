@@ -165,13 +165,6 @@ impl TipForceWizard {
         self.recording.as_ref().and_then(|take| take.recorder.coverage().next())
     }
 
-    fn may_record(&self, binding: &Binding) -> Result<(), &'static str> {
-        if binding.correspondence.is_none() {
-            return Err(text::tip_force::NEEDS_CORRESPONDENCE.get());
-        }
-        if self.sources.iter().all(|there| *there) { Ok(()) } else { Err(text::wizards::NEEDS_CHECKS.get()) }
-    }
-
     /// Handles results of background work, and a change of the rig.
     fn take_in(&mut self, binding: &Binding) {
         if self.recorded_with.as_ref().is_some_and(|with| !with.fits(binding)) {

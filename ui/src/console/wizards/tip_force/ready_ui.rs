@@ -4,7 +4,10 @@ use egui::Ui;
 use nima_machine::messages::Tick;
 
 use super::{
-    super::{Binding, checks::check_line},
+    super::{
+        Binding,
+        checks::{check_line, waiting_line},
+    },
     TipForceWizard,
 };
 use crate::console::{text, widgets::card};
@@ -31,20 +34,38 @@ pub(super) fn sources(tick: &Tick) -> Sources {
 }
 
 impl TipForceWizard {
+    /// Whether the wrist sensor delivers and has told its serial number.
+    pub(super) const fn has_sensor(&self, binding: &Binding) -> bool {
+        self.sources[0] && !binding.sensor.is_empty()
+    }
+
+    /// Whether a recording can begin; the first reason if not.
+    pub(super) fn may_record(&self, binding: &Binding) -> Result<(), &'static str> {
+        if !self.has_sensor(binding) {
+            return Err(text::correspondence::NEEDS_WRIST_SENSOR.get());
+        }
+        if binding.correspondence.is_none() {
+            return Err(text::tip_force::NEEDS_CORRESPONDENCE.get());
+        }
+        if self.sources.iter().all(|there| *there) { Ok(()) } else { Err(text::wizards::NEEDS_CHECKS.get()) }
+    }
+
     pub(super) fn ready_ui(&self, ui: &mut Ui, binding: &Binding) {
         card(ui, text::tip_force::CHECKS_TITLE.get(), text::tip_force::CHECKS_HOVER.get(), |ui| {
             ui.label(text::tip_force::CHECKS_TASK.get());
             ui.add_space(6.0);
-            for ((name, otherwise), there) in SOURCES.into_iter().zip(self.sources) {
-                check_line(ui, name.get(), there, otherwise.get());
-            }
             let known = binding.correspondence.is_some();
-            check_line(
-                ui,
-                text::tip_force::SOURCE_CORRESPONDENCE.get(),
-                known,
-                text::tip_force::SOURCE_NO_CORRESPONDENCE.get(),
-            );
+            let correspondence = (text::tip_force::SOURCE_CORRESPONDENCE, text::tip_force::SOURCE_NO_CORRESPONDENCE);
+            let lines = SOURCES.into_iter().zip(self.sources).chain([(correspondence, known)]);
+            // Without the wrist sensor nothing is known of the others, nor which calibrations are those of this arm.
+            let has_sensor = self.has_sensor(binding);
+            for (place, ((name, otherwise), there)) in lines.enumerate() {
+                match (place, has_sensor) {
+                    (0, _) => check_line(ui, name.get(), has_sensor, otherwise.get()),
+                    (_, true) => check_line(ui, name.get(), there, otherwise.get()),
+                    (_, false) => waiting_line(ui, name.get()),
+                }
+            }
         });
     }
 }

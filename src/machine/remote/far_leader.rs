@@ -1,7 +1,11 @@
 //! The follower's rig: arm and sensor here, the hand at the other end of a network.
 
 use nalgebra::Vector3;
-use nima_core::{impedance::Packed, kinematics::Hand, safety::{ChainSettings, RawReadings}};
+use nima_core::{
+    impedance::Packed,
+    kinematics::Hand,
+    safety::{ChainSettings, RawReadings},
+};
 
 use super::{
     GONE_AFTER_S, MESSAGE_MAX, Wire,

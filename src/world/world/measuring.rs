@@ -64,7 +64,9 @@ impl World {
     /// What the devices would read. This world's arm has no joints.
     fn raw(&self, leader_m: &Vector3<f64>, sensed: &Sensed) -> RawReadings {
         let parts = match sensed {
-            Sensed::AtTip(force_n) | Sensed::FarEnd(Identified { force_n, .. }) => [Some((*force_n).into()), None, None],
+            Sensed::AtTip(force_n) | Sensed::FarEnd(Identified { force_n, .. }) => {
+                [Some((*force_n).into()), None, None]
+            }
             Sensed::AtWrist(sample) => [
                 Some(sample.raw.force_n.into()),
                 Some(sample.raw.torque_nm.into()),

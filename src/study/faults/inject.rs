@@ -223,7 +223,7 @@ impl Faulty {
         self.truth = inputs;
         let seen = seen.and_then(|seen| situation.of(&seen));
         let altered = seen.and_then(|seen| self.for_loop(&seen, &to_rig[FAULTY]));
-        let given = self.rig.give(now_s, altered, self.fault, self.age);
+        let given = self.rig.give(now_s, altered.as_ref(), self.fault, self.age);
         inputs[FAULTY] = given.filter(|_| situation.connected);
         if let (Some(given), true) = (&mut inputs[FAULTY], self.rig.is_arm()) {
             given.powered &= situation.powered;

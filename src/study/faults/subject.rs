@@ -108,13 +108,13 @@ impl Subject {
     pub(super) fn give(
         &mut self,
         now_s: f64,
-        altered: Option<Inputs>,
+        altered: Option<&Inputs>,
         fault: Option<Kind>,
         age: u32,
     ) -> Option<Inputs> {
         match self {
-            Self::Simulated(_) => altered.map(|inputs| Inputs { raw: raw_of(&inputs), ..inputs }),
-            Self::Arm(arm) => arm.give(now_s, altered.as_ref(), fault, age),
+            Self::Simulated(_) => altered.map(|inputs| Inputs { raw: raw_of(inputs), ..*inputs }),
+            Self::Arm(arm) => arm.give(now_s, altered, fault, age),
         }
     }
 }

@@ -10,6 +10,7 @@ mod external;
 mod frames;
 mod haply;
 mod killed;
+mod raw_readings;
 mod rig_diagnosis;
 mod sides;
 mod sides_ready;

@@ -6,6 +6,7 @@ use nima_core::{
     frames::{Wrench, WristSample},
     impedance::{Mode, ModeSet, PACKED_MAX, Packed, SLOTS},
     kinematics::{Hand, StartError},
+    safety::{Raw, RawReadings},
     tip_force::{Fallback, Unsure},
 };
 use nima_devices::{Loss, Standing};
@@ -126,14 +127,23 @@ fn identified() -> BoxedStrategy<Identified> {
         .boxed()
 }
 
+fn reading<const N: usize>() -> BoxedStrategy<Raw<N>> {
+    let channels = proptest::collection::vec(number(), N);
+    (channels, maybe(number()), number())
+        .prop_map(|(channels, device_s, arrival_s)| Raw { channels: channels.try_into().unwrap(), device_s, arrival_s })
+        .boxed()
+}
+
 fn inputs() -> BoxedStrategy<Inputs> {
     let hand = (vector(), maybe(rotation()), maybe(number()), maybe(number()));
     let tip = (vector(), maybe(rotation()), sensed());
     let view = prop_oneof![Just(View::Fixed), Just(View::Unseen), rotation().prop_map(View::Seen)];
     let age = (number(), number());
     let rest = (view, frames(), any::<bool>(), maybe(any::<bool>()), any::<bool>(), maybe(obstacle()), age);
-    (hand, tip, rest)
-        .prop_map(|(hand, tip, rest)| {
+    let raw = (maybe(reading()), maybe(reading()), maybe(reading()));
+    let raw = raw.prop_map(|(handle, arm, sensor)| RawReadings { handle, arm, sensor });
+    (hand, tip, rest, raw)
+        .prop_map(|(hand, tip, rest, raw)| {
             let (position_m, orientation, gripper_rad, grip_n) = hand;
             let (tip_m, world_from_jaws, sensed) = tip;
             let (view, frames, clutch, presence, powered, obstacle, (age_s, silent_s)) = rest;
@@ -151,6 +161,7 @@ fn inputs() -> BoxedStrategy<Inputs> {
                 obstacle,
                 age_s,
                 silent_s,
+                raw,
             }
         })
         .boxed()

@@ -6,15 +6,16 @@ use nima_core::impedance::Mode;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, Fault, LoopState, Tick},
-    rig::{Inputs, Outputs, Rig as _, SIDES, Sensed, Side},
+    rig::{Inputs, Outputs, SIDES, Sensed, Side},
     teleop::{Calibrations, Loop, Timing},
 };
-use nima_world::{Worlds, scene::Scene};
+use nima_world::scene::Scene;
 
 use super::{
     FaultsError, HARMLESS_N, Kind, Part, Place, SensorAt,
     impaired_link::{ImpairedLink, Impairment},
     inject::{FAULTY, Faulty, force_of},
+    subject::Subject,
 };
 use crate::validation::experiment;
 
@@ -35,7 +36,7 @@ const NEAR_M: f64 = 5e-4;
 /// World, machine and twin.
 #[derive(Clone, Debug)]
 pub(super) struct Bench {
-    pub(super) rig: Faulty<Worlds>,
+    pub(super) rig: Faulty,
     pub(super) machine: Loop<ImpairedLink>,
     pub(super) twin: Loop<ImpairedLink>,
     outputs: [Outputs; SIDES],
@@ -76,13 +77,10 @@ impl Bench {
         config.gates.static_hold = true;
         let scene = Scene::load(sensor.scene())?;
         let scene = Scene { seed: scene.seed + 1000 * seed, ..scene };
-        let gravity = match sensor {
-            SensorAt::Tip => None,
-            SensorAt::Wrist => Some(experiment::gravity(1)?),
-        };
+        let gravity = if sensor.is_at_wrist() { Some(experiment::gravity(1)?) } else { None };
         let known = Calibrations { gravity, ..Calibrations::default() };
         let machine = Loop::over(&config, &[Some(known), None], ImpairedLink::new)?;
-        let rig = Faulty::new(Worlds::new(&scene, config.rate_hz));
+        let rig = Faulty::new(Subject::new(sensor, &config, &scene)?);
         let outputs = [Outputs::SAFE; SIDES];
         Ok(Self {
             rig,
@@ -171,7 +169,7 @@ impl Bench {
         let now_s = f64::from(self.tick) * PERIOD_S;
         let timing = self.timing(now_s);
         let wanted = self.outputs[FAULTY];
-        self.rig.write(now_s, &self.outputs);
+        self.rig.write(&self.outputs);
         let inputs = self.rig.read(now_s);
         let (truth, applied) = (self.rig.truth, self.rig.applied);
         let mut device_lost = false;

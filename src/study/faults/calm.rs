@@ -1,5 +1,6 @@
 //! Fault-free machines at ordinary work, which must report nothing.
 
+use nima_core::impedance::Mode;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, LoopState},
@@ -8,7 +9,7 @@ use nima_machine::{
 use nima_world::{Plan, run_virtual, scene::Scene};
 use serde::Serialize;
 
-use super::{FaultsError, MODES};
+use super::{FaultsError, MODES, SensorAt, bench::Bench};
 use crate::validation::experiment;
 
 const SCENES: [&str; 4] = ["peg_transfer", "palpation", "free_motion", "bimanual"];
@@ -64,5 +65,31 @@ pub(super) fn runs(seconds: f64) -> Result<Calm, FaultsError> {
             }
         }
     }
+    for sensor in SensorAt::ON_ARMS {
+        for mode in MODES {
+            on_arm(&mut calm, sensor, mode, seconds)?;
+        }
+    }
     Ok(calm)
+}
+
+/// A rig with an arm, whose readings take the way of a rig of devices.
+fn on_arm(calm: &mut Calm, sensor: SensorAt, mode: Mode, seconds: f64) -> Result<(), FaultsError> {
+    let mut bench = Bench::new(sensor, mode, calm.runs as u64)?;
+    bench.obey(Command::Engage);
+    let ticks = (seconds * 1e3) as u32;
+    for tick in 0..ticks {
+        if let Some(fault) = bench.step().and_then(|step| step.raised) {
+            let t_s = f64::from(tick) * 1e-3;
+            calm.false_alarms.push(format!("{}, {mode}: {fault:?} at {t_s:.3} s", sensor.word()));
+            break;
+        }
+    }
+    if bench.state() != LoopState::Engaged && calm.false_alarms.is_empty() {
+        let state = format!("{:?}", bench.state());
+        return Err(FaultsError::NotReached { place: sensor.word(), state });
+    }
+    calm.runs += 1;
+    calm.seconds += seconds;
+    Ok(())
 }

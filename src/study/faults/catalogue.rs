@@ -38,6 +38,7 @@ pub enum Kind {
     ForceSilent,
     ForceGaps,
     ForceFrozen,
+    ForceBlock,
     ForceAxisFrozen,
     ForceDead,
     ForceFalls,
@@ -68,6 +69,7 @@ pub enum Kind {
     OrientationMissing,
     OrientationJump,
     HandFrozen,
+    HandBlock,
     HandJump,
     HandSpike,
     HandSign,
@@ -80,6 +82,7 @@ pub enum Kind {
     HandleInverted,
     HandleKeepsForce,
     TipFrozen,
+    TipBlock,
     TipJump,
     TipDrift,
     TipSign,
@@ -116,15 +119,15 @@ use Kind as K;
 impl Kind {
     /// All of them, part by part.
     #[rustfmt::skip]
-    pub const ALL: [Self; 74] = [
-        K::ForceSilent, K::ForceGaps, K::ForceFrozen, K::ForceAxisFrozen, K::ForceDead, K::ForceFalls, K::ForceStep,
+    pub const ALL: [Self; 77] = [
+        K::ForceSilent, K::ForceGaps, K::ForceFrozen, K::ForceBlock, K::ForceAxisFrozen, K::ForceDead, K::ForceFalls, K::ForceStep,
         K::ForceSmallStep, K::ForceDrift, K::ForceSlowDrift, K::ForceSign, K::ForceAxes, K::ForceSpike, K::ForceSpikes, K::ForceSaturated,
         K::ForceNoise, K::ForceLate, K::ForceLateTold, K::ForceDoubled, K::ForceReordered, K::ForceNan, K::ForceInfinite,
         K::ForceAbsurd, K::ForceGain, K::ForceLost,
         K::ImuStops, K::ImuFrozen, K::ImuSign, K::ImuNan, K::ImuDead, K::OrientationMissing, K::OrientationJump,
-        K::HandFrozen, K::HandJump, K::HandSpike, K::HandSign, K::HandAxes, K::HandNan, K::HandNoise, K::HandLate,
+        K::HandFrozen, K::HandBlock, K::HandJump, K::HandSpike, K::HandSign, K::HandAxes, K::HandNan, K::HandNoise, K::HandLate,
         K::HandDrift, K::HandleWithoutForce, K::HandleInverted, K::HandleKeepsForce,
-        K::TipFrozen, K::TipJump, K::TipDrift, K::TipSign, K::TipNan, K::ArmIgnores, K::ArmAxes, K::DrivesOff,
+        K::TipFrozen, K::TipBlock, K::TipJump, K::TipDrift, K::TipSign, K::TipNan, K::ArmIgnores, K::ArmAxes, K::DrivesOff,
         K::PedalDown, K::PedalUp, K::PedalBounces, K::HandAbsent,
         K::ClockForward, K::ClockBackward, K::ClockStops, K::ClockSlow, K::ClockNan, K::PeriodsMissed, K::FewPeriodsMissed,
         K::LinkSilent, K::LinkHalf, K::LinkLate, K::LinkJitter, K::LinkSwaps, K::LinkDoubles, K::LinkPoisoned,
@@ -143,6 +146,7 @@ impl Kind {
             | K::OrientationMissing
             | K::OrientationJump => Part::Orientation,
             K::HandFrozen
+            | K::HandBlock
             | K::HandJump
             | K::HandSpike
             | K::HandSign
@@ -155,6 +159,7 @@ impl Kind {
             | K::HandleInverted
             | K::HandleKeepsForce => Part::Handle,
             K::TipFrozen
+            | K::TipBlock
             | K::TipJump
             | K::TipDrift
             | K::TipSign
@@ -183,6 +188,21 @@ impl Kind {
         }
     }
 
+    /// Readings of a block that is told again and again.
+    pub(super) const BLOCK: usize = 32;
+
+    /// Whether it is in a device's readings or in what a device does: then it is tried on rigs with an arm too. The others do not depend on
+    /// the rig.
+    pub const fn is_of_devices(self) -> bool {
+        match self.part() {
+            Part::Force => !matches!(self, K::ForceLateTold | K::ForceLost),
+            Part::Orientation => !matches!(self, K::OrientationMissing | K::OrientationJump),
+            Part::Handle => true,
+            Part::Arm => !matches!(self, K::TipSign | K::DrivesOff),
+            Part::Switches | Part::Clock | Part::Link | Part::Commands => false,
+        }
+    }
+
     /// Whether it needs a sensor at the wrist.
     pub const fn needs_wrist(self) -> bool {
         matches!(self.part(), Part::Orientation)
@@ -195,6 +215,7 @@ impl Kind {
             K::ForceSilent => "sensor sends nothing",
             K::ForceGaps => "every second sample is lost",
             K::ForceFrozen => "force repeats itself",
+            K::ForceBlock => "force repeats a block of 32 readings",
             K::ForceAxisFrozen => "one axis of the force repeats itself",
             K::ForceDead => "force reads exactly zero",
             K::ForceFalls => "force falls to its noise within 3 ms",
@@ -225,6 +246,7 @@ impl Kind {
             K::OrientationMissing => "arm's orientation is missing",
             K::OrientationJump => "arm's orientation turns by 90 degrees",
             K::HandFrozen => "handle's position repeats itself",
+            K::HandBlock => "handle repeats a block of 32 positions",
             K::HandJump => "handle's position jumps by 20 mm",
             K::HandSpike => "one handle position is 20 mm off",
             K::HandSign => "handle's axes are inverted",
@@ -237,6 +259,7 @@ impl Kind {
             K::HandleInverted => "handle gives the opposite force",
             K::HandleKeepsForce => "handle keeps its last force",
             K::TipFrozen => "arm's position repeats itself",
+            K::TipBlock => "arm repeats a block of 32 readings",
             K::TipJump => "arm's position jumps by 10 mm",
             K::TipDrift => "arm's position drifts by 5 mm/s",
             K::TipSign => "arm's axes are inverted",

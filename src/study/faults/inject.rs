@@ -5,9 +5,9 @@ use std::collections::VecDeque;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::noise::Noise;
 use nima_devices::{Loss, Standing};
-use nima_machine::rig::{DeviceEvent, Identified, Inputs, Outputs, Rig, SIDES, Sensed};
+use nima_machine::rig::{DeviceEvent, Identified, Inputs, Outputs, SIDES, Sensed};
 
-use super::Kind;
+use super::{Kind, subject::Subject};
 
 /// Side whose devices fail.
 pub(super) const FAULTY: usize = 0;
@@ -22,13 +22,23 @@ pub(super) struct Situation {
     pub(super) clutch: bool,
 }
 
+impl Situation {
+    /// These inputs in the situation; `None` where nothing is connected.
+    fn of(self, inputs: &Inputs) -> Option<Inputs> {
+        let mut inputs = *inputs;
+        inputs.powered &= self.powered;
+        inputs.switches.clutch |= self.clutch;
+        self.connected.then_some(inputs)
+    }
+}
+
 /// Ticks in which a force falls to its noise.
 const FALLS_IN: f64 = 3.0;
 
 /// A rig with a fault between it and the loop.
 #[derive(Clone, Debug)]
-pub struct Faulty<R> {
-    pub(super) rig: R,
+pub(super) struct Faulty {
+    rig: Subject,
     pub(super) situation: Situation,
     fault: Option<Kind>,
     /// Ticks since the fault began.
@@ -37,6 +47,8 @@ pub struct Faulty<R> {
     first: Option<(Inputs, Outputs)>,
     before: Option<Inputs>,
     late: VecDeque<Inputs>,
+    /// What is told again and again.
+    block: Vec<Inputs>,
     event: Option<DeviceEvent>,
     /// Last measurements of the rig, before the fault is applied.
     pub(super) truth: [Option<Inputs>; SIDES],
@@ -46,9 +58,9 @@ pub struct Faulty<R> {
     pub(super) applied: Outputs,
 }
 
-impl<R: Rig> Faulty<R> {
+impl Faulty {
     /// A rig without a fault.
-    pub fn new(rig: R) -> Self {
+    pub(super) fn new(rig: Subject) -> Self {
         Self {
             rig,
             situation: Situation { connected: true, powered: true, clutch: false },
@@ -58,6 +70,7 @@ impl<R: Rig> Faulty<R> {
             first: None,
             before: None,
             late: VecDeque::new(),
+            block: Vec::new(),
             event: None,
             truth: [None; SIDES],
             wanted: [Outputs::SAFE; SIDES],
@@ -66,9 +79,11 @@ impl<R: Rig> Faulty<R> {
     }
 
     /// Applies this fault from the next tick on, also to the outputs already written.
-    pub fn begin(&mut self, fault: Kind) {
+    pub(super) fn begin(&mut self, fault: Kind) {
         (self.fault, self.age, self.first, self.before) = (Some(fault), 0, None, None);
         self.late.clear();
+        self.block.clear();
+        self.rig.begin();
     }
 
     fn for_rig(&self, mut outputs: Outputs) -> Outputs {
@@ -111,9 +126,21 @@ impl<R: Rig> Faulty<R> {
             Kind::HandLate => Some(Inputs { hand: late.unwrap_or(inputs).hand, ..inputs }),
             Kind::HandFrozen => Some(Inputs { hand: first.hand, ..inputs }),
             Kind::TipFrozen => Some(Inputs { tip_m: first.tip_m, ..inputs }),
+            Kind::ForceBlock => Some(Inputs { sensed: self.again(&inputs).sensed, ..inputs }),
+            Kind::HandBlock => Some(Inputs { hand: self.again(&inputs).hand, ..inputs }),
+            Kind::TipBlock => Some(Inputs { tip_m: self.again(&inputs).tip_m, ..inputs }),
             Kind::DrivesOff => Some(Inputs { powered: false, ..inputs }),
             _ => Some(self.edited(fault, inputs, &first)),
         }
+    }
+
+    /// The block that was recorded first, again and again.
+    fn again(&mut self, inputs: &Inputs) -> Inputs {
+        let place = self.age as usize - 1;
+        if place < Kind::BLOCK {
+            self.block.push(*inputs);
+        }
+        self.block.get(place % Kind::BLOCK).copied().unwrap_or(*inputs)
     }
 
     /// Neighbouring samples in exchanged order: alternately the present sample and the one before the previous.
@@ -185,21 +212,23 @@ impl<R: Rig> Faulty<R> {
     }
 }
 
-impl<R: Rig> Rig for Faulty<R> {
-    fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
+impl Faulty {
+    pub(super) fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         let mut to_rig = self.wanted;
         to_rig[FAULTY] = self.for_rig(self.wanted[FAULTY]);
         self.applied = to_rig[FAULTY];
-        self.rig.write(now_s, &to_rig);
-        let mut inputs = self.rig.read(now_s);
-        let Situation { connected, powered, clutch } = self.situation;
-        if let Some(seen) = &mut inputs[FAULTY] {
-            seen.powered &= powered;
-            seen.switches.clutch |= clutch;
-        }
-        inputs[FAULTY] = inputs[FAULTY].filter(|_| connected);
+        let situation = self.situation;
+        let (mut inputs, seen) = self.rig.read(now_s, &to_rig);
+        inputs[FAULTY] = inputs[FAULTY].and_then(|seen| situation.of(&seen));
         self.truth = inputs;
-        inputs[FAULTY] = inputs[FAULTY].and_then(|seen| self.for_loop(&seen, &to_rig[FAULTY]));
+        let seen = seen.and_then(|seen| situation.of(&seen));
+        let altered = seen.and_then(|seen| self.for_loop(&seen, &to_rig[FAULTY]));
+        let given = self.rig.give(now_s, altered.as_ref(), self.fault, self.age);
+        inputs[FAULTY] = given.filter(|_| situation.connected);
+        if let (Some(given), true) = (&mut inputs[FAULTY], self.rig.is_arm()) {
+            given.powered &= situation.powered;
+            given.switches.clutch |= situation.clutch;
+        }
         if self.fault == Some(Kind::ForceLost) {
             if self.age == 1 {
                 let standing = Standing::Lost(Loss::Disconnected);
@@ -210,12 +239,12 @@ impl<R: Rig> Rig for Faulty<R> {
         inputs
     }
 
-    fn write(&mut self, _: f64, outputs: &[Outputs; SIDES]) {
+    pub(super) const fn write(&mut self, outputs: &[Outputs; SIDES]) {
         self.wanted = *outputs;
     }
 
-    fn event(&mut self) -> Option<DeviceEvent> {
-        self.event.take().or_else(|| self.rig.event())
+    pub(super) const fn event(&mut self) -> Option<DeviceEvent> {
+        self.event.take()
     }
 }
 

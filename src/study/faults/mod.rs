@@ -17,6 +17,8 @@ mod impaired_link;
 mod inject;
 mod live;
 mod present;
+mod sensor_at;
+mod subject;
 
 use nima_core::impedance::{Mode, SettingsError};
 use nima_machine::{config::ConfigError, messages::LoopState};
@@ -25,8 +27,8 @@ use serde::Serialize;
 
 pub use calm::Calm;
 pub use catalogue::{Kind, Part};
-pub use inject::Faulty;
 pub use live::{LiveError, Special};
+pub use sensor_at::SensorAt;
 
 use self::bench::Bench;
 use crate::validation::ValidationError;
@@ -58,35 +60,6 @@ pub enum FaultsError {
     /// A fault on the real clock could not be tried.
     #[error(transparent)]
     Live(#[from] LiveError),
-}
-
-/// Place of the force sensor.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SensorAt {
-    /// At the tip, scene `peg_transfer`.
-    Tip,
-    /// At the wrist, scene `palpation`, gravity calibrated.
-    Wrist,
-}
-
-impl SensorAt {
-    /// Both places.
-    pub const ALL: [Self; 2] = [Self::Tip, Self::Wrist];
-
-    const fn scene(self) -> &'static str {
-        match self {
-            Self::Tip => "peg_transfer",
-            Self::Wrist => "palpation",
-        }
-    }
-
-    const fn word(self) -> &'static str {
-        match self {
-            Self::Tip => "tip",
-            Self::Wrist => "wrist",
-        }
-    }
 }
 
 /// State of the machine when the fault begins.
@@ -319,12 +292,12 @@ impl Sums {
 /// [`FaultsError`] if a scene or rig is invalid or a situation cannot be reached.
 pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, FaultsError> {
     let mut outcomes = Vec::new();
-    let all = SensorAt::ALL.len() * MODES.len() * Place::ALL.len() + 1;
+    let all = SensorAt::ALL.map(|sensor| sensor.places().len()).iter().sum::<usize>() * MODES.len() + 1;
     let mut done = 0;
     for sensor in SensorAt::ALL {
         for mode in MODES {
             let idle = Bench::new(sensor, mode, 0)?;
-            for place in Place::ALL {
+            for &place in sensor.places() {
                 progress(done, all, place.word());
                 done += 1;
                 outcomes.extend(at(&idle, sensor, mode, place, options.moments)?);
@@ -351,7 +324,7 @@ fn at(idle: &Bench, sensor: SensorAt, mode: Mode, place: Place, moments: u32) ->
         let mut ready = idle.clone();
         ready.prepare(place, moment)?;
         for kind in Kind::ALL {
-            if sensor == SensorAt::Wrist || !kind.needs_wrist() {
+            if sensor.has(kind) {
                 outcomes.push(case::tried(ready.clone(), kind, sensor, mode, place, moment));
             }
         }

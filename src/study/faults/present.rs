@@ -14,10 +14,11 @@ impl Findings for Report {
             .ok();
         writeln!(text, "|---|---|{}", "---|".repeat(Place::ALL.len())).ok();
         for kind in Kind::ALL {
-            for sensor in SensorAt::ALL {
+            for sensor in SensorAt::SIMULATED {
                 self.row(&mut text, kind, sensor);
             }
         }
+        self.on_arms(&mut text);
         text.push_str("\nFaults on the real clock and of files:\n\n| fault | verdict | detection (ms) | force gone (ms) | report |\n|---|---|---|---|---|\n");
         for Special { what, verdict, told, detection_ms, zero_ms } in &self.specials {
             let number = |ms: &Option<f64>| ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.1}"));
@@ -75,6 +76,20 @@ impl Report {
             ),
         ];
         lines.join("\n") + "\n"
+    }
+
+    /// One row per fault on the rigs with an arm, free and in contact together.
+    fn on_arms(&self, text: &mut String) {
+        let heads = SensorAt::ON_ARMS.map(|sensor| format!(" {} |", sensor.word())).concat();
+        let rule = "---|".repeat(SensorAt::ON_ARMS.len());
+        writeln!(text, "\nOn rigs with an arm, engaged, free and in contact:\n\n| fault |{heads}\n|---|{rule}").ok();
+        for kind in Kind::ALL.into_iter().filter(|kind| kind.is_of_devices()) {
+            let of = |sensor: SensorAt| {
+                cell(&self.outcomes.iter().filter(|o| (o.kind, o.sensor) == (kind, sensor)).collect::<Vec<_>>())
+            };
+            let cells = SensorAt::ON_ARMS.map(|sensor| format!(" {} |", of(sensor))).concat();
+            writeln!(text, "| {} |{cells}", kind.words()).ok();
+        }
     }
 
     fn row(&self, text: &mut String, kind: Kind, sensor: SensorAt) {

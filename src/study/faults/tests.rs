@@ -58,3 +58,41 @@ fn a_change_beyond_the_slew_limit_is_the_governor_s() {
         assert!(outcome.governed_step_n > 2.0 && outcome.step_n <= 0.51, "{outcome:?}");
     }
 }
+
+/// A sensor's own numbers are judged, also where the arm turns what the loop makes of them.
+#[test]
+fn on_rigs_with_an_arm_what_a_sensor_repeats_takes_the_force_away_within_20_ms() {
+    let kinds = [Kind::ForceFrozen, Kind::ForceAxisFrozen, Kind::ForceStep];
+    for sensor in SensorAt::ON_ARMS {
+        for outcome in tried(sensor, Place::Contact, &kinds) {
+            println!("{outcome:?}");
+            assert_eq!(outcome.verdict, Verdict::Detected, "{outcome:?}");
+            assert!(outcome.told.as_ref().is_some_and(|told| told.starts_with("Force")), "{outcome:?}");
+            assert!(outcome.zero_ms.is_some_and(|ms| ms <= 20.0), "{outcome:?}");
+        }
+    }
+}
+
+#[test]
+fn on_rigs_with_an_arm_a_block_that_comes_again_and_a_range_that_ends_are_told() {
+    for sensor in SensorAt::ON_ARMS {
+        let outcomes = tried(sensor, Place::Contact, &[Kind::ForceBlock, Kind::ForceSaturated, Kind::TipBlock]);
+        for outcome in outcomes {
+            println!("{outcome:?}");
+            assert!(matches!(outcome.verdict, Verdict::Detected | Verdict::Harmless), "{outcome:?}");
+        }
+    }
+}
+
+#[test]
+fn on_rigs_with_an_arm_nothing_is_told_without_a_fault() {
+    for sensor in SensorAt::ON_ARMS {
+        let mut bench = Bench::new(sensor, MODES[0], 5).unwrap();
+        bench.obey(nima_machine::messages::Command::Engage);
+        for tick in 0..12_000 {
+            let raised = bench.step().and_then(|step| step.raised);
+            assert_eq!(raised, None, "{sensor:?} at {tick} ms");
+        }
+        assert_eq!(bench.state(), LoopState::Engaged);
+    }
+}

@@ -7,6 +7,7 @@
 //! own. Needs Unix; the pedal needs Linux. Bad input: what cannot be emulated here (another computer's address) is refused in one
 //! line.
 
+mod clocked;
 mod errors;
 mod flawed;
 #[cfg(test)]
@@ -43,6 +44,7 @@ use nima_machine::{
 };
 use side::SideWorld;
 
+pub use clocked::{ArmReadings, Clocked, Wiring};
 pub use errors::{DoubtShares, FreeError, TipError, TipErrors};
 pub use screen::{NoScreen, Screen, Task};
 pub use side::Truth;

@@ -63,6 +63,7 @@ fn world_from_view(hand: &HandFrame) -> UnitQuaternion<f64> {
 }
 
 /// The world of one side.
+#[derive(Clone, Debug)]
 pub(super) struct SideWorld {
     world: World,
     arm: Arm,

@@ -51,6 +51,14 @@ pub enum EmulatedFault {
     OtherFormat,
     /// Somebody has pushed the endoscope aside.
     Moved,
+    /// The same numbers again and again, while the clock of the device goes on.
+    Repeat,
+    /// A block of 32 readings again and again, while the clock goes on.
+    Block,
+    /// The numbers are cut off at their present values.
+    EndOfRange,
+    /// 1.5 N more along z.
+    Jump,
 }
 
 impl EmulatedFault {
@@ -71,6 +79,9 @@ impl EmulatedFault {
     /// Those that only a camera has.
     pub const OF_PICTURES: [Self; 6] =
         [Self::Black, Self::Torn, Self::Late, Self::WrongSize, Self::OtherFormat, Self::Moved];
+
+    /// Those of a force sensor whose line and clock are sound.
+    pub const OF_SENSORS: [Self; 4] = [Self::Repeat, Self::Block, Self::EndOfRange, Self::Jump];
 
     /// Its name on the command line.
     pub const fn name(self) -> &'static str {
@@ -93,12 +104,16 @@ impl EmulatedFault {
             Self::WrongSize => "wrong-size",
             Self::OtherFormat => "other-format",
             Self::Moved => "moved",
+            Self::Repeat => "repeat",
+            Self::Block => "block",
+            Self::EndOfRange => "end-of-range",
+            Self::Jump => "jump",
         }
     }
 
     /// Every fault of every device, without `None`.
     pub fn every() -> impl Iterator<Item = Self> {
-        Self::ALL.into_iter().chain(Self::OF_PICTURES)
+        Self::ALL.into_iter().chain(Self::OF_PICTURES).chain(Self::OF_SENSORS)
     }
 
     /// By its name.

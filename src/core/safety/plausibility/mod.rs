@@ -21,7 +21,7 @@ mod stuck;
 use nalgebra::{SVector, UnitQuaternion, Vector3};
 
 use self::{
-    channel::{Around, Wrong},
+    channel::{Around, FROZEN_S, Wrong},
     device::Device,
     stuck::{HandleStuck, Stuck},
 };
@@ -55,6 +55,11 @@ const LEVER_M: f64 = 0.5;
 const STUCK_COMMAND_M: f64 = 0.5e-3;
 /// A longer gap between two looks tells nothing of how far anything may have gone, s.
 const GAP_S: f64 = 0.015;
+/// A force that the link repeats for longer than the sensor was late is the link's, s. The silence of a sensor is told after the longest time;
+/// it is forgotten at this rate, which is slower than any delay of the link.
+const LINK_S: f64 = 0.015;
+const LATE_MAX_S: f64 = 0.02;
+const FORGETS_LATE: f64 = 0.02;
 /// A tip so far from its command has lost it, m: an arm of 60 ms lag at the fastest command.
 const ASTRAY_M: f64 = 0.02;
 /// Readings in a row that change as those of a block before: a force sensor's numbers are fine, and none of six comes twice. Whole counts of an
@@ -142,6 +147,9 @@ pub struct Plausibility {
     handle_stuck: HandleStuck,
     /// Way of the tip so far, m.
     way_m: f64,
+    /// When the force sensor last told something new, s, and how late it was lately.
+    felt_s: f64,
+    late_s: f64,
     last_t_s: f64,
     doubt: Option<Implausible>,
 }
@@ -177,6 +185,8 @@ impl Default for Plausibility {
             moves: Moves::default(),
             handle_stuck: HandleStuck::default(),
             way_m: 0.0,
+            felt_s: 0.0,
+            late_s: LATE_MAX_S,
             last_t_s: f64::NEG_INFINITY,
             doubt: None,
         }
@@ -208,7 +218,7 @@ impl Plausibility {
         let dt_s = self.pass(seen.t_s);
         let (tip_m, tip_jumped) = self.admit_tip(seen, dt_s);
         let (hand_m, hand_jumped) = self.admit_hand(seen, dt_s);
-        let (force_n, force_jumped) = self.admit_force(seen);
+        let (force_n, force_jumped) = self.admit_force(seen, dt_s);
         self.moves.silent_s = [seen.tip_silent_s, seen.hand_silent_s];
         let went_m = *self.moves.tip.moved();
         let along = self.moves.opposed.look(dt_s, &force_n, seen.least_n, &went_m, seen.command_m.is_some());
@@ -277,19 +287,23 @@ impl Plausibility {
     }
 
     /// The force at the tip and what the sensor reads, which is more than that force at a wrist.
-    fn admit_force(&mut self, seen: &Observed) -> (Vector3<f64>, bool) {
+    fn admit_force(&mut self, seen: &Observed, dt_s: f64) -> (Vector3<f64>, bool) {
         let moves = &mut self.moves;
         let settles = seen.t_s - *moves.began_s.get_or_insert(seen.t_s) < SETTLE_S;
         let widest_m = moves.ways_m.iter().copied().fold(moves.unfelt_m, f64::max);
         let most_n = if settles { f64::INFINITY } else { FORCE_SLACK_N + STIFFEST_N_M * widest_m };
-        let (way_m, is_at_tip) = (self.way_m, seen.world_from_s1.is_none());
-        let around = |place: usize| Around { way_m, is_load: place < LOADS, is_at_tip };
+        let way_m = self.way_m;
+        let around = |place: usize| Around { way_m, is_load: place < LOADS, shortest_s: FROZEN_S };
         let raw = seen.raw.sensor.as_ref();
         let step = raw.and_then(|raw| self.sensor.is_new(raw).map(|step| (raw, step)));
         if let Some((raw, step)) = &step {
             self.sensor.look_at_all(raw, step, around);
         }
         let is_new = raw.is_none() || step.is_some();
+        // Where the sensor is at another machine it is not known how late it is.
+        self.felt_s = if is_new { seen.t_s } else { self.felt_s };
+        let late_s = if raw.is_none() { LATE_MAX_S } else { seen.t_s - self.felt_s };
+        self.late_s = (self.late_s - dt_s * FORGETS_LATE).max(late_s);
         let (release, mut fall) = (&mut moves.release, Fall::No);
         let (force_n, jumped) = moves.force.admit_unless(&seen.force_n, most_n, is_new, |believed_n, now_n, far| {
             fall = release.look(believed_n, now_n, far);
@@ -318,7 +332,7 @@ impl Plausibility {
         let told_n = if *force_n == Vector3::zeros() { Vector3::repeat(f64::NAN) } else { *force_n };
         let raw = Raw { channels: told_n.into(), device_s: None, arrival_s: stamp_s };
         if let Some(step) = self.link.is_new(&raw) {
-            let around = Around { way_m: self.way_m, is_load: true, is_at_tip: true };
+            let around = Around { way_m: self.way_m, is_load: true, shortest_s: LINK_S + self.late_s };
             self.link.look_at_all(&raw, &step, |_| around);
         }
     }

@@ -67,6 +67,8 @@ const AVERAGED: f64 = 16.0;
 const LONGEST_INTERVALS: f64 = 2.0;
 /// A device's clock may be ahead of the arrivals by this, s: lines hold readings back for less.
 const HELD_BACK_S: f64 = 0.02;
+/// What is older than the reading before by less than this comes late, s; a clock that was set goes back further.
+const SWAPPED_S: f64 = 1.0;
 
 /// Time of a new reading.
 #[derive(Clone, Copy, Debug)]
@@ -106,6 +108,9 @@ impl Pace {
         };
         let arrived_s = raw.arrival_s - arrival_s;
         if arrived_s.is_nan() || arrived_s == 0.0 {
+            return News::Old;
+        }
+        if arrived_s < 0.0 && arrived_s > -SWAPPED_S {
             return News::Old;
         }
         self.last = Some(now);

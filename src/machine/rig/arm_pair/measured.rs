@@ -11,7 +11,7 @@ use nima_core::{
     },
     safety::{Raw, RawReadings},
 };
-use nima_devices::{ArmReading, ForceReading, HandleReading, ServoReading, Stamped};
+use nima_devices::{ARM_JOINTS, ArmReading, ForceReading, HandleReading, ServoReading, Stamped};
 
 use super::{Shared, rigid};
 use crate::rig::{
@@ -89,6 +89,11 @@ impl Measured {
     /// Takes a new reading of the force sensor; one that must not be used ends what was known before.
     pub fn take_force(&mut self, reading: Stamped<ForceReading>) {
         self.force = Some(reading).filter(|reading| reading.value.status.is_usable());
+    }
+
+    /// Angles of the arm's joints as it told them last, rad.
+    pub fn joints_rad(&self) -> Option<[f64; ARM_JOINTS]> {
+        self.joints.map(|joints| joints.value.joint_rad)
     }
 
     /// Starts the inverse kinematics at these joint angles (rad).

@@ -9,6 +9,9 @@ use crate::emulators::{EmulatedFault, Peer, Turn};
 /// A thread that was held up makes up for at most this much, s; what is older is lost.
 const BACKLOG_S: f64 = 0.5;
 const INVALID: u16 = 1 << 2;
+/// Readings of a block that is sent again and again, and how far a reading jumps, N.
+const BLOCK: usize = 32;
+const JUMP_N: f32 = 1.5;
 
 /// Makes the frames that are due.
 pub(super) struct Frames {
@@ -17,12 +20,15 @@ pub(super) struct Frames {
     status: u16,
     next_s: Option<f64>,
     frozen: Option<Frame>,
+    /// What the numbers were when a fault of the sensor began, and since then.
+    since: Vec<Frame>,
+    in_block: usize,
     made: u64,
 }
 
 impl Frames {
     pub(super) fn new(body: Body, zero_us: u32, status: u16) -> Self {
-        Self { body, zero_us, status, next_s: None, frozen: None, made: 0 }
+        Self { body, zero_us, status, next_s: None, frozen: None, since: Vec::new(), in_block: 0, made: 0 }
     }
 
     /// Sends every frame that is due, its bytes as `finish` makes them.
@@ -72,6 +78,7 @@ impl Frames {
             inertial,
         };
         wire.finish(&mut frame);
+        self.fail(&mut frame, fault);
         match fault {
             EmulatedFault::DeviceFault => frame.status |= INVALID,
             EmulatedFault::NotANumber => frame.force_n[0] = f32::NAN,
@@ -79,6 +86,34 @@ impl Frames {
         }
         self.frozen = Some(frame);
         frame
+    }
+
+    /// Faults of the sensor itself: its clock goes on.
+    fn fail(&mut self, frame: &mut Frame, fault: EmulatedFault) {
+        if !EmulatedFault::OF_SENSORS.contains(&fault) {
+            self.since.clear();
+            self.in_block = 0;
+            return;
+        }
+        if self.since.len() < BLOCK {
+            self.since.push(*frame);
+        }
+        let (first, time) = (self.since[0], frame.timestamp_us);
+        match fault {
+            EmulatedFault::Repeat => *frame = first,
+            EmulatedFault::Block => {
+                // While the block is filled it is what the sensor reads.
+                *frame = self.since[self.in_block];
+                self.in_block = (self.in_block + 1) % BLOCK;
+            }
+            EmulatedFault::EndOfRange => {
+                for (now, most) in frame.force_n.iter_mut().zip(first.force_n) {
+                    *now = now.min(most);
+                }
+            }
+            _ => frame.force_n[2] += JUMP_N,
+        }
+        frame.timestamp_us = time;
     }
 
     /// Faults of the bytes that only the emulator can make; gives the length that remains.

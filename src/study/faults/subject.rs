@@ -1,0 +1,211 @@
+//! The rig whose devices fail: the simulated one, or an arm pair whose readings take the way of a rig of devices.
+//!
+//! A fault alters readings in the device's own frame; what the loop gets is made of them afterwards. Of the simulated rig, which has no arm
+//! of joints, inputs and readings are the same.
+
+use nalgebra::Vector3;
+use nima_core::{
+    frames::WristSample,
+    safety::{Raw, RawReadings},
+};
+use nima_devices::Stamped;
+use nima_machine::{
+    config::RigConfig,
+    rig::{Delivering, Inputs, Measured, Outputs, Rig as _, SIDES, Sensed, SensorPlace, Side},
+};
+use nima_world::{
+    Worlds,
+    emulated::{ArmReadings, Clocked, HandFrame},
+    scene::Scene,
+};
+
+use super::{FaultsError, Kind, SensorAt, inject::FAULTY};
+use crate::validation::ValidationError;
+
+/// Numbers beyond this are refused by the drivers, N.
+const POSSIBLE_N: f64 = 1e4;
+/// A joint that jumps, and one that drifts, rad and rad/s.
+const JOINT_JUMP_RAD: f64 = 0.2;
+const JOINT_DRIFT_RAD_S: f64 = 0.02;
+const PERIOD_S: f64 = 1e-3;
+
+/// The devices of an arm pair, what is made of their readings, and what would be made without the fault.
+#[derive(Clone, Debug)]
+pub(super) struct ArmRig {
+    devices: Clocked,
+    given: Measured,
+    truth: Measured,
+    newest: ArmReadings,
+    /// The last readings, also where this tick has none.
+    known: ArmReadings,
+    joints_first: Option<[f64; 7]>,
+    block: Vec<[f64; 7]>,
+}
+
+/// See above.
+#[derive(Clone, Debug)]
+pub(super) enum Subject {
+    Simulated(Box<Worlds>),
+    Arm(Box<ArmRig>),
+}
+
+impl Subject {
+    pub(super) fn new(sensor: SensorAt, config: &RigConfig, scene: &Scene) -> Result<Self, FaultsError> {
+        let Some(wiring) = sensor.wiring() else {
+            return Ok(Self::Simulated(Box::new(Worlds::new(scene, config.rate_hz))));
+        };
+        let wrong = |reason: String| FaultsError::Calibration(ValidationError::Calibration(reason));
+        let none = || wrong("the emulated rig has no right arm".to_owned());
+        let mut devices = RigConfig::load("emulated")?.devices.ok_or_else(none)?;
+        let set = devices.right.as_mut().ok_or_else(none)?;
+        set.sensor_at = if sensor.is_at_wrist() { SensorPlace::Wrist } else { SensorPlace::Tip };
+        let measured = Measured::new(Side::Right, set, PERIOD_S, sensor.is_at_wrist());
+        let measured = measured.map_err(|error| wrong(error.to_string()))?;
+        let hand = HandFrame::of(&config.teleoperation.mapping());
+        let clocked = Clocked::new(Side::Right, &devices, scene, hand, wiring);
+        Ok(Self::Arm(Box::new(ArmRig {
+            devices: clocked.map_err(|error| wrong(error.to_string()))?,
+            given: measured.clone(),
+            truth: measured,
+            newest: ArmReadings::default(),
+            known: ArmReadings::default(),
+            joints_first: None,
+            block: Vec::new(),
+        })))
+    }
+
+    /// Its readings are altered before inputs are made of them.
+    pub(super) const fn is_arm(&self) -> bool {
+        matches!(self, Self::Arm(_))
+    }
+
+    /// Forgets an earlier fault.
+    pub(super) fn begin(&mut self) {
+        if let Self::Arm(arm) = self {
+            arm.joints_first = None;
+            arm.block.clear();
+        }
+    }
+
+    /// Gives outputs to the rig and reads it: the true inputs, and those of the failing side as they are to be altered.
+    pub(super) fn read(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) -> ([Option<Inputs>; SIDES], Option<Inputs>) {
+        match self {
+            Self::Simulated(worlds) => {
+                worlds.write(now_s, outputs);
+                let truth = worlds.read(now_s);
+                (truth, truth[FAULTY])
+            }
+            Self::Arm(arm) => {
+                let seen = arm.read(now_s, &outputs[FAULTY]);
+                let mut truth = [None; SIDES];
+                truth[FAULTY] = arm.truth.inputs(now_s, DELIVERING);
+                (truth, seen)
+            }
+        }
+    }
+
+    /// The inputs that the loop gets when what was read was altered to this; `None`: the sensor tells nothing.
+    pub(super) fn give(
+        &mut self,
+        now_s: f64,
+        altered: Option<&Inputs>,
+        fault: Option<Kind>,
+        age: u32,
+    ) -> Option<Inputs> {
+        match self {
+            Self::Simulated(_) => altered.map(|inputs| Inputs { raw: raw_of(inputs), ..*inputs }),
+            Self::Arm(arm) => arm.give(now_s, altered, fault, age),
+        }
+    }
+}
+
+const DELIVERING: Delivering = Delivering { handle: Some(true), follower: Some(true) };
+
+/// The readings of a simulated rig that these inputs would be made of, at the times of the true ones.
+fn raw_of(inputs: &Inputs) -> RawReadings {
+    let RawReadings { handle, sensor, .. } = inputs.raw;
+    let parts = match &inputs.sensed {
+        Sensed::AtTip(force_n) => [Some((*force_n).into()), None, None],
+        Sensed::AtWrist(sample) => {
+            let acceleration = sample.acceleration_m_s2.map(Into::into);
+            [Some(sample.raw.force_n.into()), Some(sample.raw.torque_nm.into()), acceleration]
+        }
+        Sensed::FarEnd(_) => [None; 3],
+    };
+    RawReadings {
+        handle: handle.map(|raw| Raw { channels: inputs.hand.position_m.into(), ..raw }),
+        arm: None,
+        sensor: sensor.map(|raw| Raw::of_sensor(parts, raw.device_s, raw.arrival_s)),
+    }
+}
+
+impl ArmRig {
+    /// Reads the devices; force and handle as inputs, in the frames of their devices.
+    fn read(&mut self, now_s: f64, outputs: &Outputs) -> Option<Inputs> {
+        self.devices.write(outputs, &self.given);
+        self.newest = self.devices.read(now_s);
+        let ArmReadings { handle, arm, sensor } = self.newest;
+        let known = &mut self.known;
+        (known.handle, known.arm, known.sensor) = (handle.or(known.handle), arm.or(known.arm), sensor.or(known.sensor));
+        take(&mut self.truth, &self.newest, outputs.drives);
+        let (handle, force) = (self.known.handle?, self.known.sensor?);
+        let sample =
+            WristSample { acceleration_m_s2: force.value.acceleration_m_s2, ..WristSample::of(force.value.wrench) };
+        Some(Inputs {
+            hand: nima_core::kinematics::Hand::at(handle.value.position_m),
+            sensed: Sensed::AtWrist(sample),
+            ..Inputs::NOTHING
+        })
+    }
+
+    fn give(&mut self, now_s: f64, altered: Option<&Inputs>, fault: Option<Kind>, age: u32) -> Option<Inputs> {
+        let mut told = self.newest;
+        told.sensor = told.sensor.zip(altered).and_then(|(sensor, altered)| {
+            let Sensed::AtWrist(sample) = &altered.sensed else { return None };
+            let mut value = sensor.value;
+            (value.wrench, value.acceleration_m_s2) = (sample.raw, sample.acceleration_m_s2);
+            is_possible(&sample.raw.force_n).then_some(Stamped { value, ..sensor })
+        });
+        if let (Some(handle), Some(altered)) = (&mut told.handle, altered) {
+            handle.value.position_m = altered.hand.position_m;
+        }
+        told.handle = told.handle.filter(|handle| is_possible(&handle.value.position_m));
+        if let Some(arm) = &mut told.arm {
+            let joint_rad = arm.value.joint_rad;
+            arm.value.joint_rad = self.joints(fault, age, joint_rad);
+        }
+        told.arm = told.arm.filter(|_| fault != Some(Kind::TipNan));
+        take(&mut self.given, &told, self.truth.force_is_on);
+        self.given.inputs(now_s, DELIVERING)
+    }
+
+    fn joints(&mut self, fault: Option<Kind>, age: u32, mut joint_rad: [f64; 7]) -> [f64; 7] {
+        let first = *self.joints_first.get_or_insert(joint_rad);
+        match fault {
+            Some(Kind::TipFrozen) => joint_rad = first,
+            Some(Kind::TipJump) => joint_rad[3] += JOINT_JUMP_RAD,
+            Some(Kind::TipDrift) => joint_rad[3] += JOINT_DRIFT_RAD_S * f64::from(age) * PERIOD_S,
+            Some(Kind::TipBlock) => {
+                let place = age.saturating_sub(1) as usize;
+                if place < Kind::BLOCK {
+                    self.block.push(joint_rad);
+                } else {
+                    joint_rad = self.block[place % Kind::BLOCK];
+                }
+            }
+            _ => {}
+        }
+        joint_rad
+    }
+}
+
+fn take(measured: &mut Measured, readings: &ArmReadings, drives: bool) {
+    readings.handle.into_iter().for_each(|reading| measured.take_handle(reading));
+    readings.arm.into_iter().for_each(|reading| measured.take_arm(reading));
+    readings.sensor.into_iter().for_each(|reading| measured.take_force(reading));
+    measured.force_is_on = drives;
+}
+
+fn is_possible(numbers: &Vector3<f64>) -> bool {
+    numbers.iter().all(|number| number.abs() <= POSSIBLE_N)
+}

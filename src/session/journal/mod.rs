@@ -18,7 +18,10 @@ use crate::codec::Wrong;
 use parts::Bytes;
 
 /// Version of the journal that this program writes, and the only one that it reads.
-pub const VERSION: u16 = 4;
+///
+/// Version 5 holds the raw readings of the devices and the true time of each tick; with them other plausibility checks, another
+/// governor and unknown forces, so that an older session would end in other forces than those that were felt.
+pub const VERSION: u16 = 5;
 
 const MAGIC: [u8; 4] = *b"NIMJ";
 /// Magic, version, CRC.
@@ -32,7 +35,7 @@ pub enum JournalError {
     Foreign,
     /// Another version.
     #[error(
-        "its journal has version {found}, this program reads version {VERSION}: replay it with the program that recorded it"
+        "its journal has version {found}, this program reads version {VERSION}, whose gates need readings that older journals lack: replay it with the program that recorded it"
     )]
     Version {
         /// That version.

@@ -29,6 +29,10 @@ fn is_noticed(fault: EmulatedFault, health: &Health, before: &Health) -> bool {
         EmulatedFault::DeviceFault => lost_by(Loss::Device { code: faults::MAXIMUM_TORQUE }),
         EmulatedFault::NotANumber => lost_by(Loss::Implausible),
         EmulatedFault::None
+        | EmulatedFault::Repeat
+        | EmulatedFault::Block
+        | EmulatedFault::EndOfRange
+        | EmulatedFault::Jump
         | EmulatedFault::Black
         | EmulatedFault::Torn
         | EmulatedFault::Late

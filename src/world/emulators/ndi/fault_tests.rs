@@ -20,6 +20,10 @@ fn outcome(fault: EmulatedFault) -> Outcome {
     use Outcome::{Disorder, Lags, Lost};
     match fault {
         EmulatedFault::None
+        | EmulatedFault::Repeat
+        | EmulatedFault::Block
+        | EmulatedFault::EndOfRange
+        | EmulatedFault::Jump
         | EmulatedFault::Delay
         | EmulatedFault::Black
         | EmulatedFault::Torn

@@ -1,6 +1,7 @@
 //! One arm pair: handle, arm, force sensor, and the loop between them.
 
 mod commands;
+mod even;
 mod far;
 mod objections;
 mod told;
@@ -10,7 +11,8 @@ mod watchdog_test;
 use nalgebra::{UnitQuaternion, Vector1, Vector3};
 use nima_core::{
     impedance::{
-        Baseline, Identifier, Mode, OwnMotion, Renderer, Sample, Settings as IdentifierSettings, SettingsError,
+        Baseline, Identifier, Mode, OwnMotion, Rendered, Renderer, Sample, Settings as IdentifierSettings,
+        SettingsError,
     },
     kinematics::{HandEye, Target},
     safety::{Chain, Gate, GripperChain, Interlock, Plausibility, Reason, Request},
@@ -19,6 +21,7 @@ use nima_core::{
 use nima_devices::Standing;
 
 use self::{
+    even::{Between, deadlines, stacked},
     far::Far,
     told::{NO_FORCE, NOWHERE},
 };
@@ -93,6 +96,11 @@ pub struct Pair<L: Link = ProgrammedLink> {
     /// What the machine at the other end of a network tells.
     far: Box<Far>,
     tracking: Tracking,
+    /// Tip (m) and its force (N), handle mapped to the tip and command (m): of the last tick, for even spacing.
+    measured: Between<6>,
+    led: Between<9>,
+    /// What was rendered at the newest deadline.
+    rendered: Rendered,
     plausibility: Plausibility,
     chain: Chain,
     /// The governor found that nobody holds the handle: as good as a hand that is told absent.
@@ -165,6 +173,9 @@ impl<L: Link> Pair<L> {
             link,
             far: Far::none(),
             tracking: Tracking::new(rig.rate_hz),
+            measured: Between::default(),
+            led: Between::default(),
+            rendered: Rendered::default(),
             plausibility: Plausibility::default(),
             chain: Chain::new(rig.gates, 1.0 / rig.rate_hz),
             hand_is_gone: false,
@@ -292,11 +303,14 @@ impl<L: Link> Pair<L> {
         self.end_late_test(now_s);
         let inputs = inputs.filter(|inputs| inputs.is_finite() && !self.withholds(Watchdog::Source));
         let moved_m = inputs.zip(self.last_inputs).map_or(0.0, |(now, last)| (now.tip_m - last.tip_m).norm());
-        let inputs = inputs.map(|inputs| self.take_in(inputs, now_s));
+        let inputs = inputs.map(|inputs| self.take_in(inputs, timing));
         if inputs.is_none() && !self.far.is_there {
             // The identification needs evenly spaced samples: it interpolates a missing one, and no parcel is sent for
             // it.
-            self.identifier.step(&Sample { t_s: now_s, position_m: NOWHERE, force_n: NOWHERE });
+            for t_s in deadlines(timing, 1.0 / self.rate_hz) {
+                self.identifier.step(&Sample { t_s, position_m: NOWHERE, force_n: NOWHERE });
+            }
+            self.measured.forget();
         }
         self.watch(inputs.as_ref(), moved_m, timing);
         // After the fault of the silence, which is the cause.
@@ -308,7 +322,7 @@ impl<L: Link> Pair<L> {
         let seen = self.last_inputs.unwrap_or(Inputs::NOTHING);
         let target = self.hand_eye.step(&seen.hand);
         let tip_command_m = self.follow(&seen, &target);
-        let motion_m = self.motion_at_leader(&seen, &target.tip_m, tip_command_m);
+        let rendered = self.render(&seen, &target.tip_m, tip_command_m, timing);
         let far = Some(&self.far.parcel).filter(|_| self.force.source.is_usable());
         let parcel = if self.far.is_there { far } else { self.link.receive(now_s) };
         if let Some(parcel) = parcel {
@@ -316,7 +330,6 @@ impl<L: Link> Pair<L> {
         }
         // Until the first parcel arrives, the delay line is still filling.
         let parcel_is_there = parcel.is_some();
-        let rendered = self.renderer.step(&motion_m, parcel);
         let age_s = parcel.map_or(f64::INFINITY, |parcel| now_s - parcel.t_s - self.delay_s + seen.age_s);
         // Over a network a parcel may be younger than the delay says; its force still ends with the line.
         let age_s = age_s.max(seen.silent_s);
@@ -412,22 +425,40 @@ impl<L: Link> Pair<L> {
         self.command_m
     }
 
-    /// The motion from which the force is made: the follower's as the leader can know it (the command, delayed by the
-    /// observed lag), or the handle's, mapped to the tip; while not engaged, the tip's.
-    fn motion_at_leader(
+    /// Renders at every deadline that has passed, from the motion at that time and the parcel that had come by then.
+    fn render(
         &mut self,
         seen: &Inputs,
         handle_m: &Vector3<f64>,
         tip_command_m: Option<Vector3<f64>>,
-    ) -> Vector3<f64> {
-        if let Some(command_m) = tip_command_m {
-            let follower_m = self.tracking.step(&command_m, &seen.tip_m, self.ticks_behind(seen.silent_s));
-            return match self.settings.own_motion {
-                OwnMotion::Follower => follower_m,
-                OwnMotion::Handle => *handle_m,
+        timing: &Timing,
+    ) -> Rendered {
+        let command_m = tip_command_m.unwrap_or(seen.tip_m);
+        let now = (timing.now_s, stacked([&command_m, handle_m, &seen.tip_m]));
+        for t_s in deadlines(timing, 1.0 / self.rate_hz) {
+            let at = self.led.at(t_s, now);
+            let [command_m, handle_m, tip_m] = [0, 3, 6].map(|from| at.fixed_rows::<3>(from).into_owned());
+            let motion_m = if tip_command_m.is_some() {
+                let follower_m = self.tracking.step(&command_m, &tip_m, self.ticks_behind(seen.silent_s));
+                self.motion_at_leader(follower_m, handle_m)
+            } else {
+                self.tracking.interrupt();
+                tip_m
             };
+            let far = Some(&self.far.parcel).filter(|_| self.force.source.is_usable());
+            let parcel = if self.far.is_there { far } else { self.link.receive(t_s) };
+            self.rendered = self.renderer.step(&motion_m, parcel);
         }
-        self.tracking.interrupt();
-        seen.tip_m
+        self.led.keep(now);
+        self.rendered
+    }
+
+    /// The motion from which the force is made: the follower's as the leader can know it (the command, delayed by the
+    /// observed lag), or the handle's, mapped to the tip.
+    const fn motion_at_leader(&self, follower_m: Vector3<f64>, handle_m: Vector3<f64>) -> Vector3<f64> {
+        match self.settings.own_motion {
+            OwnMotion::Follower => follower_m,
+            OwnMotion::Handle => handle_m,
+        }
     }
 }

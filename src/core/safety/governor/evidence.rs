@@ -75,6 +75,7 @@ struct Run<const D: usize> {
 }
 
 /// Along and beside the applied force.
+#[expect(clippy::struct_field_names, reason = "the unit")]
 struct Parts {
     /// Size of the applied force, N.
     size_n: f64,

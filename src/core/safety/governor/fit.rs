@@ -69,11 +69,11 @@ impl<const D: usize> Past<D> {
         let mean_s = self.t_s[..=end].iter().sum::<f64>() / n;
         let mean_y = self.y[..=end].iter().sum::<SVector<f64, D>>() / n;
         let centred = |k: usize| self.t_s[k] - mean_s;
-        let squares = (0..=end).map(|k| centred(k).powi(2)).sum::<f64>();
-        let cubes = (0..=end).map(|k| centred(k).powi(3)).sum::<f64>();
+        let squares = (0..=end).map(|k| centred(k) * centred(k)).sum::<f64>();
+        let cubes = (0..=end).map(|k| centred(k) * centred(k) * centred(k)).sum::<f64>();
         // Orthogonal to 1 and t over these samples, evenly spaced or not.
         let square = |k: usize| centred(k) * (centred(k) - cubes / squares) - squares / n;
-        let norm = (0..=end).map(|k| square(k).powi(2)).sum::<f64>();
+        let norm = (0..=end).map(|k| square(k) * square(k)).sum::<f64>();
         let slope = (0..=end).map(|k| self.y[k] * centred(k)).sum::<SVector<f64, D>>() / squares;
         let bend = (0..=end).map(|k| self.y[k] * square(k)).sum::<SVector<f64, D>>() / norm;
         let weights = (0..=end).map(|k| square(k).abs()).sum::<f64>() / norm;

@@ -96,6 +96,7 @@ enum Grip<const D: usize> {
 
 /// What has been seen since a grip became doubtful or was lost; times in s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[expect(clippy::struct_field_names, reason = "the unit")]
 struct Since {
     lasted_s: f64,
     /// The whole force is withheld.

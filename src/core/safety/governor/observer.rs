@@ -71,7 +71,7 @@ impl<const D: usize> Observer<D> {
     pub(super) fn read(&mut self, t_s: f64, at_m: SVector<f64, D>) {
         if self.count > 0 {
             let since_s = t_s - self.ring[self.newest].t_s;
-            if since_s > GAP_S || since_s < -GAP_S {
+            if !(-GAP_S..=GAP_S).contains(&since_s) {
                 self.forget();
             } else if since_s < SPACING_S {
                 return;

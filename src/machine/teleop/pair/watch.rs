@@ -7,7 +7,10 @@ use nima_core::{
     safety::{Observed, Seen, Why},
 };
 
-use super::{AT_REST_M, LINK_SILENT_AFTER_S, Pair, STALLED_AFTER_S, Timing};
+use super::{
+    AT_REST_M, LINK_SILENT_AFTER_S, Pair, STALLED_AFTER_S, Timing,
+    even::{deadlines, stacked},
+};
 use crate::{
     messages::{Command, Event, Fault, Watchdog},
     rig::{Inputs, Sensed, Switches, View},
@@ -16,7 +19,8 @@ use crate::{
 
 impl<L: Link> Pair<L> {
     /// Checks a sample; returns it with impossible jumps replaced by the last plausible value.
-    pub(super) fn take_in(&mut self, mut inputs: Inputs, now_s: f64) -> Inputs {
+    pub(super) fn take_in(&mut self, mut inputs: Inputs, timing: &Timing) -> Inputs {
+        let now_s = timing.now_s;
         let was_usable = self.force.source.is_usable();
         self.force = match &inputs.sensed {
             Sensed::FarEnd(identified) => self.hear(identified),
@@ -47,19 +51,30 @@ impl<L: Link> Pair<L> {
         }
         self.hand_speed_m_s = self.speed.step(inputs.hand_s(now_s), inputs.hand.position_m);
         if !self.far.is_there {
-            self.identifier.step(&Sample { t_s: now_s, position_m: inputs.tip_m, force_n: self.force.tip_n });
-            // An unusable force is a missing sample: no parcel is sent for it. One that nobody measured may be rendered, and is no judge.
-            if is_usable && !self.withholds(Watchdog::Link) {
-                let parcel = self.identifier.parcel();
-                let fresh = parcel.fresh && self.force.source.is_known();
-                self.link.send(&Parcel { fresh, ..*parcel });
-            }
+            self.identify(&inputs.tip_m, is_usable, timing);
         } else if is_usable {
             self.far.parcel.force_n = self.force.tip_n;
         }
         self.last_inputs = Some(inputs);
         self.last_input_s = now_s - inputs.age_s;
         inputs
+    }
+
+    /// Identifies at every deadline that has passed, and sends a parcel for each.
+    fn identify(&mut self, tip_m: &Vector3<f64>, is_usable: bool, timing: &Timing) {
+        let now = (timing.now_s, stacked([tip_m, &self.force.tip_n]));
+        for t_s in deadlines(timing, 1.0 / self.rate_hz) {
+            let at = self.measured.at(t_s, now);
+            let [position_m, force_n] = [0, 3].map(|from| at.fixed_rows::<3>(from).into_owned());
+            self.identifier.step(&Sample { t_s, position_m, force_n });
+            // An unusable force is a missing sample: no parcel is sent for it. One that nobody measured may be rendered, and is no judge.
+            if is_usable && !self.withholds(Watchdog::Link) {
+                let parcel = self.identifier.parcel();
+                let fresh = parcel.fresh && self.force.source.is_known();
+                self.link.send(&Parcel { fresh, ..*parcel });
+            }
+        }
+        self.measured.keep(now);
     }
 
     /// The command that the follower had when the tip was measured, m; `None` where the tip is not measured now.

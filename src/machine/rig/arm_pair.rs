@@ -256,7 +256,7 @@ impl ArmPair {
         let gripper_rad = self.measured.hand.and_then(|hand| hand.value.gripper_rad);
         let Some((slot, control)) = &mut self.servos else { return };
         let s1_from_jaws = pose.orientation().inverse() * world_from_jaws;
-        let goals = control.goals(&s1_from_jaws, gripper_rad, &turned.value);
+        let goals = control.goals(now_s, &s1_from_jaws, gripper_rad, &turned.value);
         if let Some(servos) = slot.device() {
             servos.set_goals(&goals);
         }

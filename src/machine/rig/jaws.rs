@@ -38,11 +38,13 @@ pub(super) struct JawsControl {
     /// Last commanded orientation, as angles; keeps count of full turns.
     asked: Option<Jaws>,
     period_s: f64,
+    /// When the last goals were made, s.
+    last_s: Option<f64>,
 }
 
 impl JawsControl {
     pub(super) const fn new(settings: JawsSettings, period_s: f64) -> Self {
-        Self { settings, pids: [Pid::new(settings.pid); SERVOS], asked: None, period_s }
+        Self { settings, pids: [Pid::new(settings.pid); SERVOS], asked: None, period_s, last_s: None }
     }
 
     /// Orientation of the jaws from the measured servo angles.
@@ -62,13 +64,17 @@ impl JawsControl {
         std::array::from_fn(|i| reading.position_rad[i] / self.settings.ratio[i])
     }
 
-    /// Goal angles of the servos, rad, for this orientation and this opening of the gripper (rad).
+    /// Goal angles of the servos at this time (s), rad, for this orientation and this opening of the gripper (rad).
     pub(super) fn goals(
         &mut self,
+        now_s: f64,
         s1_from_jaws: &UnitQuaternion<f64>,
         gripper_rad: Option<f64>,
         reading: &ServoReading,
     ) -> [f64; SERVOS] {
+        // A tick right after a late one would make a large rate of one step of the reading.
+        let at_least_s = 0.5 * self.period_s;
+        let dt_s = self.last_s.replace(now_s).map_or(self.period_s, |last_s| (now_s - last_s).max(at_least_s));
         let near = self.asked.unwrap_or_else(|| self.measured(reading));
         let jaws = Jaws::of(s1_from_jaws, &near);
         self.asked = Some(jaws);
@@ -76,14 +82,14 @@ impl JawsControl {
         let grip_rad = gripper_rad.map_or(measured[SERVOS - 1], |rad| rad * self.settings.grip_per_gripper);
         let wanted = [jaws.roll_rad, jaws.pitch_rad, jaws.yaw_rad, grip_rad];
         std::array::from_fn(|i| {
-            let trim = self.pids[i].step(wanted[i], measured[i], self.period_s);
+            let trim = self.pids[i].step(wanted[i], measured[i], dt_s);
             (wanted[i] + trim) * self.settings.ratio[i]
         })
     }
 
     /// Forgets the last command.
     pub(super) fn reset(&mut self) {
-        self.asked = None;
+        (self.asked, self.last_s) = (None, None);
         self.pids.iter_mut().for_each(Pid::reset);
     }
 }

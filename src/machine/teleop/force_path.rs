@@ -62,6 +62,9 @@ pub struct ForcePath {
     /// It is not known which sensor is connected, so the calibrations must not be used.
     suspended: bool,
     gravity: Option<Compensator>,
+    period_s: f64,
+    /// Time of the last sample of the wrist, s.
+    last_s: Option<f64>,
     tip_force: Option<TipForce>,
 }
 
@@ -69,7 +72,13 @@ impl ForcePath {
     /// Creates the path for a loop of this period (s). All memory is allocated here.
     pub fn new(calibrations: &Calibrations, period_s: f64) -> Self {
         let live = |model| Compensator::new(model, DEFAULT_TIME_CONSTANT_S, period_s);
-        Self { suspended: false, gravity: calibrations.gravity.map(live), tip_force: calibrations.tip_force.clone() }
+        Self {
+            suspended: false,
+            gravity: calibrations.gravity.map(live),
+            period_s,
+            last_s: None,
+            tip_force: calibrations.tip_force.clone(),
+        }
     }
 
     /// From now on no force is computed from wrist samples: the sensor was connected or lost, and may be a different
@@ -112,7 +121,8 @@ impl ForcePath {
         let Some(gravity) = &mut self.gravity else {
             return ForceReport::none(ForceSource::Uncalibrated, None);
         };
-        let gravity_free = gravity.step(sample);
+        let dt_s = self.last_s.replace(t_s).map_or(self.period_s, |last_s| (t_s - last_s).max(0.0));
+        let gravity_free = gravity.step_after(dt_s, sample);
         let (Some(wrench), Some(world_from_s1)) = (gravity_free, sample.world_from_s1) else {
             return ForceReport::none(ForceSource::NoOrientation, gravity_free);
         };

@@ -23,22 +23,18 @@ pub const DEFAULT_TIME_CONSTANT_S: f64 = 0.002;
 #[derive(Clone, Debug)]
 pub struct Compensator {
     model: GravityModel,
-    /// Weight of a new reading in the low-pass, 0 to 1.
-    share: f64,
+    /// Time constant of the low-pass, s; `None`: no filter.
+    time_constant_s: Option<f64>,
+    period_s: f64,
     field_m_s2: Option<Vector3<f64>>,
 }
 
 impl Compensator {
-    /// For a loop of this period (s). A time constant (s) that is zero, negative or not finite means no filter.
+    /// For samples of this nominal period (s). A time constant (s) that is zero, negative or not finite means no filter.
     pub fn new(model: GravityModel, time_constant_s: f64, period_s: f64) -> Self {
-        let share = -libm::expm1(-period_s / time_constant_s);
         // The arm's orientation has almost no noise; a filter would only add delay.
-        let usable = model.source == Source::Imu
-            && time_constant_s > 0.0
-            && time_constant_s.is_finite()
-            && share > 0.0
-            && share <= 1.0;
-        Self { model, share: if usable { share } else { 1.0 }, field_m_s2: None }
+        let usable = model.source == Source::Imu && time_constant_s > 0.0 && time_constant_s.is_finite();
+        Self { model, time_constant_s: usable.then_some(time_constant_s), period_s, field_m_s2: None }
     }
 
     /// The model in use.
@@ -51,11 +47,17 @@ impl Compensator {
         self.field_m_s2 = None;
     }
 
-    /// Wrench of the sample without gravity and bias (`s1`, N and Nm). `None`, and a reset of the filter, if the wrench
-    /// is not finite or the source of orientation is missing, not finite or defective.
+    /// The same as [`step_after`](Self::step_after) for a sample one period after the last one.
     pub fn step(&mut self, sample: &WristSample) -> Option<Wrench> {
+        self.step_after(self.period_s, sample)
+    }
+
+    /// Wrench of the sample, `dt_s` (s) after the last one, without gravity and bias (`s1`, N and Nm). `None`, and a reset of the filter, if the wrench
+    /// is not finite or the source of orientation is missing, not finite or defective.
+    pub fn step_after(&mut self, dt_s: f64, sample: &WristSample) -> Option<Wrench> {
+        let share = self.time_constant_s.map_or(1.0, |time_constant_s| -libm::expm1(-dt_s / time_constant_s));
         let read = self.model.field_m_s2(sample).filter(|_| sample.raw.is_finite());
-        self.field_m_s2 = read.map(|read| self.field_m_s2.map_or(read, |old| old + (read - old) * self.share));
+        self.field_m_s2 = read.map(|read| self.field_m_s2.map_or(read, |old| old + (read - old) * share));
         let gravity = self.model.predict(&self.field_m_s2?);
         Some(Wrench {
             force_n: sample.raw.force_n - gravity.force_n,

@@ -87,9 +87,7 @@ struct Watch {
     ticks: u32,
     most_n: f64,
     step_n: f64,
-    governed_step_n: f64,
     last_n: Vector3<f64>,
-    was_governed: bool,
     /// Ticks for which machine and twin have been in different states.
     apart: u32,
 }
@@ -111,9 +109,7 @@ pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, 
         ticks: 0,
         most_n: 0.0,
         step_n: 0.0,
-        governed_step_n: 0.0,
         last_n: bench.wanted_n(),
-        was_governed: false,
         apart: 0,
     };
     bench.begin(kind);
@@ -169,13 +165,10 @@ impl Watch {
             self.ticks += 1;
         }
         self.most_n = self.most_n.max(wanted_n.norm());
-        // The governor comes after the slew limit: it takes the force away, and brakes, as fast as the handle runs.
-        let governed = step.machine.gates.governed > 0.0;
-        let step_n = if governed || self.was_governed { &mut self.governed_step_n } else { &mut self.step_n };
         if wanted_n.norm() > 0.0 {
-            *step_n = step_n.max((wanted_n - self.last_n).norm());
+            self.step_n = self.step_n.max((wanted_n - self.last_n).norm());
         }
-        (self.last_n, self.was_governed) = (wanted_n, governed);
+        self.last_n = wanted_n;
     }
 
     fn compare(&mut self, applied_n: Vector3<f64>, twin_n: Vector3<f64>) {
@@ -233,7 +226,6 @@ impl Watch {
             error_n: self.error_n,
             most_n: self.most_n,
             step_n: self.step_n,
-            governed_step_n: self.governed_step_n,
         }
     }
 }

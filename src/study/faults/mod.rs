@@ -186,8 +186,6 @@ pub struct Outcome {
     pub most_n: f64,
     /// Largest change of that force in one tick, except a change to zero, N.
     pub step_n: f64,
-    /// The same where the governor acts, which comes after the slew limit, N.
-    pub governed_step_n: f64,
 }
 
 /// Options: how much to try.
@@ -242,8 +240,6 @@ pub struct Sums {
     pub most_n: f64,
     /// Largest change of the commanded force in one tick, N.
     pub step_n: f64,
-    /// The same where the governor acts, which comes after the slew limit, N.
-    pub governed_step_n: f64,
 }
 
 impl Sums {
@@ -281,7 +277,6 @@ impl Sums {
             bounded_error_n: bounded.map(|outcome| outcome.peak_error_n).fold(0.0, f64::max),
             most_n: most(|outcome| outcome.most_n),
             step_n: most(|outcome| outcome.step_n),
-            governed_step_n: most(|outcome| outcome.governed_step_n),
         }
     }
 }

@@ -56,7 +56,7 @@ impl Report {
     fn sums_text(&self) -> String {
         let Sums { kinds, cases, no_force, harmless, detected, bounded, silent, on_force_path, .. } = self.sums;
         let Sums { detection_p50_ms, detection_p99_ms, detection_max_ms, bounded_error_n, .. } = self.sums;
-        let Sums { most_n, step_n, governed_step_n, .. } = self.sums;
+        let Sums { most_n, step_n, .. } = self.sums;
         let lines = [
             format!("{kinds} kinds of fault; {cases} cases on the virtual clock, {} others.", self.specials.len()),
             format!("- no force and no motion: {no_force}"),
@@ -72,7 +72,7 @@ impl Report {
             ),
             self.calm.line(),
             format!(
-                "- largest force commanded {most_n:.2} N, largest change in a tick {step_n:.2} N, where the governor acts {governed_step_n:.2} N"
+                "- largest force commanded {most_n:.2} N, largest change in a tick {step_n:.2} N, a fall to zero apart"
             ),
         ];
         lines.join("\n") + "\n"

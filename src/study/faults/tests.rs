@@ -51,11 +51,11 @@ fn a_healthy_machine_is_its_twin() {
     assert!(outcome[0].verdict == Verdict::Harmless && outcome[0].most_n > 0.5, "{outcome:?}");
 }
 
-/// A handle that trembles by itself runs ahead of the hand: the governor withdraws, and only it may do so faster than the slew limit.
+/// A handle that trembles by itself runs ahead of the hand: whatever the governor makes of it, the hand feels no step.
 #[test]
-fn a_change_beyond_the_slew_limit_is_the_governor_s() {
+fn a_reading_that_trembles_makes_no_step_beyond_the_slew_limit() {
     for outcome in tried(SensorAt::Wrist, Place::Free, &[Kind::HandNoise]) {
-        assert!(outcome.governed_step_n > 2.0 && outcome.step_n <= 0.51, "{outcome:?}");
+        assert!(outcome.step_n > 0.1 && outcome.step_n <= 0.51, "{outcome:?}");
     }
 }
 

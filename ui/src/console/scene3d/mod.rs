@@ -244,7 +244,7 @@ fn arm(live: &Live, side: Side, view: &SceneView) -> Option<Arm> {
     let rest = Pose { tip_m: start_m.cast(), measured_n: None, rendered_n: Vector3::zeros() };
     let pose = live.tick_of(side).filter(|tick| finite(tick.tip_m)).map_or(rest, |tick| Pose {
         tip_m: tick.tip_m.cast(),
-        measured_n: tick.known_n().map(|force_n| force_n.cast()),
+        measured_n: tick.known_n().map(nalgebra::Matrix::cast),
         rendered_n: tick.rendered_n.cast(),
     });
     // Hidden forces say nothing, not even that they are unknown.

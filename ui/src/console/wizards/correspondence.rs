@@ -128,7 +128,9 @@ impl CorrespondenceWizard {
                 let why = text::correspondence::NEEDS_WRIST_SENSOR.get();
                 check_line(ui, text::correspondence::CHECK_WRIST.get(), false, why);
                 // Without the wrist sensor nothing is known of the others.
-                names.into_iter().for_each(|name| waiting_line(ui, name));
+                for name in names {
+                    waiting_line(ui, name);
+                }
                 return;
             };
             let (_, words) = phase_words(&self.session.phase());

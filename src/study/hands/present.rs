@@ -99,9 +99,10 @@ impl Report {
             "|---".repeat(FORCES_N.len()),
         )
         .ok();
-        for opening_ms in OPENINGS_MS {
+        let of_opening = |opening_ms: f64| rows.iter().filter(move |row| (row.opening_ms - opening_ms).abs() < 1e-9);
+        for opening_ms in OPENINGS_MS.into_iter().filter(|opening_ms| of_opening(*opening_ms).count() > 0) {
             write!(text, "| {opening_ms} |").ok();
-            for row in rows.iter().filter(|row| (row.opening_ms - opening_ms).abs() < 1e-9) {
+            for row in of_opening(opening_ms) {
                 let detected = row.detected_ms.map_or_else(|| "–".to_owned(), |ms| format!("{ms:.0}"));
                 let Releases { travel_p95_mm, travel_max_mm, energy_max_mj, .. } = row;
                 write!(text, " {travel_p95_mm:.1} / {travel_max_mm:.1}, {energy_max_mj:.1}, {detected} |").ok();

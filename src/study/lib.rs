@@ -9,6 +9,7 @@ pub mod clocks;
 pub mod effects;
 pub mod faults;
 pub mod gates;
+pub mod hands;
 pub mod network;
 mod pair;
 pub mod passivity;

@@ -8,6 +8,7 @@ mod clocks;
 mod effects;
 mod faults;
 mod gates;
+mod hands;
 mod network;
 mod passivity;
 mod release;
@@ -85,6 +86,8 @@ studies! {
     Faults(faults::Faults),
     /// Send extreme force requests through the gates and count violations of their limits
     Gates(gates::Gates),
+    /// Move hands that hold the handle, and let go, in front of the last gate: how often, how hard and how late it acts
+    Hands(hands::Hands),
     /// Run two machines over a bad line, in every mode: force error, energy, stops, over delay, jitter, loss, outages and clock faults
     Network(network::Network),
     /// Let go of a handle pressed with up to 5 N: every mode, method of others and delay, without and with the governor

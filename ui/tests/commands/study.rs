@@ -156,7 +156,7 @@ fn two_machines_over_a_bad_line_are_compared_with_a_perfect_one() {
 
     refused(&["study", "network", "--quick", "--full"], "--full");
     refused(&["study", "network", "--mode", "sideways"], "sideways");
-    for study in ["release", "passivity", "network", "validation", "tradeoff"] {
+    for study in ["release", "hands", "passivity", "network", "validation", "tradeoff"] {
         refused(&["study", study, "--clock", "late-90"], "unknown clock profile \"late-90\"");
     }
     refused(&["study", "validation", "--paper", "--clock", "busy"], "--clock");

@@ -1,0 +1,242 @@
+//! Hands that are there, in tissue whose force comes late, in front of the last gate.
+
+use nalgebra::SVector;
+use nima_core::{
+    noise::Noise,
+    safety::{Governed, Governor, Handle, Reading, Reason},
+};
+use nima_machine::runtime::VirtualClock;
+use serde::Serialize;
+
+use super::{
+    hand::{Hand, Intention, within},
+    kind::Kind,
+    person::{HANDLE_KG, Person, SIDEWAYS},
+};
+use crate::pair::RATE_HZ;
+
+/// Nominal period, s, the slew limit, N/s, and the ceiling of the asked force, N: those of the chain as it comes.
+pub(super) const PERIOD_S: f64 = 1.0 / RATE_HZ;
+pub(super) const SLEW_N_PER_S: f64 = 500.0;
+const CEILING_N: f64 = 4.0;
+/// A withheld fraction above this begins an alarm, which ends when nothing is withheld.
+const ALARM: f64 = 0.02;
+/// A force that opposes the asked one by more than this is reversed, and a weaker asked force is not judged for its withheld part, N.
+const JUDGED_N: f64 = 0.05;
+
+/// The last gate, or what is tried in its place.
+pub(super) trait Gate<const D: usize> {
+    fn step(&mut self, t_s: f64, reading: Reading<D>, asked_n: SVector<f64, D>) -> Governed<D>;
+}
+
+impl<const D: usize> Gate<D> for Governor<D> {
+    fn step(&mut self, t_s: f64, reading: Reading<D>, asked_n: SVector<f64, D>) -> Governed<D> {
+        Self::step(self, t_s, Some(reading), asked_n)
+    }
+}
+
+/// The governor with the settings as they come, for readings of this kind.
+pub(super) fn governor<const D: usize>(kind: &Kind) -> Governor<D> {
+    let handle = Handle { mass_kg: HANDLE_KG, damping_n_s_m: 0.5, brake_n_s_m: 30.0, step_m: kind.step_m };
+    Governor::new(handle, SLEW_N_PER_S, PERIOD_S)
+}
+
+/// Sums and worst values over hands that were there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Tally {
+    /// Hands, and for how long all of them together were there, min.
+    pub hands: u64,
+    /// See above.
+    pub minutes: f64,
+    /// How often the governor began to withhold more than 2 %.
+    pub alarms: u64,
+    /// Ticks in which the force opposed the asked one by more than 0.05 N.
+    pub reversed_ticks: u64,
+    /// Largest force against the asked one, N.
+    pub reversed_n: f64,
+    /// Largest change in one tick beyond the slew limit, N.
+    pub beyond_slew_n: f64,
+    /// Integral of the asked force's size over time, and of the part of it that was withheld, N s; above 0.05 N.
+    pub asked_n_s: f64,
+    /// See above.
+    pub withheld_n_s: f64,
+    /// Hands with an alarm.
+    pub hands_alarmed: u64,
+    /// Hands that were declared gone.
+    pub hands_gone: u64,
+}
+
+impl Tally {
+    /// Adds what happened to other hands.
+    pub fn add(&mut self, other: &Self) {
+        self.hands += other.hands;
+        self.minutes += other.minutes;
+        self.alarms += other.alarms;
+        self.reversed_ticks += other.reversed_ticks;
+        self.reversed_n = self.reversed_n.max(other.reversed_n);
+        self.beyond_slew_n = self.beyond_slew_n.max(other.beyond_slew_n);
+        self.asked_n_s += other.asked_n_s;
+        self.withheld_n_s += other.withheld_n_s;
+        self.hands_alarmed += other.hands_alarmed;
+        self.hands_gone += other.hands_gone;
+    }
+
+    /// Alarms in a minute.
+    pub fn alarms_per_min(&self) -> f64 {
+        self.alarms as f64 / self.minutes.max(1e-9)
+    }
+
+    /// Part of the asked force that was withheld, %.
+    pub fn withheld_percent(&self) -> f64 {
+        100.0 * self.withheld_n_s / self.asked_n_s.max(1e-9)
+    }
+}
+
+/// What is counted for one hand while it is there.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Watch {
+    pub(super) tally: Tally,
+    alarmed: bool,
+}
+
+impl Watch {
+    /// One tick, this long after the one before (s): the applied force before (N) and now, and the force that was asked.
+    pub(super) fn tick<const D: usize>(
+        &mut self,
+        dt_s: f64,
+        before_n: &SVector<f64, D>,
+        governed: &Governed<D>,
+        asked_n: &SVector<f64, D>,
+    ) {
+        let tally = &mut self.tally;
+        let size_n = asked_n.norm();
+        let along_n = if size_n > 0.0 { governed.force_n.dot(asked_n) / size_n } else { -governed.force_n.norm() };
+        let beyond_n = (governed.force_n - before_n).norm() - SLEW_N_PER_S * PERIOD_S;
+        tally.minutes += dt_s / 60.0;
+        tally.reversed_ticks += u64::from(-along_n > JUDGED_N);
+        tally.reversed_n = tally.reversed_n.max(-along_n);
+        tally.beyond_slew_n = tally.beyond_slew_n.max(beyond_n);
+        if size_n > JUDGED_N {
+            tally.asked_n_s += size_n * dt_s;
+            tally.withheld_n_s += (size_n - along_n).max(0.0) * dt_s;
+        }
+        self.alarm(governed.withheld, governed.reason);
+    }
+
+    pub(super) const fn alarm(&mut self, withheld: f64, reason: Reason) {
+        let alarms = withheld > ALARM;
+        if alarms && !self.alarmed {
+            self.tally.alarms += 1;
+        }
+        self.alarmed = alarms || self.alarmed && withheld > 0.0;
+        self.tally.hands = 1;
+        self.tally.hands_alarmed = if self.tally.alarms > 0 { 1 } else { 0 };
+        if matches!(reason, Reason::HandGone) {
+            self.tally.hands_gone = 1;
+        }
+    }
+}
+
+#[derive(Debug)]
+struct Side<const D: usize, G> {
+    hand: Hand<D>,
+    gate: G,
+    asked_n: SVector<f64, D>,
+    /// Where the tissue was entered, m.
+    entry_m: Option<SVector<f64, D>>,
+    watch: Watch,
+}
+
+/// Hands of one kind for this time (s), each in front of a gate of its own.
+pub(super) fn held<const D: usize, G: Gate<D>>(
+    kind: &Kind,
+    clock: VirtualClock,
+    seed: u64,
+    seconds: f64,
+    gate: impl Fn() -> G,
+) -> Tally {
+    let mut noise = Noise::new(seed);
+    let mut sides = sides(kind, &mut noise, gate);
+    let mut times = clock.tick_times(RATE_HZ);
+    let mut next_s = times.advance().now_s;
+    let mut last_s = 0.0;
+    loop {
+        for side in &mut sides {
+            side.hand.step(&mut noise);
+        }
+        let now_s = sides[0].hand.now_s();
+        if now_s + 1e-9 < next_s {
+            continue;
+        }
+        // Two hands hold the tissue by what both together press into it.
+        let depths_m = sides.iter().map(Side::late_depth_m);
+        let shared_m = kind.two_hands.then(|| depths_m.sum());
+        for side in &mut sides {
+            side.tick(kind, now_s, now_s - last_s, shared_m);
+        }
+        if now_s > seconds {
+            break;
+        }
+        last_s = now_s;
+        next_s = times.advance().now_s;
+    }
+    let mut all = Tally::default();
+    for side in &sides {
+        all.add(&side.watch.tally);
+    }
+    all
+}
+
+fn sides<const D: usize, G: Gate<D>>(kind: &Kind, noise: &mut Noise, gate: impl Fn() -> G) -> Vec<Side<D, G>> {
+    let mut persons: Vec<Person<D>> = (0..kind.hands()).map(|_| Person::drawn(kind, noise)).collect();
+    if let [one, other] = persons.as_mut_slice() {
+        // Each hand feels the motion of both: half of the stiffness leaves the loop as stable as that of one hand.
+        let n_m = 0.5 * one.tissue.n_m.min(other.tissue.n_m);
+        (one.tissue.n_m, other.tissue.n_m) = (n_m, n_m);
+        other.tissue.delay_s = one.tissue.delay_s;
+    }
+    let side = |person: Person<D>| Side {
+        hand: Hand::new(person, Intention::Reaches(person.reaches()), kind.gripper),
+        gate: gate(),
+        asked_n: SVector::zeros(),
+        entry_m: None,
+        watch: Watch::default(),
+    };
+    persons.into_iter().map(side).collect()
+}
+
+impl<const D: usize, G: Gate<D>> Side<D, G> {
+    /// Depth in the tissue as the leader has it, m; negative outside.
+    fn late_depth_m(&self) -> f64 {
+        let tissue = &self.hand.person.tissue;
+        tissue.depth_m(&self.hand.before_m(tissue.delay_s))
+    }
+
+    fn tick(&mut self, kind: &Kind, now_s: f64, dt_s: f64, shared_m: Option<f64>) {
+        let wanted_n = within(self.pressed_n(shared_m.unwrap_or_else(|| self.late_depth_m())), CEILING_N);
+        let change_n = SLEW_N_PER_S * dt_s.min(PERIOD_S);
+        self.asked_n += within(wanted_n - self.asked_n, change_n);
+        let governed = self.gate.step(now_s, reading(now_s, &self.hand, kind), self.asked_n);
+        self.watch.tick(dt_s, &self.hand.force_n, &governed, &self.asked_n);
+        self.hand.force_n = governed.force_n;
+    }
+
+    /// Late force of the tissue at this depth (m), N: an elastic half-space that also holds the tip sideways.
+    fn pressed_n(&mut self, depth_m: f64) -> SVector<f64, D> {
+        let tissue = self.hand.person.tissue;
+        if depth_m <= 0.0 {
+            self.entry_m = None;
+            return SVector::zeros();
+        }
+        let at_m = self.hand.before_m(tissue.delay_s);
+        let dragged_m = at_m - *self.entry_m.get_or_insert(at_m);
+        let sideways_m = dragged_m - tissue.inwards * tissue.inwards.dot(&dragged_m);
+        -(tissue.inwards * depth_m + sideways_m * SIDEWAYS) * tissue.n_m
+    }
+}
+
+/// The handle as its device reads it, with the time at which the device believes to have read it.
+pub(super) fn reading<const D: usize>(now_s: f64, hand: &Hand<D>, kind: &Kind) -> Reading<D> {
+    let at_m = hand.before_m(kind.late_s).map(|x| (x / kind.step_m).floor() * kind.step_m);
+    Reading { t_s: now_s, at_m }
+}

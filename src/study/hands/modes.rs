@@ -1,0 +1,112 @@
+//! A moving hand that is there, in the whole loop: every mode of the program, with its own gates.
+
+use nalgebra::Vector3;
+use nima_core::{
+    impedance::{Mode, OwnMotion, Recipe},
+    noise::Noise,
+    safety::{ChainSettings, Gate, Governed, Reason},
+};
+use nima_machine::runtime::{ClockProfile, VirtualClock};
+use nima_world::scene::Tissue;
+use serde::Serialize;
+
+use super::{
+    HandsError,
+    held::{Tally, Watch},
+    person::{Motion, between},
+};
+use crate::{
+    clocks,
+    pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial},
+    release::TREMOR_M,
+};
+
+/// Delays of the link, ms.
+const DELAYS_MS: [f64; 2] = [10.0, 100.0];
+/// Stiffness of the grips, N/m.
+const GRIPS_N_M: [f64; 2] = [900.0, 2000.0];
+/// The hand at first and the middle of its targets, height above the tissue, and their farthest distance from it, m.
+const START_M: f64 = 0.005;
+const MIDDLE_M: f64 = -0.002;
+const RADIUS_M: f64 = 0.010;
+/// Duration of a motion, and longest pause after it, s.
+const REACHES_S: ([f64; 2], f64) = ([0.2, 0.9], 0.5);
+
+/// One mode on one clock: all delays.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct InMode {
+    /// Clock of the loop.
+    pub clock: ClockProfile,
+    /// Mode that rendered.
+    pub mode: Mode,
+    /// What happened; reversed is a force of the brake.
+    #[serde(flatten)]
+    pub tally: Tally,
+}
+
+/// Hands of random grips that touch the tissue in this mode, one for each delay.
+pub(super) fn in_mode(
+    mode: Mode,
+    clock: VirtualClock,
+    seed: u64,
+    seconds: f64,
+    tissue: Tissue,
+) -> Result<InMode, HandsError> {
+    let mut tally = Tally::default();
+    for (number, delay_ms) in (0..).zip(DELAYS_MS) {
+        let trial = trial(mode, 1e-3 * delay_ms, clocks::of_trial(clock, number), seed.wrapping_add(number), tissue);
+        tally.add(&touched(&trial, seconds)?);
+    }
+    Ok(InMode { clock: clock.profile, mode, tally })
+}
+
+fn trial(mode: Mode, delay_s: f64, clock: VirtualClock, seed: u64, tissue: Tissue) -> Trial {
+    let mut noise = Noise::new(seed);
+    Trial {
+        mode,
+        own_motion: OwnMotion::Follower,
+        literal: Recipe::default(),
+        delay_s,
+        gates: ChainSettings::default(),
+        gain: 1.0,
+        tissue,
+        tremor_m: TREMOR_M,
+        noise_n: NOISE_N,
+        handle: Handle::OMEGA,
+        grip: Grip::of_stiffness(between(&mut noise, GRIPS_N_M)),
+        seed,
+        clock,
+    }
+}
+
+fn touched(trial: &Trial, seconds: f64) -> Result<Tally, HandsError> {
+    let start_m = Vector3::new(0.0, 0.0, START_M);
+    let mut motion = Motion::new(start_m, Vector3::new(0.0, 0.0, MIDDLE_M), RADIUS_M, REACHES_S);
+    let mut noise = Noise::new(trial.seed);
+    let mut pair = Pair::new(trial, start_m)?;
+    let mut watch = Watch::default();
+    let mut asked_n = Vector3::zeros();
+    while pair.now_s() < seconds - 0.5 / RATE_HZ {
+        let last_n = pair.force_n();
+        let last_s = pair.now_s();
+        pair.step(|t_s, _| motion.at(t_s, &mut noise).0);
+        let withheld = pair.report().governed;
+        let reason = pair.report().reason(Gate::Governor);
+        let governed = Governed { force_n: pair.force_n(), withheld, reason };
+        asked_n = before_the_governor(&governed, &asked_n);
+        // A request that is no force is a stop, which has no slew limit and is not the governor's.
+        let before_n = if pair.report().acted(Gate::Validity) { governed.force_n } else { last_n };
+        watch.tick(pair.now_s() - last_s, &before_n, &governed, &asked_n);
+    }
+    Ok(watch.tally)
+}
+
+/// The force that the governor was asked for (N), from what it withheld. While it withholds all of it, the one before stays; a brake
+/// counts as against it.
+fn before_the_governor(governed: &Governed<3>, last_n: &Vector3<f64>) -> Vector3<f64> {
+    let Governed { force_n, withheld, reason } = *governed;
+    if reason == Reason::LetGo && force_n.norm() > 0.0 {
+        return force_n * (-last_n.norm() / force_n.norm());
+    }
+    if withheld < 1.0 { force_n / (1.0 - withheld) } else { *last_n }
+}

@@ -2,7 +2,7 @@
 //!
 //! *Push*: the handle accelerates along the force faster than a hand moves. *Step*: the force that the hand carried vanishes
 //! faster than a hand changes its own. Both are certain beyond what a voluntary motion reaches, and likely beyond a
-//! fraction of it. *Travel*: over a long way the force alone explains the motion; likely, never certain.
+//! fraction of it. *Travel*: the force alone explains the motion over a longer way than that of any hand.
 
 use nalgebra::SVector;
 
@@ -36,9 +36,10 @@ const CARRIED: f64 = 0.5;
 const PUSHES_S: [f64; 4] = [0.004, 0.006, 0.009, LONG_S];
 const STEPS_S: [[f64; 2]; 4] = [[0.008, 0.005], [0.008, 0.008], [0.010, 0.011], [0.016, 0.014]];
 const LONG_S: f64 = 0.014;
-/// Travel under the force alone that is suspicious: above the rare acceleration, and at any, m. No motion of the study goes 13 mm so.
+/// Travel under the force alone that is suspicious above the rare acceleration, and that is certain at any, m. No motion of the study
+/// goes more than 13 mm so.
 const PUSHED_M: f64 = 1e-3;
-const TRAVEL_M: f64 = 0.020;
+const TRAVEL_M: f64 = 0.025;
 const TRAVEL_N: f64 = 0.4;
 /// The same for a handle that began at rest, m, for a force of this, N, and its speed at the beginning, m/s.
 const FROM_REST_M: f64 = 2e-3;
@@ -144,7 +145,13 @@ impl<const D: usize> Evidence<D> {
         let travel_m = (past.at_m - run.from_m).norm();
         let driven = run.from_rest && travel_m > FROM_REST_M && size_n > FROM_REST_N;
         let far = travel_m > TRAVEL_M && size_n > TRAVEL_N;
-        if driven || far || (rare && travel_m > PUSHED_M) { Alone::Pushed } else { Alone::No }
+        if far {
+            Alone::Certain
+        } else if driven || (rare && travel_m > PUSHED_M) {
+            Alone::Pushed
+        } else {
+            Alone::No
+        }
     }
 }
 

@@ -47,10 +47,12 @@ fn force_n(now_s: f64) -> Vector3<f64> {
     Vector3::new(0.3, 0.0, 1.0 + 1e-3 * now_s)
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "as the bench asks for it: a sensor may deliver nothing")]
 fn at_tip(now_s: f64) -> Option<Sensed> {
     Some(Sensed::AtTip(force_n(now_s)))
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "as the bench asks for it: a sensor may deliver nothing")]
 fn at_wrist(now_s: f64) -> Option<Sensed> {
     let world_from_s1 = Some(UnitQuaternion::identity());
     let wrench = Wrench { force_n: force_n(now_s), torque_nm: Vector3::zeros() };

@@ -35,8 +35,8 @@ pub const WEAK_AIM_MM: f64 = 25.0;
 pub const AIM_M_S: f64 = 0.12;
 /// Energy, mJ.
 pub const AIM_MJ: f64 = 2.0;
-/// Force later than 100 ms, N.
-pub const AIM_N: f64 = 0.1;
+/// Force later than 100 ms, N: what the brake makes of the steps of the reading at rest, near the handle's own friction.
+pub const AIM_N: f64 = 0.2;
 /// Brakes that are tried, N s/m. None is known of a real device; 30 is the most that chai3d asks of an omega.7.
 pub const BRAKES_N_S_M: [f64; 3] = [5.0, 15.0, 30.0];
 /// Handles that are tried, by mass (kg) and Coulomb friction (N).

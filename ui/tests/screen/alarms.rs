@@ -207,5 +207,8 @@ fn a_refused_engagement_says_why() {
     let mut harness = console_of("palpation", SIZE, |app| app);
     until(&mut harness, "idle", |tick| tick.state == LoopState::Idle);
     press(&mut harness, "Engage");
-    read(&mut harness, "Not engaged: the force at the tip is not known; calibrate gravity");
+    read(
+        &mut harness,
+        "Not engaged: the force at the tip is unknown: the wrist sensor is not calibrated; calibrate gravity for this sensor and tool",
+    );
 }

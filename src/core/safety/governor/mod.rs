@@ -187,16 +187,17 @@ impl<const D: usize> Governor<D> {
     /// The tick is at `t_s` (s), the handle was read there (`None`: unknown, then the grip stays as it is), and all gates before
     /// let `asked_n` (N) pass. Anything that is not finite gives no force.
     pub fn step(&mut self, t_s: f64, reading: Option<Reading<D>>, asked_n: SVector<f64, D>) -> Governed<D> {
+        // The first tick, and one after the clock was set back, count as no time.
+        let before_s = if t_s.is_finite() { self.last_s.replace(t_s) } else { self.last_s };
+        let dt_s = before_s.map_or(0.0, |before_s| (t_s - before_s).max(0.0));
         let far = |vector: &SVector<f64, D>, limit: f64| !vector.iter().all(|x| x.abs() <= limit);
         let reading_is_far = reading.is_some_and(|reading| far(&reading.at_m, FAR_M) || !reading.t_s.is_finite());
         if far(&asked_n, PLAUSIBLE_N) || reading_is_far || !t_s.is_finite() {
             self.observer.forget();
-            self.applied_n = SVector::zeros();
+            // What was withheld at once returns as to a hand.
+            (self.applied_n, self.withheld) = (SVector::zeros(), 1.0);
             return Governed { force_n: SVector::zeros(), withheld: 1.0, reason: Reason::NotFinite };
         }
-        // The first tick, and one after the clock was set back, count as no time.
-        let dt_s = self.last_s.map_or(0.0, |last_s| (t_s - last_s).max(0.0));
-        self.last_s = Some(t_s);
         let brake_n = if self.watching { self.judge(dt_s, reading) } else { SVector::zeros() };
         // After a late tick too: the hand feels the change at once, however long the tick before was held.
         let step_n = self.slew_n_per_s * dt_s.min(self.period_s);
@@ -295,15 +296,16 @@ impl<const D: usize> Governor<D> {
                 SVector::zeros()
             }
             Grip::LetGo(since) => {
-                // The first look takes the force off; what follows is the brake's own.
-                let before_n = if since.lasted_s <= dt_s { SVector::zeros() } else { self.applied_n };
-                let most_n = asked_n.norm();
                 self.withheld = 1.0;
+                // The first look takes the force off; what follows is the brake's own.
                 if since.lasted_s <= dt_s {
                     return SVector::zeros();
                 }
-                let braked_n = within(brake_n, most_n);
-                within(before_n + within(braked_n - before_n, step_n), most_n)
+                // What the shorter request takes comes first, so that both together keep the slew limit.
+                let most_n = asked_n.norm();
+                let kept_n = within(self.applied_n, most_n);
+                let room_n = (step_n - (kept_n - self.applied_n).norm()).max(0.0);
+                kept_n + within(within(brake_n, most_n) - kept_n, room_n)
             }
             Grip::Doubtful { .. } | Grip::Held => {
                 // What the asked force changes by comes first, so that both together keep the slew limit.

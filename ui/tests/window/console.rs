@@ -32,7 +32,10 @@ impl<'a> Console<'a> {
         wait_until("the window", || x.window_is_open());
         thread::sleep(Duration::from_millis(1500));
         // No window manager gives the keyboard to the window.
-        console.tool(&["search", "--name", "NIMA Console", "windowfocus"]);
+        // On a busy machine it cannot take it at once.
+        let focus = ["search", "--name", "NIMA Console", "windowfocus"];
+        wait_until("the focus", || console.x.command("xdotool").args(focus).status().unwrap().success());
+        thread::sleep(Duration::from_millis(500));
         console
     }
 

@@ -24,8 +24,8 @@ use crate::console::{
 use crate::words::{newtons_read, side_word};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
-/// Additional height of the lowest plot, which has the time axis.
-const TIME_AXIS: f32 = 34.0;
+/// Height of the time axis in rows of text: its numbers, and its title with the gap that `egui_plot` leaves under it.
+const TIME_AXIS_ROWS: f32 = 2.25;
 
 /// Width from which the header shows a heading.
 const HEADING_FROM: f32 = 800.0;
@@ -43,13 +43,14 @@ pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[
         history.trace(channel, (from_s, to_s), now_s, most, line);
     }
     ui.spacing_mut().item_spacing.y = 4.0;
-    let height = ((ui.available_height() - TIME_AXIS - 4.0 * (axes.len() - 1) as f32) / axes.len() as f32).max(48.0);
+    let time_axis = time_axis_height(ui);
+    let height = ((ui.available_height() - time_axis - 4.0 * (axes.len() - 1) as f32) / axes.len() as f32).max(48.0);
     let cursor_s = state.cursor_s.take();
     let history = &live.history[state.side.index()];
     for &axis in axes {
         let last = axes.last() == Some(&axis);
         state.ranges_n[axis] = range_n(history.extent(&[axis, axis + 3], (from_s, to_s)), state.ranges_n[axis]);
-        let height = if last { height + TIME_AXIS } else { height };
+        let height = if last { height + time_axis } else { height };
         let response = plot_ui(ui, live, state, (axis, last, axes.len() == 1), height, cursor_s);
         describe(ui, &response.response, &text::forces::plot(AXES[axis], side_word(state.side)), || {
             summary(history, axis, (from_s, to_s))
@@ -68,6 +69,10 @@ pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[
     if state.cursor_s != cursor_s {
         ui.ctx().request_repaint();
     }
+}
+
+fn time_axis_height(ui: &Ui) -> f32 {
+    TIME_AXIS_ROWS * ui.text_style_height(&egui::TextStyle::Body)
 }
 
 /// The forces along an axis at the end of this time, and the largest in it.
@@ -193,6 +198,8 @@ fn plot_ui(
     let history = state.history(live);
     let seconds = AxisHints::new_x()
         .label(if last { text::forces::TIME_AXIS.get() } else { "" })
+        // Otherwise the axis is as high as its texts were in the last frame, and one with other texts draws the title over the numbers.
+        .min_thickness(time_axis_height(ui))
         .formatter(|mark, _| plain(mark.value));
     let newtons = AxisHints::new_y()
         .label(format!("{} (N)", AXES[axis]))

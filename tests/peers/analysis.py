@@ -1,4 +1,4 @@
-"""Expected numbers for `src/analysis`: `python analysis.py` writes src/analysis/tests/peers.json and prints the versions.
+"""Expected numbers for `src/extras/analysis`: `python analysis.py` writes src/extras/analysis/tests/peers.json and prints the versions.
 
 Needs scipy, statsmodels and `Rscript` with lme4, lmerTest, coin and jsonlite (Debian: r-base-core r-cran-lmertest r-cran-coin r-cran-jsonlite).
 The data are made here from seeds and rounded, so that they are the same wherever they are read.

@@ -14,7 +14,7 @@
 //! - A handle that is not moved repeats the same numbers, which is not a fault. It counts as silent only if the library
 //!   reports for 20 ms that there is nothing newer (`DHD_TIMEGUARD`).
 //!
-//! The replacement library is in `src/stand_in`; the emulated device behind it is
+//! The replacement library is in `src/lab/stand_in`; the emulated device behind it is
 //! `nima_world::emulators::force_dimension`.
 
 mod driver;

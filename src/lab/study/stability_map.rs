@@ -122,7 +122,7 @@ impl StabilityMap {
     /// The map built into the program; `None` if its file is damaged (a test checks it).
     pub fn committed() -> Option<&'static Self> {
         static MAP: OnceLock<Option<StabilityMap>> = OnceLock::new();
-        MAP.get_or_init(|| Self::parse(include_str!("../../assets/stability_map.csv")).ok()).as_ref()
+        MAP.get_or_init(|| Self::parse(include_str!("../../../assets/stability_map.csv")).ok()).as_ref()
     }
 
     /// Parses the format that [`StabilityMap::csv`] writes.

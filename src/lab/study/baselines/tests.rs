@@ -8,7 +8,7 @@ use super::{CHOSEN_ON, Options, Report, Split};
 use crate::{Experiment as _, Findings as _, tradeoff::Source};
 
 /// Real recordings; they are not part of the repository.
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/tue_1dof");
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../../shared/data/tue_1dof");
 
 fn ratio(report: &Report, split: Split, mode: Mode, delay_ms: f64) -> f64 {
     let is_it =

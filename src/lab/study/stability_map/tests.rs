@@ -3,7 +3,7 @@ use super::*;
 #[test]
 fn the_committed_map_is_whole_and_is_what_it_writes() {
     let map = StabilityMap::committed().unwrap();
-    assert_eq!(map.csv(), include_str!("../../../assets/stability_map.csv"));
+    assert_eq!(map.csv(), include_str!("../../../../assets/stability_map.csv"));
     let error = StabilityMap::parse("header\nliteral,0,12,SSSSSSS\n").unwrap_err();
     assert_eq!(error.line, 2);
     assert!(StabilityMap::parse("").is_err());

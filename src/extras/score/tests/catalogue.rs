@@ -27,7 +27,7 @@ fn the_score_like_that_of_fls_says_that_it_is_none() {
 
 #[test]
 fn the_page_lists_every_measure_with_unit_and_definition() {
-    let page = include_str!("../../../docs/score.md");
+    let page = include_str!("../../../../docs/score.md");
     for definition in &MEASURES {
         let per_hand = if definition.per_hand { "yes" } else { "-" };
         let row = format!(
@@ -40,7 +40,7 @@ fn the_page_lists_every_measure_with_unit_and_definition() {
 
 #[test]
 fn the_task_file_of_the_page_holds_the_defaults() {
-    let page = include_str!("../../../docs/score.md");
+    let page = include_str!("../../../../docs/score.md");
     let text = page.split("```toml").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
     let bare = TaskFile::from_toml("name = 'Six rings'\nkind = 'peg_transfer'").unwrap();
     assert_eq!(TaskFile::from_toml(text).unwrap(), bare);

@@ -1,5 +1,6 @@
-//! What the tests of every crate stand on: judging in real time, seeds for random loops, and one set of features of the libraries that
-//! several crates share (see `Cargo.toml` beside this file).
+//! What the tests of every crate share: judging in real time, reports of tests that could not judge, seeds for random loops, and one set of
+//! features of the libraries that several crates use (see `Cargo.toml` beside this file).
 
 pub mod fuzz;
 pub mod real_time;
+pub mod unjudged;

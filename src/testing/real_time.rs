@@ -1,15 +1,16 @@
 //! Tests on the real clock: a machine that is busy with other work must not make them fail.
 
 use std::{
-    io::Write as _,
     panic::{AssertUnwindSafe, catch_unwind, panic_any, resume_unwind},
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
     },
-    thread::{JoinHandle, current, sleep, spawn},
+    thread::{JoinHandle, sleep, spawn},
     time::{Duration, Instant},
 };
+
+use crate::unjudged;
 
 const ATTEMPTS: usize = 5;
 /// What a busy machine has held up for so long is better judged when nothing else runs.
@@ -43,7 +44,7 @@ pub fn too_busy() -> ! {
 }
 
 /// Runs a test in real time. A failure on a busy machine is not judged, and the test is tried again; two failures on a quiet one fail it.
-/// A test that never ran on a quiet machine is named, so that it can be run again (`./dev test` does, when all else has ended).
+/// A test that never ran on a quiet machine is reported (`unjudged`); `./dev test` runs it again when all else has ended.
 pub fn judged(test: impl Fn()) {
     let watch = || {
         let watch = Watch::start();
@@ -54,8 +55,7 @@ pub fn judged(test: impl Fn()) {
     let is_judged = judged_on(test, watch, PATIENCE.min(left));
     if !is_judged {
         HELD_UP_MS.fetch_add(begin.elapsed().as_millis() as u64, Relaxed);
-        // Not `eprintln!`, which is kept from view when the test passes.
-        let _ = writeln!(std::io::stderr(), "too busy to judge: {}", current().name().unwrap_or("a test"));
+        unjudged::too_busy();
     }
 }
 

@@ -1,16 +1,13 @@
 //! The tip-force network on real recordings: jaw torque of a da Vinci Maryland instrument, estimated from its spindle
 //! side.
 //!
-//! The recordings are in `../shared/data/mrd_davinci` (file XY: drive frequency X, load Y); without them nothing is
-//! tested.
+//! The recordings are in `../shared/data/mrd_davinci` (file XY: drive frequency X, load Y).
 
-use std::{
-    path::{Path, PathBuf},
-    sync::atomic::AtomicBool,
-};
+use std::{path::PathBuf, sync::atomic::AtomicBool};
 
 use nima_core::tip_force::{Estimator, TrainingSettings};
 use nima_recording::tip_force::{DataSet, Selection};
+use nima_testing::unjudged;
 use nima_training::{Evaluation, evaluate, train_model};
 
 const FILES: [&str; 6] = ["00", "11", "12", "21", "22", "33"];
@@ -24,20 +21,21 @@ const INPUTS: [&str; 5] = [
 /// Largest mean absolute error on each held-out file, Nm.
 const GOAL_NM: f64 = 2.5e-3;
 
-fn path(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../shared/data/mrd_davinci/maryland_r5_{file}.csv"))
+/// `None`, reported, where they are absent.
+fn paths<'a>(files: impl Iterator<Item = &'a str>) -> Option<Vec<PathBuf>> {
+    files.map(|file| unjudged::recording(&format!("mrd_davinci/maryland_r5_{file}.csv"))).collect()
 }
 
-/// Trained on the other four files, evaluated on these two.
-fn held_out(held: [&str; 2], settings: &TrainingSettings) -> Evaluation {
+/// Trained on the other four files, evaluated on these two; `None`, reported, where the recordings are absent.
+fn held_out(held: [&str; 2], settings: &TrainingSettings) -> Option<Evaluation> {
     let names = |list: &[&str]| Some(list.iter().map(|name| (*name).to_owned()).collect());
     let selection = Selection { inputs: names(&INPUTS), outputs: names(&["jaw_torque_nm"]) };
-    let rest: Vec<PathBuf> = FILES.into_iter().filter(|file| !held.contains(file)).map(path).collect();
+    let rest = paths(FILES.into_iter().filter(|file| !held.contains(file)))?;
     let data = DataSet::read(&rest, &selection).unwrap();
     let model = train_model(&data, settings, [None, None], &AtomicBool::new(false), &|_| {}).unwrap();
     let mut estimator = Estimator::new(model);
-    let data = DataSet::read(&held.map(path), &Selection::of(estimator.model())).unwrap();
-    evaluate(&mut estimator, &data).unwrap()
+    let data = DataSet::read(&paths(held.into_iter())?, &Selection::of(estimator.model())).unwrap();
+    Some(evaluate(&mut estimator, &data).unwrap())
 }
 
 /// Mean absolute error (Nm) of the network and of linear regression, and share of uncertain samples, per file.
@@ -46,21 +44,11 @@ fn figures(evaluation: &Evaluation) -> Vec<[f64; 3]> {
     evaluation.files.iter().map(|file| [mae(file, 0), mae(file, 2), file.doubt_share]).collect()
 }
 
-fn absent() -> bool {
-    let absent = !path("00").exists();
-    if absent {
-        eprintln!("../shared/data/mrd_davinci is absent: recordings not tested");
-    }
-    absent
-}
-
 #[test]
 fn unseen_recordings_meet_the_goal_within_the_trained_loads_and_below_them_and_doubt_tells_which_is_which() {
-    if absent() {
-        return;
-    }
     let quick = TrainingSettings { epochs: Some(2), members: 2, hidden: vec![16], ..TrainingSettings::default() };
-    let [below, within] = figures(&held_out(["00", "12"], &quick))[..] else { panic!("two files") };
+    let Some(evaluation) = held_out(["00", "12"], &quick) else { return };
+    let [below, within] = figures(&evaluation)[..] else { panic!("two files") };
     eprintln!("below the trained loads {below:?}, within them {within:?}");
     assert!(below[0] < GOAL_NM && within[0] < GOAL_NM, "{below:?} {within:?}");
     assert!(below[2] > 0.9 && within[2] <= 0.05, "{below:?} {within:?}");
@@ -69,12 +57,10 @@ fn unseen_recordings_meet_the_goal_within_the_trained_loads_and_below_them_and_d
 #[test]
 #[ignore = "takes minutes, prints the table of docs/calibration.md: `./dev figures` runs it"]
 fn all_fifteen_splits_with_the_default_settings() {
-    if absent() {
-        return;
-    }
     for (first, a) in FILES.into_iter().enumerate() {
         for b in FILES.into_iter().skip(first + 1) {
-            let [x, y] = figures(&held_out([a, b], &TrainingSettings::default()))[..] else { panic!("two files") };
+            let Some(evaluation) = held_out([a, b], &TrainingSettings::default()) else { return };
+            let [x, y] = figures(&evaluation)[..] else { panic!("two files") };
             let milli = |value: f64| 1e3 * value;
             println!(
                 "| {a}, {b} | {:.2}, {:.2} | {:.2}, {:.2} | {:.1}, {:.1} |",

@@ -13,7 +13,7 @@ import sys
 import time
 
 RESULT = re.compile(r"^test (\S+)(?: - should panic)? \.\.\. (ok|FAILED|ignored)", re.MULTILINE)
-TOO_BUSY = re.compile(r"too busy to judge: (\S+)")
+TOO_BUSY = re.compile(r"not judged: (\S+)")
 # In the source: the marks of a test, then its name. Marks may have brackets within, and more lines than one.
 MARK = r"#\[[^\n]*(?:\n[^\n#]*?)?\]\s*"
 TEST = re.compile(rf"^[ \t]*(?P<marks>(?:{MARK})*?#\[test\]\s*(?:{MARK})*)(?:pub )?fn (?P<name>\w+)", re.MULTILINE)

@@ -17,7 +17,10 @@ use nima_machine::{
     messages::{Command, Event, LoopState, Tick},
     runtime::Handle,
 };
-use nima_testing::real_time::{alone, judged, too_busy};
+use nima_testing::{
+    real_time::{alone, judged, too_busy},
+    unjudged,
+};
 use nima_world::{Plan, scene::Scene};
 
 /// Time limit for the force after a program has died, s.
@@ -60,7 +63,7 @@ impl Examples {
     /// Without a warning of the compiler. `None` where there is none.
     fn in_c(folder: &Path) -> Option<Self> {
         if Process::new("cc").arg("--version").output().is_err() {
-            println!("left out: no C compiler (cc) is installed");
+            unjudged::left_out("no C compiler (cc) is installed");
             return None;
         }
         for name in ["handle", "arm_and_sensor"] {

@@ -1,13 +1,13 @@
 //! Anchored rendering against delayed reflection: real recordings, and what must never make it worse.
 
 use nalgebra::Vector3;
+use nima_testing::unjudged;
 
 use super::*;
 
-/// Samples of one recording of `../shared/data/tue_1dof`, as seen from the repository (x only); `None` where the folder is absent.
+/// Samples of a recording (x only); `None`, reported, where it is absent.
 fn recording(name: &str) -> Option<Vec<Sample>> {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/tue_1dof").join(name);
-    let text = std::fs::read_to_string(path).ok()?;
+    let text = std::fs::read_to_string(unjudged::recording(&format!("tue_1dof/{name}"))?).unwrap();
     let parse = |line: &str| {
         let mut fields = line.split(',').map(|field| field.parse::<f64>().ok());
         let (t_s, x, f) = (fields.next()??, fields.nth(1)??, fields.nth(1)??);
@@ -41,10 +41,7 @@ fn real_recordings() {
     for material in ["foam", "spring", "rigid", "free_motion"] {
         for question in ["1a", "1b"] {
             let name = format!("m1_question{question}_{material}.csv");
-            let Some(samples) = recording(&name) else {
-                eprintln!("../shared/data/tue_1dof is absent: recordings not tested");
-                return;
-            };
+            let Some(samples) = recording(&name) else { return };
             for delay_ms in [0, 10, 50, 100, 300] {
                 let modes = ModeSet::only(Mode::Anchored);
                 let settings = Settings { axes: 1, delay_s: f64::from(delay_ms) * 1e-3, modes, ..Settings::default() };
@@ -74,10 +71,7 @@ fn the_best_of_two_on_real_recordings() {
             let (mut sum, mut count) = (0.0, 0.0);
             for run in runs {
                 for material in ["foam", "spring", "rigid", "free_motion"] {
-                    let Some(samples) = recording(&format!("{run}_{material}.csv")) else {
-                        eprintln!("../shared/data/tue_1dof is absent: recordings not tested");
-                        return;
-                    };
+                    let Some(samples) = recording(&format!("{run}_{material}.csv")) else { return };
                     let settings =
                         Settings { axes: 1, delay_s, modes: ModeSet::only(Mode::Best), ..Settings::default() };
                     let errors_n = mean_errors(&samples, &settings);

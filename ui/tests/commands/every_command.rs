@@ -5,6 +5,7 @@ use std::{
 };
 
 use nima_core::impedance::Mode;
+use nima_testing::unjudged;
 use serde_json::Value;
 
 /// Runs the program without a display.
@@ -55,15 +56,6 @@ fn recording(folder: &Path, name: &str, rows: usize, edit: impl Fn(usize, &mut S
     let path = folder.join(name);
     std::fs::write(&path, text).unwrap();
     path
-}
-
-fn shared(file: &str) -> Option<String> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data").join(file);
-    let found = path.exists();
-    if !found {
-        eprintln!("left out: the recording {} is not here", path.display());
-    }
-    found.then(|| path.display().to_string())
 }
 
 #[test]
@@ -119,7 +111,8 @@ fn a_hole_in_a_recording_is_told_and_nothing_is_made_of_it() {
 
 #[test]
 fn a_real_recording_is_identified_better_than_held_and_literal_is_shown_as_it_is() {
-    let Some(foam) = shared("tue_1dof/m1_question1a_foam.csv") else { return };
+    let Some(foam) = unjudged::recording("tue_1dof/m1_question1a_foam.csv") else { return };
+    let foam = foam.display().to_string();
     let with = |mode| {
         json(&[
             "identify",

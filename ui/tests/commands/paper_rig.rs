@@ -6,7 +6,10 @@ use std::{
 };
 
 use nima_machine::config::RigFile;
-use nima_testing::real_time::{alone as one_rig_at_a_time, judged, too_busy};
+use nima_testing::{
+    real_time::{alone as one_rig_at_a_time, judged, too_busy},
+    unjudged,
+};
 use nima_tests::emulated::{DEVICES, elsewhere, rig_file, started_in};
 use nima_world::scene::Scene;
 
@@ -24,7 +27,7 @@ fn alone(arguments: &[&str]) -> Option<Output> {
     };
     let folder = tempfile::tempdir().unwrap();
     if !inside("true", &[], folder.path()).is_ok_and(|tried| tried.status.success()) {
-        eprintln!("left out: no network namespace can be made here");
+        unjudged::left_out("no network namespace can be made");
         return None;
     }
     Some(inside(env!("CARGO_BIN_EXE_nima"), arguments, folder.path()).unwrap())

@@ -122,7 +122,7 @@ fn on_a_small_disk(folder: &Path, script: &str) -> Option<std::process::Output> 
         .ok()?;
     let is_refused = matches!(output.status.code(), Some(1 | 99)) && output.stdout.is_empty();
     if is_refused && !String::from_utf8_lossy(&output.stderr).contains("nima") {
-        println!("left out: this system lets nobody mount a small disk");
+        nima_testing::unjudged::left_out("a small disk cannot be mounted");
         return None;
     }
     Some(output)

@@ -1,7 +1,6 @@
 //! Two processes on two hosts: network namespaces with a cable between them, where the system permits it.
 
 use std::{
-    io::Write as _,
     net::SocketAddr,
     path::{Path, PathBuf},
     process::{Child, Command, Stdio, id},
@@ -9,7 +8,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use nima_testing::real_time::{alone, judged};
+use nima_testing::{
+    real_time::{alone, judged},
+    unjudged,
+};
 
 use super::*;
 use crate::keys::{Keys, Peers};
@@ -136,7 +138,7 @@ fn two_hosts_exchange_payloads_and_see_when_the_cable_is_out() {
     let _alone = alone();
     judged(|| {
         let Some(hosts) = Hosts::new() else {
-            let _ = writeln!(std::io::stderr(), "left out, not permitted here: 1 (two network namespaces)");
+            unjudged::left_out("two network namespaces cannot be made");
             return;
         };
         let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];

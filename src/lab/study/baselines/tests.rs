@@ -1,14 +1,10 @@
-use std::path::Path;
-
 use nima_core::impedance::{Baseline, Mode};
 use nima_recording::csv::{Mapping, Recording};
+use nima_testing::unjudged;
 use nima_world::scene::Scene;
 
 use super::{CHOSEN_ON, Options, Report, Split};
 use crate::{Experiment as _, Findings as _, tradeoff::Source};
-
-/// Real recordings; they are not part of the repository.
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../../shared/data/tue_1dof");
 
 fn ratio(report: &Report, split: Split, mode: Mode, delay_ms: f64) -> f64 {
     let is_it =
@@ -57,16 +53,12 @@ fn recordings_are_split_by_name() {
 #[test]
 fn on_real_recordings_the_peers_are_as_good_as_their_literature() {
     let mapping = Mapping::parse(&["x=pos_follower_rad".to_owned(), "fx=Fe_Nm".to_owned()]).unwrap();
-    let sources: Vec<(Source, Split)> = ["m1_question1c_foam", "m1_question1c_spring", "m2_question1a_spring"]
-        .map(|name| Path::new(FOLDER).join(name).with_extension("csv"))
-        .into_iter()
-        .filter(|path| path.exists())
-        .map(|path| (Source::from_recording(Recording::read(&path, &mapping).unwrap(), "Nm"), Split::HeldOut))
-        .collect();
-    if sources.is_empty() {
-        eprintln!("skipped: {FOLDER} is not there");
-        return;
-    }
+    let source = |name: &str| {
+        let path = unjudged::recording(&format!("tue_1dof/{name}.csv"))?;
+        Some((Source::from_recording(Recording::read(&path, &mapping).unwrap(), "Nm"), Split::HeldOut))
+    };
+    let names = ["m1_question1c_foam", "m1_question1c_spring", "m2_question1a_spring"];
+    let Some(sources) = names.into_iter().map(source).collect::<Option<Vec<_>>>() else { return };
     let delays_s = vec![0.01, 0.3];
     let report = Options { sources, delays_s, cross_talk: false, inputs: Vec::new() }.run(&mut |_, _, _| {}).unwrap();
     let of = |baseline, delay_ms| ratio(&report, Split::HeldOut, Mode::Baseline(baseline), delay_ms);

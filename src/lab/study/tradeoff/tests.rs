@@ -6,6 +6,7 @@ use nima_core::{
     signal::DifferentiatorKind,
 };
 use nima_recording::csv::{Mapping, Recording};
+use nima_testing::unjudged;
 use nima_world::scene::Scene;
 
 use super::{sweep::mark_front, *};
@@ -186,12 +187,7 @@ fn a_scene_is_recorded_open_loop_and_repeats() {
 
 #[test]
 fn a_real_recording_has_a_front() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../../../shared/data/tue_1dof/m1_question1a_foam.csv");
-    if !path.exists() {
-        eprintln!("left out: the recording {} is not here", path.display());
-        return;
-    }
+    let Some(path) = unjudged::recording("tue_1dof/m1_question1a_foam.csv") else { return };
     let mapping = Mapping::parse(&["x=pos_follower_rad", "fx=Fe_Nm"]).unwrap();
     let source = Source::from_recording(Recording::read(&path, &mapping).unwrap(), "Nm");
     let figures = swept(&source, &tiny());

@@ -1,0 +1,31 @@
+# The pages as a site. Sourced by ./dev.
+# shellcheck shell=bash
+
+mdbook_version=0.5.4
+
+# The pages as a site, in target/site. What stands outside of docs/ (README, architecture, ...) becomes a page of it, and every link of the
+# finished pages must lead somewhere.
+docs() {
+  need_cargo
+  need "${build_packages[@]}" python3 || exit 1
+  local folder=${CARGO_TARGET_DIR:-target} page
+  local tool=$folder/tools/bin/mdbook book=$folder/book
+  [ -x "$tool" ] || tool=$(command -v mdbook) || {
+    timed cargo install --locked --quiet --version "$mdbook_version" --no-default-features --features search --root "$folder/tools" mdbook
+    tool=$folder/tools/bin/mdbook
+  }
+  rm -rf "$book" && mkdir -p "$book/src"
+  cp docs/book.toml "$book/"
+  cp docs/*.md docs/*.png docs/*.svg "$book/src/"
+  for page in README ARCHITECTURE CONTRIBUTING CHANGELOG; do
+    sed -E 's#\]\(docs/#](#g' "$page.md" >"$book/src/${page,,}.md"
+  done
+  # mdBook would make an index of a page called README.
+  mv "$book/src/readme.md" "$book/src/first-minute.md"
+  sed -E -i 's#\]\((\.\./)?README\.md#](first-minute.md#g; s#\]\((\.\./)?(ARCHITECTURE|CONTRIBUTING|CHANGELOG)\.md#](\L\2.md#g' "$book"/src/*.md
+  # Files of the source are named, not shown.
+  sed -E -i 's#\[([^]]*)\]\((\.\./)?(config|src|ui|tests|assets|python)/[^)]*\)#\1#g' "$book"/src/*.md
+  "$tool" build "$book" --dest-dir "$PWD/$folder/site"
+  python3 tests/site_links.py "$folder/site"
+  say "the site: $folder/site/index.html"
+}

@@ -1,0 +1,138 @@
+# The tests of `./dev test` when everything is built. Sourced by ./dev.
+# shellcheck shell=bash
+
+# The product itself, which knows none of the other crates.
+ring1=(nima-testing nima-files nima-core nima-devices nima-recording nima-machine nima-session nima-training nima-endoscope nima-physics nima-world)
+told=${CARGO_TARGET_DIR:-target}/lanes
+
+# The product alone, for daily work.
+only_ring1() {
+  local failed=0
+  timed cargo test --locked "${ring1[@]/#/-p}" --no-run || return
+  RUST_TEST_THREADS=4 timed cargo test --locked "${ring1[@]/#/-p}" --no-fail-fast 2>&1 | tee "$told/ring1.txt" || failed=1
+  list_unjudged "$told/ring1.txt"
+  judge_again "${ring1[@]/#/-p}" || failed=1
+  verdict && return $failed
+}
+
+# Two lanes in real time, which wait far more than they compute, side by side, each with one rig at a time; two compute in the time that they
+# leave, and take none from them. Each lane's output comes whole, when it has ended.
+lanes() {
+  local lane failed=0 leaves_time=yes
+  is_quiet || leaves_time=no
+  local -A running
+  for lane in wires screens units panels; do
+    timed "$lane" 3>&2 >"$told/$lane.txt" 2>&1 &
+    running[$lane]=$!
+  done
+  for lane in units panels screens wires; do
+    if wait "${running[$lane]}"; then say "passed: $lane"; else failed=1 && say "FAILED: $lane"; fi
+    cat "$told/$lane.txt"
+  done
+  list_unjudged "$told"/*.txt
+  # The rest is judged when nothing else runs, or not at all: beside other work it would take its time for nothing.
+  if is_quiet; then
+    alone >"$told/alone.txt" 2>&1 || failed=1
+    cat "$told/alone.txt"
+    list_unjudged "$told"/*.txt
+    [ ! -e "$told/peers-again" ] || peers || failed=1
+    judge_again --workspace --lib --bins --tests || failed=1
+  else
+    printf 'not judged: %s (other work)\n' "${alone[@]}" >>"$told/unjudged"
+    [ ! -e "$told/peers-again" ] || echo 'not judged: third-party clients (other work)' >>"$told/unjudged"
+  fi
+  verdict && return $failed
+}
+
+# The devices on their wires, and the third-party clients. (`--bins`, which has no tests: of `wires` alone cargo would build the libraries again, with other features.)
+wires() {
+  local failed=0
+  timed cargo test --locked --workspace --no-fail-fast --bins --test wires || failed=1
+  timed cargo test --locked --workspace --lib -- --ignored bota::wire_tests ndi::driver_tests endpoint::tests endpoint::two_hosts_tests || failed=1
+  # The clients of others have time limits of their own: one that gives up beside the other lanes is judged when nothing else runs.
+  peers || touch "$told/peers-again"
+  return $failed
+}
+
+# What is judged by milliseconds, rates or small motions: faults of every device in the running loop, what the panel measures of each, an arm
+# that presses, its jaws, how it is left, a marker that must follow, and a person who plays with rings in the real window. Beside any other work, even of the lowest priority, they are judged again and again, for minutes.
+alone=(connecting:: what_goes_wrong_with_any_device killed::a_killed_process the_pid_holds the_sensor_feels an_engaged_arm a_marker_that_follows a_person_carries_a_ring
+  when_a_program_in_c nobody_else_is_heard the_examples_in_python a_haply_handle_feels)
+alone() { timed cargo test --locked --workspace --no-fail-fast --test commands --test screen --test window --test wires -- --ignored "${alone[@]}"; }
+
+# The real window, the commands, and the examples in the documentation.
+screens() {
+  local failed=0
+  timed cargo test --locked --workspace --no-fail-fast --test window --test commands || failed=1
+  timed cargo test --locked --workspace --doc || failed=1
+  return $failed
+}
+
+# The product first: what fails there explains what fails after it.
+units() {
+  only_idle_time
+  local failed=0
+  # More threads than cores: many of these wait for simulated time, which runs at the pace of the real one, or for a line.
+  export RUST_TEST_THREADS=4
+  timed cargo test --locked "${ring1[@]/#/-p}" --no-fail-fast --lib || failed=1
+  if [ $failed = 0 ]; then say "passed: units of ring 1"; else say "FAILED: units of ring 1"; fi 2>&3
+  timed cargo test --locked --workspace "${ring1[@]/#/--exclude=}" --no-fail-fast --lib || failed=1
+  return $failed
+}
+
+panels() {
+  only_idle_time
+  RUST_TEST_THREADS=4 timed cargo test --locked --workspace --no-fail-fast --bins --test screen --test machine --test session --test allocation
+}
+
+# Of the processors' time in one second.
+idle_percent() {
+  [ -r /proc/stat ] || { echo 100; return; }
+  { head -n 1 /proc/stat; sleep 1; head -n 1 /proc/stat; } | awk '
+    { all = 0; for (i = 2; i <= 9; i++) all += $i; idle = $5 + $6 }
+    NR == 1 { all_before = all; idle_before = idle }
+    END { printf "%d\n", 100 * (idle - idle_before) / (all - all_before + 1e-9) }'
+}
+
+# A second may be one in which something ends: only the third busy one tells of other work.
+is_quiet() {
+  local _
+  for _ in 1 2 3; do [ "$(idle_percent)" -lt 50 ] || return 0; done
+  return 1
+}
+
+# This shell and what it starts run only when nothing else would; beside other work, which leaves no such time, they take their share.
+only_idle_time() {
+  [ "$leaves_time" = yes ] || return 0
+  chrt --idle --pid 0 "$BASHPID" 2>/dev/null || renice -n 19 "$BASHPID" >/dev/null
+}
+
+# Keeps from these outputs which tests did not judge, and why: lines of nima_testing::unjudged.
+list_unjudged() { unjudged_in "$@" >"$told/unjudged"; }
+unjudged_in() { sed -nE 's/.*(not judged|left out|data absent): ([[:alnum:]_:]+) \((.*)\)$/\1: \2 (\3)/p' "$@" | sort -u; }
+
+# Tests of these crates that found the machine too busy in every attempt are run again, when nothing else is.
+judge_again() {
+  local names status=0
+  mapfile -t names < <(sed -n 's/^not judged: \([^ ]*\) .*/\1/p' "$told/unjudged")
+  [ ${#names[@]} -gt 0 ] || return 0
+  timed cargo test --locked "$@" -- --include-ignored "${names[@]}" >"$told/again.txt" 2>&1 || status=$?
+  cat "$told/again.txt"
+  { grep -v '^not judged: ' "$told/unjudged"; unjudged_in "$told/again.txt"; } | sort -u >"$told/unjudged.new"
+  mv "$told/unjudged.new" "$told/unjudged"
+  return $status
+}
+
+# Names the tests that did not judge, which fails. Where that is allowed, because a machine cannot do everything, data are absent only
+# together with their whole folder.
+verdict() {
+  local refused='.'
+  [ -s "$told/unjudged" ] || return 0
+  say "tests that did not judge: $(wc -l <"$told/unjudged")"
+  cat "$told/unjudged" >&2
+  if [ "$allow_unjudged" = yes ]; then
+    [ -e ../shared ] || return 0
+    refused='^data absent: '
+  fi
+  ! grep -q "$refused" "$told/unjudged" || { say "FAILED: a test that does not judge passes only with --allow-unjudged, and not where its data should be"; return 1; }
+}

@@ -1,0 +1,66 @@
+# Tests that take minutes, and those on other processors and systems. Sourced by ./dev.
+# shellcheck shell=bash
+
+# The first day of the emulated rig in the real window, from an empty folder to both arms engaged: a quarter of an hour; a whole peg transfer there. The day by commands,
+# judged by the forces at the tips; the frame calibrations against what only the emulators know; every fault of every device.
+walk() {
+  need "${build_packages[@]}" "${window_packages[@]}" "${test_packages[@]}" || exit 1
+  need_cargo
+  as_the_tests_build
+  NIMA_REQUIRE_WINDOW=1 timed cargo test --locked --workspace --no-fail-fast --test window --test commands --test screen --test wires -- --ignored --nocapture \
+    first_day:: a_person_carries_six_rings frames:: sides_ready:: from_boxes_to_first_touch the_one_device_that_is_missing technician:: every_fault_of_every_device
+  live
+}
+
+# What takes minutes and is judged or only printed: figures that the docs quote, and a thousand killed writers of a session.
+figures() {
+  need "${build_packages[@]}" || exit 1
+  need_cargo
+  as_the_tests_build
+  timed cargo test --locked --workspace --no-fail-fast --lib --test machine --test session -- --ignored --nocapture --test-threads 1 --skip figures_of_scrubbing \
+    figures_of_ how_long_ measure_rate all_fifteen a_thousand_killed in_the_whole_grid
+  timed cargo test --locked --workspace --test wires -- --ignored --nocapture --test-threads 1 figures_of_a_minute
+}
+
+# Sessions of every scene, recorded here, must replay to the last bit on other processors: an older one of this kind (without fused
+# multiply-add, for which the C library has other sines) and one of another kind. Both are emulated: a quarter of an hour.
+processors() {
+  need "${build_packages[@]}" qemu-user gcc-aarch64-linux-gnu libc6-dev-arm64-cross || exit 1
+  need_cargo
+  local arm=aarch64-unknown-linux-gnu replaying=(cargo test --locked --package nima-tests --test session)
+  command -v rustup >/dev/null || { say "rustup is missing, which brings the standard library for $arm: https://rustup.rs"; exit 1; }
+  rustup target add "$arm"
+  # The first run records, the others replay.
+  NIMA_SESSIONS=$(mktemp -d)
+  export NIMA_SESSIONS
+  timed "${replaying[@]}" -- --ignored --nocapture another_build
+  CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="qemu-x86_64 -cpu Nehalem" timed "${replaying[@]}" -- --ignored --nocapture another_build
+  CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=aarch64-linux-gnu-gcc CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER="qemu-aarch64 -L /usr/aarch64-linux-gnu" \
+    timed "${replaying[@]}" --target "$arm" -- --ignored --nocapture another_build
+  rm -r "$NIMA_SESSIONS"
+}
+
+# The unit tests of every crate, cross-built for Windows, under wine; of the named crates alone, where some are named. On its own, because everything
+# is built once more for them.
+windows() {
+  local target=${CARGO_TARGET_DIR:-$PWD/target} work lacks status=0
+  # shellcheck source=assets/package/windows.sh
+  source assets/package/windows.sh
+  # shellcheck source=assets/package/wine.sh
+  source assets/package/wine.sh
+  need "${build_packages[@]}" python3 || exit 1
+  need "${windows_compiler[@]}" || true
+  need_cargo
+  fetch_windows_target
+  for lacks in "$(windows_compiler_lacks)" "$(wine_lacks)"; do
+    [ -z "$lacks" ] || { say "left out: all unit tests on Windows: $lacks"; return 0; }
+  done
+  work=$(realpath -m "$target/windows")
+  mkdir -p "$work"
+  CARGO_TARGET_DIR=$work CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_CODEGEN_UNITS=1 CARGO_PROFILE_DEV_DEBUG=none \
+    timed cargo test --locked --workspace --lib --no-run --target "$windows_target" --message-format json-render-diagnostics >"$work/built.json"
+  start_wine "$work"
+  wine_limit_s=7200 in_wine "$work" python3 "$PWD/tests/windows/run.py" --built "$work/built.json" --left-out "$PWD/tests/windows/left_out.txt" --logs "$work/told" "$@" || status=$?
+  end_wine "$work"
+  return $status
+}

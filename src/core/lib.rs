@@ -10,6 +10,7 @@ pub mod calibration;
 pub mod frames;
 pub mod impedance;
 pub mod kinematics;
+pub mod limits;
 pub mod noise;
 pub mod safety;
 mod side;

@@ -2,15 +2,15 @@
 
 use std::{net::SocketAddr, path::PathBuf};
 
-use nima_core::Side;
+use nima_core::{Side, limits};
 use serde::{Deserialize, Serialize};
 
 use crate::Trouble;
 
 /// Largest force of an omega.7, N.
-pub const FORCE_MAX_N: f64 = 12.0;
+pub const FORCE_MAX_N: f64 = limits::OMEGA7_FORCE_N;
 /// Largest force of its gripper, N.
-pub const GRIPPER_MAX_N: f64 = 8.0;
+pub const GRIPPER_MAX_N: f64 = limits::OMEGA7_GRIPPER_N;
 
 /// Behaviour of the handle while no force is wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

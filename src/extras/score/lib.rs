@@ -58,4 +58,4 @@ pub use proficiency::{Proficiency, Standing};
 pub use sample::{HandSample, Sample};
 pub use score::{Measure, Outcome, Score};
 pub use scorer::Scorer;
-pub use task::{Criterion, TaskError, TaskFile, TaskKind};
+pub use task::{Criterion, LONGEST_TRIAL_S, TaskError, TaskFile, TaskKind};

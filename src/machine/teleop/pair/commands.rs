@@ -2,9 +2,10 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
-    impedance::{MAX_DELAY_S, Mode, ModeSet, Rendered},
+    impedance::{Mode, ModeSet, Rendered},
     kinematics::Target,
-    safety::{Change, MAX_GAIN, Wish},
+    limits::{DEAD_BAND_M_S, DELAY_S, GAIN, GAIN_ABOVE_ONE},
+    safety::{Change, Wish},
 };
 
 use super::Pair;
@@ -34,13 +35,13 @@ impl<L: Link> Pair<L> {
                 self.compares = compares;
                 self.compute();
             }
-            Command::SetGain(gain) if (0.0..=1.0).contains(&gain) => self.chain.set_ordinary_gain(gain),
-            Command::SetGainAboveOne(gain) if (0.0..=MAX_GAIN).contains(&gain) => {
+            Command::SetGain(gain) if GAIN.contains(gain) => self.chain.set_ordinary_gain(gain),
+            Command::SetGainAboveOne(gain) if GAIN_ABOVE_ONE.contains(gain) => {
                 self.chain.set_gain_above_one(gain);
             }
             Command::SetDelay(_) if self.far.is_there => return Err(Refusal::DelayIsMeasured),
-            Command::SetDelay(delay_s) if (0.0..=MAX_DELAY_S).contains(&delay_s) => self.set_delay(delay_s),
-            Command::SetDeadBand(speed_m_s) if (0.0..=0.1).contains(&speed_m_s) => self.chain.set_dead_band(speed_m_s),
+            Command::SetDelay(delay_s) if DELAY_S.contains(delay_s) => self.set_delay(delay_s),
+            Command::SetDeadBand(speed_m_s) if DEAD_BAND_M_S.contains(speed_m_s) => self.chain.set_dead_band(speed_m_s),
             Command::SetStaticHold(hold) => self.chain.set_static_hold(hold),
             Command::SetScale(scale) => match self.hand_eye.mapping().scaled(scale) {
                 Ok(mapping) => self.hand_eye.set_mapping(mapping),

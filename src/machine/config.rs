@@ -31,7 +31,7 @@ pub use own_copy::{change_rig, own_copy};
 pub use rig_file::{Chosen, RigFile, RigFileError};
 pub use teleoperation::{LeaderMount, Teleoperation};
 
-use crate::rig::{self, Part, Side};
+use crate::rig::{self, DeviceName, DeviceRole, Part, Side};
 
 /// The settings of a rig: its loop, and its devices if it has any.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -189,16 +189,16 @@ impl RigConfig {
     }
 
     /// Names and makes of the devices, in the order of the roster.
-    pub fn device_names(&self) -> Vec<String> {
+    pub fn device_names(&self) -> Vec<DeviceName> {
         let parts = self.devices.iter().flat_map(|devices| {
-            Part::ALL.into_iter().filter(|part| part.is_in(devices)).map(|part| part.name_and_make(devices))
+            Part::ALL.into_iter().filter(|part| part.is_in(devices)).map(|part| part.device(devices))
         });
-        let handle = |desk: &rig::DeskSettings| {
-            desk.handle.as_ref().map(|handle| Part::Handle(Side::Right).name_of_make(handle.maker()))
-        };
+        let named = |role, make| DeviceName { role, make };
         let desk = self.desk.iter().flat_map(|desk| {
-            let cap = desk.leading_cap().map(|_| "cap".to_owned());
-            [handle(desk), cap, desk.pedal.as_ref().map(|_| "pedal".to_owned())]
+            let handle = DeviceRole::Part(Part::Handle(Side::Right));
+            let handle = desk.handle.as_ref().map(|chosen| named(handle, Some(chosen.maker())));
+            let cap = desk.leading_cap().map(|_| named(DeviceRole::Cap, None));
+            [handle, cap, desk.pedal.as_ref().map(|_| named(DeviceRole::Part(Part::Pedal), None))]
         });
         parts.chain(desk.flatten()).collect()
     }
@@ -285,7 +285,12 @@ impl RigConfig {
             format!("{WINDOW_SAMPLES} long"),
         )?;
         let degree = self.identification.max_degree;
-        ranges.check("identification.max_degree", degree as f64, (1..=MAX_DEGREE).contains(&degree), format!("1 to {MAX_DEGREE}"))?;
+        ranges.check(
+            "identification.max_degree",
+            degree as f64,
+            (1..=MAX_DEGREE).contains(&degree),
+            format!("1 to {MAX_DEGREE}"),
+        )?;
         ranges.within("identification.rest_n", self.identification.rest_n, &limits::REST_N)?;
         ranges.within("identification.literal.ridge", self.identification.literal.ridge, &limits::RIDGE)?;
         let gates = &self.gates;

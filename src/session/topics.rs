@@ -12,7 +12,7 @@ mod timing;
 use nima_core::safety::{Gate, State};
 use nima_machine::{
     messages::{Event, Fault, LoopState, Tick},
-    rig::{SIDES, Side},
+    rig::{DeviceName, SIDES, Side},
     runtime::{Operation, Stepped},
 };
 use nima_recording::{
@@ -47,9 +47,9 @@ use self::{
 #[derive(Clone, Copy, Debug)]
 pub struct Words {
     /// For what the loop tells, with the names of the rig's devices in the order of its roster.
-    pub event: fn(&Event, &[String]) -> String,
+    pub event: fn(&Event, &[DeviceName]) -> String,
     /// For what is done to the loop, with the same names.
-    pub operation: fn(&Operation, &[String]) -> String,
+    pub operation: fn(&Operation, &[DeviceName]) -> String,
     /// For what happens to the objects of a scene.
     pub happening: fn(&nima_score::Event) -> String,
 }
@@ -73,7 +73,7 @@ pub(crate) struct Topics {
     times: Times,
     log: Channel,
     words: Words,
-    devices: Vec<String>,
+    devices: Vec<DeviceName>,
     /// Of a scene that tells of its objects.
     objects: Option<OfObjects>,
     /// Of an endoscope.
@@ -135,7 +135,7 @@ impl Topics {
         out: &mut Outlet,
         sides: [bool; SIDES],
         words: Words,
-        devices: Vec<String>,
+        devices: Vec<DeviceName>,
     ) -> Result<Self, WriteError> {
         let mut of = [None, None];
         for side in Side::ALL.into_iter().filter(|side| sides[side.index()]) {

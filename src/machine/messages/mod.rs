@@ -18,7 +18,7 @@ use nima_devices::Loss;
 pub use bulletin::{Bulletin, FarStop};
 pub use force::{ForceReport, ForceSource, UNKNOWN_N};
 pub use refusal::Refusal;
-pub use scheduling::Scheduling;
+pub use scheduling::{Lack, Scheduling};
 pub use watchdog::Watchdog;
 
 use crate::rig::{Act, DeviceEvent, Prompt, Side, View};

@@ -10,7 +10,7 @@ use nima_devices::{
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::Opener;
-use crate::rig::{Part, RigError, RosterEntry, Side};
+use crate::rig::{DeviceRole, Part, RigError, RosterEntry, Side};
 
 /// The handle of a rig file.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -184,9 +184,9 @@ impl LeaderSettings {
     pub fn start(&self, lever: &Lever) -> Result<(Slot<Box<dyn Leader>>, RosterEntry), RigError> {
         let Opener { driver, mut open, clear_faults } = self.opener();
         let lever = lever.clone();
-        let name = Part::Handle(Side::Right).name();
-        let slot = Slot::start(name, move || open().inspect(|handle| handle.attach(&lever)))?;
-        let entry = RosterEntry { clear_faults, ..RosterEntry::new(name, driver, slot.view()) };
+        let role = DeviceRole::Part(Part::Handle(Side::Right));
+        let slot = Slot::start(role.name(), move || open().inspect(|handle| handle.attach(&lever)))?;
+        let entry = RosterEntry { clear_faults, ..RosterEntry::new(role, driver, slot.view()) };
         Ok((slot, entry))
     }
 

@@ -89,6 +89,23 @@ pub enum Kind {
     Unrecorded,
 }
 
+impl Kind {
+    /// Whether a name that a person gave may be in its text, such as that of a folder.
+    pub const fn has_names(self) -> bool {
+        match self {
+            Self::Device(_) | Self::Unrecorded => true,
+            Self::StopStuck
+            | Self::Fault(_)
+            | Self::Silence
+            | Self::Missed
+            | Self::BiasMoved
+            | Self::Scheduling
+            | Self::Unchecked
+            | Self::ControlAsked => false,
+        }
+    }
+}
+
 /// One alarm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Alarm {

@@ -173,7 +173,7 @@ fn samples(reader: &Reader, path: &Path, times_ns: Range<u64>, arms: &[Side]) ->
     for arm in arms {
         plotted::each_tick(reader, path, *arm, times_ns.clone(), |tick| {
             let PlottedTick { time_ns, t_s, tip_m, measured_n, rendered_n, state, .. } = tick;
-            let engaged = state == LoopState::Engaged.word();
+            let engaged = state == LoopState::Engaged;
             let hand = hand_of(tip_m, measured_n, rendered_n, engaged);
             let none = || Sample { t_s, ..Sample::default() };
             samples.entry(time_ns).or_insert_with(none).hands[arm.index()] = Some(hand);

@@ -166,7 +166,7 @@ fn row(tick: &PlottedTick) -> String {
     for value in [tip_m, measured_n, leader_m, delayed_n, asked_n, rendered_n].into_iter().flatten() {
         row += &output::cell(*value);
     }
-    writeln!(row, ",{state}").ok();
+    writeln!(row, ",{}", state.word()).ok();
     row
 }
 
@@ -226,6 +226,7 @@ fn files(reader: &Reader) -> anyhow::Result<(Vec<Attached>, Vec<DeviceName>)> {
 #[cfg(test)]
 mod tests {
     use nalgebra::Vector3;
+    use nima_machine::messages::LoopState;
 
     use super::*;
 
@@ -241,7 +242,7 @@ mod tests {
             delayed_n: unknown,
             asked_n: Vector3::zeros(),
             rendered_n: Vector3::zeros(),
-            state: "Idle",
+            state: LoopState::Idle,
         };
         let row = row(&tick);
         assert_eq!(row, "0.25,7,0,0.5,-1,,,,0,0.5,-1,,,,0,0,0,0,0,0,Idle\n");

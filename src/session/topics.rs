@@ -57,7 +57,7 @@ pub struct Words {
 
 impl Words {
     /// The text of a value of the log; `None` for one that has no text of its own.
-    pub(crate) fn of(&self, logged: &Logged, devices: &[DeviceName]) -> Option<String> {
+    pub fn of(&self, logged: &Logged, devices: &[DeviceName]) -> Option<String> {
         match logged {
             Logged::Event(event) => Some((self.event)(event, devices)),
             Logged::Operation(operation) => Some((self.operation)(operation, devices)),

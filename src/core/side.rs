@@ -59,7 +59,30 @@ impl Side {
 
 #[cfg(test)]
 mod tests {
+    use std::{
+        fs,
+        path::{Path, PathBuf},
+    };
+
     use super::*;
+
+    fn sources(folder: &Path) -> Vec<PathBuf> {
+        let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
+        let below = folders.iter().filter(|path| !path.ends_with("target")).flat_map(|path| sources(path));
+        let own = files.into_iter().filter(|path| path.extension().is_some_and(|ending| ending == "rs"));
+        below.chain(own).collect()
+    }
+
+    #[test]
+    fn there_is_no_other_type_of_this_name() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let all = ["src", "ui", "tests"].into_iter().flat_map(|folder| sources(&root.join(folder)));
+        // The ROS 2 bridge is a workspace of its own.
+        let others = all.filter(|path| !path.ends_with("core/side.rs") && !path.ends_with("ros2/src/topics.rs"));
+        let doubled: Vec<_> = others.filter(|path| fs::read_to_string(path).unwrap().contains("enum Side ")).collect();
+        assert_eq!(doubled, [""; 0].map(PathBuf::from), "use nima_core::Side");
+    }
 
     #[test]
     fn index_and_order_are_those_of_recorded_sessions() {

@@ -4,7 +4,8 @@
 //! The parts of the loop are the real ones (identifier, link, tracking, renderer, gates); hand, handle and follower are
 //! models. SI units, workspace frame (z up, tissue at rest at z = 0), 1 kHz. Deterministic for a seed. Unlike in the
 //! simulated world of the scenes, the hand can open here and leave the handle free. Ticks come when the clock of the trial
-//! says; meanwhile hand, handle and follower move for the true time, with the last force and command held.
+//! says; meanwhile hand, handle and follower move for the true time, with the last force and command held. As in the loop, identification,
+//! rendering and lag get even spacing: each deadline that has passed gets the value between two ticks.
 
 use std::f64::consts::TAU;
 
@@ -17,7 +18,10 @@ use nima_core::{
 };
 use nima_machine::{
     runtime::{TickTimes, VirtualClock},
-    teleop::{Link as _, ProgrammedLink, Tracking},
+    teleop::{
+        Link as _, ProgrammedLink, Timing, Tracking,
+        even::{Between, deadlines, stacked},
+    },
 };
 use nima_world::{Tissue, scene::Tissue as TissueConfig};
 
@@ -112,6 +116,11 @@ pub(super) struct Pair {
     link: ProgrammedLink,
     tracking: Tracking,
     renderer: Renderer,
+    /// Tip (m) and its force (N), command, handle and tip (m): of the last tick, for even spacing.
+    measured: Between<6>,
+    led: Between<9>,
+    /// What was rendered at the newest deadline, N.
+    asked_n: Option<Vector3<f64>>,
     chain: Chain,
     speed: Speed<3>,
     speed_m_s: f64,
@@ -154,6 +163,9 @@ impl Pair {
             link: ProgrammedLink::new(RATE_HZ, trial.delay_s),
             tracking: Tracking::new(RATE_HZ),
             renderer: Renderer::new(&settings)?,
+            measured: Between::default(),
+            led: Between::default(),
+            asked_n: None,
             chain,
             speed: Speed::new(RESOLUTION_M, RATE_HZ),
             speed_m_s: 0.0,
@@ -204,7 +216,8 @@ impl Pair {
     /// One tick. `intended_m` returns the hand's intended position (m) at a time (s); it is called with rising times up to
     /// that of the tick, at most a period apart, and with how long after the one before each is (s).
     pub(super) fn step(&mut self, mut intended_m: impl FnMut(f64, f64) -> Vector3<f64>) {
-        let now_s = self.times.advance().now_s;
+        let timing = Timing::from(self.times.advance());
+        let now_s = timing.now_s;
         let before_s = std::mem::replace(&mut self.now_s, now_s);
         let pieces = ((now_s - before_s) * RATE_HZ - ROUNDING_PERIODS).ceil().max(1.0);
         let piece_s = (now_s - before_s) / pieces;
@@ -217,20 +230,40 @@ impl Pair {
         self.tip_n = self.tissue.contact_n(&self.tip_m, &self.tip_m_s);
         let (noise, noise_n) = (&mut self.noise, self.trial.noise_n);
         let force_n = self.tip_n + Vector3::from_fn(|_, _| noise_n * noise.gaussian());
-        self.identifier.step(&Sample { t_s: now_s, position_m: self.tip_m, force_n });
-        self.link.send(self.identifier.parcel());
+        self.identify(&force_n, &timing);
         let read_m = self.handle_m.map(|x| (x / RESOLUTION_M).round() * RESOLUTION_M);
         self.speed_m_s = self.speed.step(now_s, read_m);
         self.command(&read_m, now_s - before_s);
-        let follower_m = self.tracking.step(&self.command_m, &self.tip_m, 0);
-        let motion_m = match self.trial.own_motion {
-            OwnMotion::Follower => follower_m,
-            OwnMotion::Handle => read_m,
-        };
+        self.render(&read_m, &timing);
         let parcel = self.link.receive(now_s);
         let age_s = parcel.map_or(f64::INFINITY, |parcel| now_s - parcel.t_s - self.trial.delay_s);
-        let asked_n = self.renderer.step(&motion_m, parcel).force(self.trial.mode);
-        self.force_n = self.gated(asked_n, age_s, read_m);
+        self.force_n = self.gated(self.asked_n, age_s, read_m);
+    }
+
+    fn identify(&mut self, force_n: &Vector3<f64>, timing: &Timing) {
+        let now = (timing.now_s, stacked([&self.tip_m, force_n]));
+        for t_s in deadlines(timing, 1.0 / RATE_HZ) {
+            let at = self.measured.at(t_s, now);
+            let [position_m, force_n] = [0, 3].map(|from| at.fixed_rows::<3>(from).into_owned());
+            self.identifier.step(&Sample { t_s, position_m, force_n });
+            self.link.send(self.identifier.parcel());
+        }
+        self.measured.keep(now);
+    }
+
+    fn render(&mut self, read_m: &Vector3<f64>, timing: &Timing) {
+        let now = (timing.now_s, stacked([&self.command_m, read_m, &self.tip_m]));
+        for t_s in deadlines(timing, 1.0 / RATE_HZ) {
+            let at = self.led.at(t_s, now);
+            let [command_m, handle_m, tip_m] = [0, 3, 6].map(|from| at.fixed_rows::<3>(from).into_owned());
+            let follower_m = self.tracking.step(&command_m, &tip_m, 0);
+            let motion_m = match self.trial.own_motion {
+                OwnMotion::Follower => follower_m,
+                OwnMotion::Handle => handle_m,
+            };
+            self.asked_n = self.renderer.step(&motion_m, self.link.receive(t_s)).force(self.trial.mode);
+        }
+        self.led.keep(now);
     }
 
     fn gated(&mut self, asked_n: Option<Vector3<f64>>, age_s: f64, hand_m: Vector3<f64>) -> Vector3<f64> {

@@ -86,7 +86,21 @@ impl Command {
                 of == side
             }
             Self::LetGo(_) | Self::SetGovernor(_) => side == Side::Right,
-            _ => true,
+            Self::SetMode(_)
+            | Self::Compare(_)
+            | Self::SetGain(_)
+            | Self::SetGainAboveOne(_)
+            | Self::SetDelay(_)
+            | Self::SetDeadBand(_)
+            | Self::SetStaticHold(_)
+            | Self::SetScale(_)
+            | Self::Engage
+            | Self::Rest
+            | Self::Stop
+            | Self::ReleaseStop
+            | Self::TestWatchdog(_)
+            | Self::Checked(_)
+            | Self::Shutdown => true,
         }
     }
 }

@@ -7,10 +7,16 @@
 //! hand by surprise.
 
 mod accuracy;
+pub mod even;
+mod far_link;
+mod follower_half;
 mod force_path;
+mod leader_half;
 mod link;
 mod origin;
 mod pair;
+mod samples;
+mod timing;
 mod tracking;
 
 use nima_core::impedance::SettingsError;
@@ -24,7 +30,8 @@ pub use accuracy::{Accuracy, ErrorStats};
 pub use force_path::{Calibrations, ForcePath, GravityCheck};
 pub use link::{Link, ProgrammedLink};
 pub use origin::Origin;
-pub use pair::{EVENTS_PER_TICK_MAX, Pair, Timing};
+pub use pair::{EVENTS_PER_TICK_MAX, Pair};
+pub use timing::Timing;
 pub use tracking::Tracking;
 
 /// The arm pairs of a rig.

@@ -305,6 +305,7 @@ impl Kind {
     /// If it cannot be distinguished from normal operation: why. The error must then be bounded.
     pub const fn untellable(self) -> Option<&'static str> {
         Some(match self {
+            K::ForceStep => "an instrument that moves 0.2 mm between two readings could have met something stiff",
             K::ForceSmallStep => "a small step is within what a contact does in a tick",
             K::ForceDrift | K::ForceSlowDrift => "a slow bias looks like a slow contact",
             K::ForceAxes => "before a contact, an inclined surface would look the same",

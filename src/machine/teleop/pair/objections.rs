@@ -20,7 +20,7 @@ impl<L: Link> Pair<L> {
         }
         // A force that is mostly weight and bias must never be rendered.
         if !self.may_know_force() {
-            return Err(Refusal::ForceUnknown(self.force.source));
+            return Err(Refusal::ForceUnknown(self.follower.force.source));
         }
         if let Some(what) = self.plausibility.doubt() {
             return Err(Refusal::Implausible(what));
@@ -28,15 +28,20 @@ impl<L: Link> Pair<L> {
         if let Some(fault) = self.far_fault() {
             return Err(Refusal::StillPresent(fault));
         }
-        match self.last_inputs.and_then(|seen| seen.obstacle) {
+        match self.samples.last.and_then(|seen| seen.obstacle) {
             Some(obstacle) => Err(Refusal::Obstacle(obstacle)),
             None => Ok(()),
         }
     }
 
+    /// The fault that the other machine's stop is here.
+    pub(super) fn far_fault(&self) -> Option<Fault> {
+        self.link.far_stop().map(|stop| Fault::FarEnd { stop })
+    }
+
     /// Whether an engagement would be refused now, because something has not been heard of yet.
     pub(in crate::teleop) fn is_waiting(&self) -> bool {
-        matches!(self.last_inputs.and_then(|seen| seen.obstacle), Some(Obstacle::Waiting(_)))
+        matches!(self.samples.last.and_then(|seen| seen.obstacle), Some(Obstacle::Waiting(_)))
     }
 
     /// A stop and a fault are not released while a cause of a fault is present.
@@ -44,7 +49,7 @@ impl<L: Link> Pair<L> {
         if !self.state().is_latched() {
             return Ok(());
         }
-        if self.is_silent(t_s) {
+        if self.samples.are_silent(t_s) {
             return Err(Refusal::StillPresent(Fault::SourceSilent));
         }
         self.plausibility.doubt().map_or(Ok(()), |what| Err(Refusal::StillPresent(Fault::Implausible { what })))
@@ -56,9 +61,9 @@ impl<L: Link> Pair<L> {
             Refusal::DrivesOff
         } else if inputs.is_none_or(|inputs| inputs.view == View::Unseen) {
             Refusal::EndoscopeUnseen
-        } else if !self.force.source.is_usable() {
-            Refusal::ForceUnknown(self.force.source)
-        } else if self.link_is_old() {
+        } else if !self.follower.force.source.is_usable() {
+            Refusal::ForceUnknown(self.follower.force.source)
+        } else if self.link.is_old() {
             Refusal::StillPresent(Fault::LinkSilent)
         } else if !seen.present {
             Refusal::HandAbsent

@@ -13,7 +13,7 @@ use super::Timing;
 const CAUGHT_UP_MAX: u64 = 8;
 
 /// The deadlines since the last tick, s, the newest last.
-pub(super) fn deadlines(timing: &Timing, period_s: f64) -> impl Iterator<Item = f64> + use<> {
+pub fn deadlines(timing: &Timing, period_s: f64) -> impl Iterator<Item = f64> + use<> {
     let first_s = timing.now_s - timing.wake_s;
     let newest = timing.missed_now;
     let oldest = if newest > CAUGHT_UP_MAX { newest } else { 0 };
@@ -22,13 +22,13 @@ pub(super) fn deadlines(timing: &Timing, period_s: f64) -> impl Iterator<Item = 
 
 /// A value of each tick, and between two of them.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Between<const N: usize> {
+pub struct Between<const N: usize> {
     last: Option<(f64, SVector<f64, N>)>,
 }
 
 impl<const N: usize> Between<N> {
     /// The value at `t_s` (s), which is not after `now`: the time (s) and the value of this tick.
-    pub(super) fn at(&self, t_s: f64, now: (f64, SVector<f64, N>)) -> SVector<f64, N> {
+    pub fn at(&self, t_s: f64, now: (f64, SVector<f64, N>)) -> SVector<f64, N> {
         let (now_s, value) = now;
         match self.last {
             Some((last_s, last)) if t_s < now_s && last_s < now_s => {
@@ -40,18 +40,18 @@ impl<const N: usize> Between<N> {
     }
 
     /// Keeps the value of this tick for the next one.
-    pub(super) const fn keep(&mut self, now: (f64, SVector<f64, N>)) {
+    pub const fn keep(&mut self, now: (f64, SVector<f64, N>)) {
         self.last = Some(now);
     }
 
     /// Forgets the last value: the next one does not follow from it.
-    pub(super) const fn forget(&mut self) {
+    pub const fn forget(&mut self) {
         self.last = None;
     }
 }
 
 /// Vectors one below the other.
-pub(super) fn stacked<const N: usize, const M: usize>(parts: [&Vector3<f64>; M]) -> SVector<f64, N> {
+pub fn stacked<const N: usize, const M: usize>(parts: [&Vector3<f64>; M]) -> SVector<f64, N> {
     SVector::from_fn(|row, _| parts[row / 3][row % 3])
 }
 

@@ -1,0 +1,263 @@
+//! The leader's half of a pair: hand → command, parcels and motion → rendering → gates → handle.
+
+use nalgebra::{UnitQuaternion, Vector1, Vector3};
+use nima_core::{
+    impedance::{Mode, ModeSet, OwnMotion, Rendered, Renderer, Settings, SettingsError},
+    kinematics::{HandEye, Target},
+    safety::{Chain, Gate, GateReport, GripperChain, Reason, Request},
+    signal::Speed,
+};
+
+use super::{
+    Link, Timing, Tracking,
+    even::{Between, deadlines, stacked},
+    far_link::PairLink,
+};
+use crate::{
+    config::{RigConfig, Teleoperation},
+    rig::Inputs,
+};
+
+/// Distance from the gripper's hinge to the finger, m (omega.7).
+const GRIPPER_ARM_M: f64 = 0.048;
+/// Duration of the force ramp after each engagement, s.
+const RAMP_S: f64 = 0.2;
+
+/// The state of the leader's half.
+#[derive(Clone, Debug)]
+pub(super) struct LeaderHalf {
+    teleoperation: Teleoperation,
+    pub(super) hand_eye: HandEye,
+    /// Longest way of the command in a tick, m.
+    step_max_m: f64,
+    command_m: Option<Vector3<f64>>,
+    pub(super) modes: Modes,
+    pub(super) renderer: Renderer,
+    own_motion: OwnMotion,
+    pub(super) tracking: Tracking,
+    /// Command, handle mapped to the tip, and tip (m) of the last tick, for even spacing.
+    led: Between<9>,
+    /// What was rendered at the newest deadline.
+    rendered: Rendered,
+    pub(super) gates: HandGates,
+    /// Force on the handle in the last tick, N, on the axes of its device.
+    pub(super) hand_force_n: Vector3<f64>,
+    rate_hz: f64,
+}
+
+/// Where the hand leads the instrument.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lead {
+    /// The hand, mapped to the tip.
+    pub(super) target: Target,
+    /// Command to the follower, m; only while engaged.
+    pub(super) tip_m: Option<Vector3<f64>>,
+}
+
+impl LeaderHalf {
+    pub(super) fn new(rig: &RigConfig, settings: &Settings) -> Result<Self, SettingsError> {
+        let at_rest = Target { tip_m: Vector3::zeros(), world_from_jaws: UnitQuaternion::identity() };
+        Ok(Self {
+            teleoperation: rig.teleoperation,
+            hand_eye: HandEye::new(rig.teleoperation.mapping(), at_rest),
+            step_max_m: rig.follower_speed_max_m_s / rig.rate_hz,
+            command_m: None,
+            modes: Modes {
+                available: settings.modes,
+                mode: rig.mode,
+                before: None,
+                compares: rig.identification.compare,
+            },
+            renderer: Renderer::new(settings)?,
+            own_motion: settings.own_motion,
+            tracking: Tracking::new(rig.rate_hz),
+            led: Between::default(),
+            rendered: Rendered::default(),
+            gates: HandGates::new(rig),
+            hand_force_n: Vector3::zeros(),
+            rate_hz: rig.rate_hz,
+        })
+    }
+
+    /// Command to the follower: the hand's position, limited to the follower's maximum speed.
+    pub(super) fn lead(&mut self, seen: &Inputs) -> Lead {
+        let target = self.hand_eye.step(&seen.hand);
+        if !self.hand_eye.is_engaged() {
+            return Lead { target, tip_m: None };
+        }
+        let from_m = self.command_m.unwrap_or(seen.tip_m);
+        let path_m = target.tip_m - from_m;
+        let length_m = path_m.norm();
+        let fraction = if length_m > self.step_max_m { self.step_max_m / length_m } else { 1.0 };
+        self.command_m = Some(from_m + path_m * fraction);
+        Lead { target, tip_m: self.command_m }
+    }
+
+    /// The command that the follower had when the tip was measured, m; `None` where the tip is not measured now.
+    pub(super) fn command_behind_m(&self, behind: usize, silent_s: f64) -> Option<Vector3<f64>> {
+        if silent_s * self.rate_hz > 1.5 {
+            return None;
+        }
+        match behind {
+            0 => self.command_m,
+            // The newest one is of the tick before.
+            behind => self.command_m.and_then(|_| self.tracking.command_m(behind - 1)),
+        }
+    }
+
+    /// Renders at every deadline that has passed, from the motion at that time and the parcel that had come by then.
+    pub(super) fn render<L: Link>(
+        &mut self,
+        seen: &Inputs,
+        lead: &Lead,
+        link: &mut PairLink<L>,
+        timing: &Timing,
+    ) -> Rendered {
+        let command_m = lead.tip_m.unwrap_or(seen.tip_m);
+        let now = (timing.now_s, stacked([&command_m, &lead.target.tip_m, &seen.tip_m]));
+        let behind = link.behind(seen.silent_s);
+        for t_s in deadlines(timing, 1.0 / self.rate_hz) {
+            let at = self.led.at(t_s, now);
+            let [command_m, handle_m, tip_m] = [0, 3, 6].map(|from| at.fixed_rows::<3>(from).into_owned());
+            let motion_m = if lead.tip_m.is_some() {
+                let follower_m = self.tracking.step(&command_m, &tip_m, behind);
+                self.motion_m(follower_m, handle_m)
+            } else {
+                self.tracking.interrupt();
+                tip_m
+            };
+            self.rendered = self.renderer.step(&motion_m, link.receive(t_s));
+        }
+        self.led.keep(now);
+        self.rendered
+    }
+
+    /// The motion from which the force is made: the follower's as the leader can know it (the command, delayed by the
+    /// observed lag), or the handle's, mapped to the tip.
+    const fn motion_m(&self, follower_m: Vector3<f64>, handle_m: Vector3<f64>) -> Vector3<f64> {
+        match self.own_motion {
+            OwnMotion::Follower => follower_m,
+            OwnMotion::Handle => handle_m,
+        }
+    }
+
+    /// Hand and tip are joined where both are, so the first command is the present tip position.
+    pub(super) fn engage(&mut self, seen: &Inputs, t_s: f64) {
+        // Only here: if the endoscope turns while engaged, the mapping must not turn the motion under the
+        // operator's hand.
+        if let Some(world_from_view) = seen.view.world_from_view() {
+            let mapping = self.teleoperation.seen(world_from_view, self.hand_eye.mapping().scale());
+            self.hand_eye.set_mapping(mapping);
+        }
+        let world_from_jaws = seen.world_from_jaws.unwrap_or_else(UnitQuaternion::identity);
+        self.hand_eye.engage(Target { tip_m: seen.tip_m, world_from_jaws });
+        self.gates.engaged_s = t_s;
+    }
+
+    /// No force, and a follower at rest.
+    pub(super) fn rest(&mut self) {
+        self.gates.reset();
+        self.command_m = None;
+        self.hand_eye.release();
+    }
+}
+
+/// The modes that are asked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Modes {
+    /// Those that there is memory for.
+    pub(super) available: ModeSet,
+    pub(super) mode: Mode,
+    /// The mode that is rendered until the new one has something to render.
+    before: Option<Mode>,
+    pub(super) compares: bool,
+}
+
+impl Modes {
+    /// Those that have to be computed, and no others.
+    pub(super) fn computed(&self) -> ModeSet {
+        let chosen = ModeSet::only(self.mode);
+        if self.compares { self.available } else { self.before.map_or(chosen, |before| chosen.with(before)) }
+    }
+
+    pub(super) fn choose(&mut self, mode: Mode) {
+        let last = std::mem::replace(&mut self.mode, mode);
+        if last != mode {
+            self.before = Some(last);
+        }
+    }
+
+    /// The force of the mode chosen; until it has one, that of the mode before, so that a change of mode takes no force from
+    /// the hand.
+    pub(super) fn force_n(&self, rendered: &Rendered) -> Option<Vector3<f64>> {
+        rendered.force(self.mode).or_else(|| self.before.and_then(|before| rendered.force(before)))
+    }
+
+    /// Gives the mode before up once the chosen one has a force; returns whether it did.
+    pub(super) fn settle(&mut self, rendered: &Rendered) -> bool {
+        rendered.force(self.mode).and_then(|_| self.before.take()).is_some()
+    }
+}
+
+/// The gates in front of handle and gripper.
+#[derive(Clone, Debug)]
+pub(super) struct HandGates {
+    pub(super) chain: Chain,
+    gripper_chain: GripperChain,
+    speed: Speed<3>,
+    pub(super) hand_speed_m_s: f64,
+    engaged_s: f64,
+    /// The governor found that nobody holds the handle: as good as a hand that is reported absent.
+    pub(super) hand_is_gone: bool,
+}
+
+impl HandGates {
+    fn new(rig: &RigConfig) -> Self {
+        let period_s = 1.0 / rig.rate_hz;
+        Self {
+            chain: Chain::new(rig.gates, period_s),
+            gripper_chain: GripperChain::new(rig.gates.without_governor(), period_s),
+            speed: Speed::new(rig.gates.handle_step_m, rig.rate_hz),
+            hand_speed_m_s: 0.0,
+            engaged_s: 0.0,
+            hand_is_gone: false,
+        }
+    }
+
+    fn reset(&mut self) {
+        self.chain.reset();
+        self.gripper_chain.reset();
+        self.hand_is_gone = false;
+    }
+
+    /// Measures the speed of the handle from where it was read, m, at this time, s.
+    pub(super) fn move_hand(&mut self, read_s: f64, hand_m: Vector3<f64>) {
+        self.hand_speed_m_s = self.speed.step(read_s, hand_m);
+    }
+
+    /// Force on the handle, N, on the axes of the request: what is asked for rises from each engagement on.
+    pub(super) fn step(&mut self, request: Request) -> (Vector3<f64>, GateReport) {
+        let ramp = ((request.t_s - self.engaged_s) / RAMP_S).clamp(0.0, 1.0);
+        let force_n = request.force_n.map(|force_n| force_n * ramp);
+        let (rendered_n, report) = self.chain.step(&Request { force_n, ..request });
+        self.hand_is_gone |= report.reason(Gate::Governor) == Reason::HandGone;
+        (rendered_n, report)
+    }
+
+    /// Force on the gripper from the force on the jaws, through gates of its own, N.
+    pub(super) fn grip(&mut self, inputs: Option<&Inputs>, now_s: f64, age_s: f64, permitted: bool) -> f64 {
+        let opening_rad = inputs.and_then(|inputs| inputs.gripper_rad);
+        let grip_n = inputs.and_then(|inputs| inputs.grip_n);
+        let (force_n, _) = self.gripper_chain.step(&Request {
+            t_s: now_s,
+            force_n: grip_n.map(Vector1::new),
+            age_s,
+            // Above the dead band: a gripper that holds something still must keep its force.
+            speed_m_s: 1.0,
+            hand_m: opening_rad.map(|rad| Vector1::new(rad * GRIPPER_ARM_M)),
+            hand_age_s: 0.0,
+            permitted: permitted && grip_n.is_some(),
+        });
+        force_n.x
+    }
+}

@@ -1,0 +1,335 @@
+//! One tick of an arm pair, from top to bottom: readings in, force and motion out.
+
+use nalgebra::Vector3;
+use nima_core::{
+    calibration::frames::FrameSample,
+    impedance::Rendered,
+    safety::{GateReport, Observed, Request, Seen, Why},
+};
+
+use super::Pair;
+use crate::{
+    messages::{Command, Event, Fault, ForceReport, LoopState, Tick, UNKNOWN_N, Watchdog},
+    rig::{Inputs, Outputs, Sensed, Switches, View},
+    teleop::{
+        Link, Timing, far_link::LINK_SILENT_AFTER_S, follower_half::NO_FORCE, leader_half::Lead,
+        samples::SILENT_AFTER_S, timing::Passed,
+    },
+};
+
+/// Missed periods in a row that make a fault while drives are on, as time, s.
+const STALLED_AFTER_S: f64 = 0.050;
+/// A tip that moved more than this within a tick is not at rest, and the pair is not engaged, m.
+const AT_REST_M: f64 = 0.2e-3;
+
+/// What the link delivered in a tick.
+#[derive(Clone, Copy, Debug)]
+struct Delivery {
+    /// Age beyond the delay, s; infinite without a parcel.
+    age_s: f64,
+    /// The force that was measured one delay ago, N, if it is known.
+    delayed_n: Vector3<f64>,
+}
+
+/// What the hand feels in a tick.
+#[derive(Clone, Copy, Debug)]
+struct Felt {
+    /// Force after the gates, N, in the workspace.
+    rendered_n: Vector3<f64>,
+    gates: GateReport,
+    gripper_n: f64,
+}
+
+impl<L: Link> Pair<L> {
+    /// Executes one tick: measurements in, commands out, and everything to display or record in the [`Tick`]. All that a pair learns of the
+    /// other one is whether that had failed after the tick before.
+    pub fn step(&mut self, other_has_failed: bool, inputs: Option<Inputs>, timing: &Timing) -> (Outputs, Tick) {
+        let now_s = timing.now_s;
+        if other_has_failed {
+            self.fail_if_driven(Fault::OtherArm, now_s);
+        }
+        self.check_clock(timing);
+        self.end_late_test(now_s);
+        let inputs = inputs.filter(|inputs| inputs.is_finite() && !self.withholds(Watchdog::Source));
+        let moved_m = self.samples.moved_m(inputs.as_ref());
+
+        // The follower's half: readings, force at the tip, identification, parcels into the link.
+        let inputs = inputs.map(|inputs| self.take_in(inputs, timing));
+        if inputs.is_none() && self.link.far().is_none() {
+            self.follower.miss(timing);
+        }
+
+        // What the interlock permits.
+        self.raise_faults(inputs.as_ref(), timing);
+        self.step_interlock(inputs.as_ref(), moved_m, now_s);
+        self.drop_old_force(now_s);
+
+        // The leader's half: hand to command, parcels and motion to a force, gates, handle. Without a new sample the link keeps delivering
+        // what is under way, which grows older, and the age gate removes the force.
+        let seen = self.samples.last.unwrap_or(Inputs::NOTHING);
+        let lead = self.leader.lead(&seen);
+        let rendered = self.leader.render(&seen, &lead, &mut self.link, timing);
+        let delivery = self.receive(&seen, now_s);
+        let felt = self.feel(inputs.as_ref(), &seen, &rendered, &delivery, now_s);
+        self.judge_modes(inputs.is_some(), &rendered);
+
+        let outputs = self.outputs(&seen, &lead, &felt);
+        let tick = self.report(&seen, &lead, &rendered, &delivery, &felt, timing);
+        self.ticks.executed += 1;
+        (outputs, tick)
+    }
+
+    /// A time that does not advance by whole periods is a fault. Where it stands or goes back, the identification is reset: parcels with a
+    /// time in the future would never grow old.
+    fn check_clock(&mut self, timing: &Timing) {
+        let passed = self.ticks.pass(timing);
+        if passed != Passed::Evenly {
+            self.fail_if_driven(Fault::ClockJumped, timing.now_s);
+        }
+        if passed == Passed::Backwards {
+            self.follower.identifier.reset();
+            self.leader.renderer.reset();
+            self.link.clear();
+            self.samples.begin_at(timing.now_s);
+        }
+    }
+
+    /// Takes a sample through the follower's half; returns it with impossible jumps replaced by the last plausible value.
+    fn take_in(&mut self, mut inputs: Inputs, timing: &Timing) -> Inputs {
+        let now_s = timing.now_s;
+        let was_usable = self.follower.force.source.is_usable();
+        self.follower.force = match &inputs.sensed {
+            Sensed::FarEnd(identified) => self.hear(identified),
+            sensed => self.follower.force_path.step(now_s, sensed),
+        };
+        let is_usable = self.follower.force.source.is_usable();
+        if is_usable && !was_usable {
+            self.plausibility.force_is_new();
+        }
+        let observed = self.observed(&inputs, now_s);
+        let admitted = self.plausibility.step(&observed);
+        inputs.tip_m = admitted.tip_m;
+        inputs.hand.position_m = admitted.hand_m;
+        if is_usable {
+            self.follower.force.tip_n = admitted.force_n;
+        }
+        self.leader.gates.move_hand(inputs.hand_s(now_s), inputs.hand.position_m);
+        // An unusable force is a missing sample: no parcel is sent for it.
+        let sends = is_usable && !self.withholds(Watchdog::Link);
+        match self.link.far_mut() {
+            Some(far) => far.admit(&self.follower.force),
+            None => self.follower.identify(&inputs.tip_m, timing, sends.then_some(&mut self.link)),
+        }
+        self.samples.keep(&inputs, now_s);
+        inputs
+    }
+
+    /// What plausibility looks at in this sample.
+    fn observed(&self, inputs: &Inputs, now_s: f64) -> Observed {
+        let force = &self.follower.force;
+        let silent_s = inputs.silent_s;
+        let is_far = self.link.far().is_some();
+        Observed {
+            t_s: now_s,
+            raw: inputs.raw,
+            // An unknown force is none to this check; the first known one begins it again.
+            force_n: if force.source.is_usable() { force.tip_n } else { Vector3::zeros() },
+            least_n: force.source.least_n(),
+            world_from_s1: inputs.sensed.wrist().and_then(|sample| sample.world_from_s1),
+            tip_m: inputs.tip_m,
+            hand_m: inputs.hand.position_m,
+            command_m: self.leader.command_behind_m(self.link.behind(silent_s), silent_s),
+            hand_force_n: self.leader.hand_force_n,
+            guided: self.screen.guide_m.is_some(),
+            tip_silent_s: if is_far { silent_s } else { 0.0 },
+            hand_silent_s: if is_far { 0.0 } else { silent_s },
+        }
+    }
+
+    fn raise_faults(&mut self, inputs: Option<&Inputs>, timing: &Timing) {
+        let now_s = timing.now_s;
+        if timing.missed_now as f64 / self.settings.rate_hz > STALLED_AFTER_S {
+            self.fail_if_driven(Fault::LoopStalled { periods: timing.missed_now }, now_s);
+        }
+        if self.samples.are_silent(now_s) {
+            self.fail_if_driven(Fault::SourceSilent, now_s);
+        }
+        let coupled = matches!(self.state(), LoopState::Engaged | LoopState::Clutched);
+        if self.samples.count(inputs.is_some()) {
+            self.fail_if_driven(Fault::SamplesLost, now_s);
+        }
+        if inputs.is_some_and(|inputs| inputs.silent_s > LINK_SILENT_AFTER_S) {
+            self.fail_if_driven(Fault::LinkSilent, now_s);
+        }
+        if let Some(fault) = self.far_fault() {
+            self.fail_if_driven(fault, now_s);
+        }
+        let source = self.follower.force.source;
+        if coupled && !source.is_usable() {
+            self.fail(Fault::ForceUnknown { source }, now_s);
+        }
+        if coupled && inputs.is_some_and(|inputs| !inputs.powered) {
+            self.fail(Fault::DrivesOff, now_s);
+        }
+        if let Some(what) = self.plausibility.doubt() {
+            self.fail_if_driven(Fault::Implausible { what }, now_s);
+        }
+    }
+
+    fn step_interlock(&mut self, inputs: Option<&Inputs>, moved_m: f64, now_s: f64) {
+        let switches = self.samples.last.map_or_else(Switches::default, |seen| seen.switches);
+        let seen = Seen {
+            connected: !self.samples.are_silent(now_s),
+            powered: inputs.is_some_and(|inputs| inputs.powered),
+            agreed: inputs.is_some_and(|inputs| inputs.view != View::Unseen)
+                && self.follower.force.source.is_usable()
+                && !self.link.is_old()
+                && moved_m <= AT_REST_M,
+            present: switches.presence.unwrap_or(true) && !self.leader.gates.hand_is_gone,
+            clutch: switches.clutch,
+        };
+        if let Some(change) = self.interlock.step(&seen, now_s) {
+            self.enter(change, now_s);
+            if change.why == Why::Late {
+                let why = self.waits_for(seen, inputs);
+                self.note(Event::CommandRefused { t_s: now_s, side: self.side, command: Command::Engage, why });
+            }
+        }
+    }
+
+    /// After the fault of the silence, which is the cause.
+    fn drop_old_force(&mut self, now_s: f64) {
+        if !self.samples.are_silent(now_s) {
+            return;
+        }
+        self.follower.force = NO_FORCE;
+        if let Some(far) = self.link.far_mut() {
+            far.mute();
+        }
+    }
+
+    /// Receives the parcel of now, looks at it, and raises a fault if it is too old.
+    fn receive(&mut self, seen: &Inputs, now_s: f64) -> Delivery {
+        let delay_s = self.link.delay_s();
+        // Until the first parcel arrives, the delay line is still filling.
+        let Some(parcel) = self.link.receive(now_s) else {
+            self.link.note_age(None);
+            return Delivery { age_s: f64::INFINITY, delayed_n: UNKNOWN_N };
+        };
+        self.plausibility.delivered(&parcel.force_n, parcel.t_s);
+        // Over a network a parcel may be younger than the delay says; its force still ends with the line.
+        let age_s = (now_s - parcel.t_s - delay_s + seen.age_s).max(seen.silent_s);
+        let is_known = parcel.fresh && age_s < self.leader.gates.chain.settings().zero_after_s;
+        let delayed_n = if is_known { parcel.force_n } else { UNKNOWN_N };
+        self.link.note_age(Some(age_s));
+        // An engagement waits for the first new parcel.
+        let is_awaited = self.link.is_old() && self.state() == LoopState::Ready;
+        if age_s > LINK_SILENT_AFTER_S && !is_awaited {
+            self.fail_if_driven(Fault::LinkSilent, now_s);
+        }
+        Delivery { age_s, delayed_n }
+    }
+
+    /// Takes the force of the mode through the gates to the handle, and that on the jaws to the gripper.
+    fn feel(
+        &mut self,
+        inputs: Option<&Inputs>,
+        seen: &Inputs,
+        rendered: &Rendered,
+        delivery: &Delivery,
+        now_s: f64,
+    ) -> Felt {
+        let permitted = self.state().permits().coupled && self.follower.force.source.is_usable();
+        let force_n = self.leader.modes.force_n(rendered);
+        if self.leader.modes.settle(rendered) {
+            self.compute();
+        }
+        let age_s = delivery.age_s;
+        let mapping = self.leader.hand_eye.mapping();
+        let (rendered_n, gates) = self.leader.gates.step(Request {
+            t_s: now_s,
+            force_n,
+            age_s,
+            speed_m_s: self.leader.gates.hand_speed_m_s,
+            // On the axes of the force. The travel of the hand itself, before scaling. A missing sample hides no
+            // travel: the next one contains it.
+            hand_m: self.samples.recent(now_s).map(|seen| mapping.world_from_leader() * seen.hand.position_m),
+            hand_age_s: now_s - seen.hand_s(now_s),
+            permitted,
+        });
+        let gripper_n = self.leader.gates.grip(inputs, now_s, age_s, permitted);
+        self.leader.hand_force_n = mapping.force_to_hand(&rendered_n);
+        Felt { rendered_n, gates, gripper_n }
+    }
+
+    /// Compares what each mode renders with the force of now, where that is known: if the follower's half is at another machine, that one
+    /// judges.
+    fn judge_modes(&mut self, came: bool, rendered: &Rendered) {
+        let force = &self.follower.force;
+        if came && force.source.is_known() && self.link.far().is_none() {
+            self.accuracy.add(rendered, self.follower.identifier.report().modes, &force.tip_n);
+        }
+    }
+
+    fn outputs(&self, seen: &Inputs, lead: &Lead, felt: &Felt) -> Outputs {
+        Outputs {
+            drives: self.state().permits().drives,
+            tip_command_m: lead.tip_m,
+            world_from_jaws: lead.tip_m.and(seen.world_from_jaws).map(|_| lead.target.world_from_jaws),
+            hand_force_n: self.leader.hand_force_n,
+            gripper_n: felt.gripper_n,
+            prompt: self.screen.prompt,
+            guide_m: self.screen.guide_m,
+            grip_rad: self.screen.grip_rad,
+            acts: self.screen.acts,
+            lets_go: self.screen.lets_go.unwrap_or(false),
+        }
+    }
+
+    fn report(
+        &self,
+        seen: &Inputs,
+        lead: &Lead,
+        rendered: &Rendered,
+        delivery: &Delivery,
+        felt: &Felt,
+        timing: &Timing,
+    ) -> Tick {
+        let force = self.force_now(seen);
+        let recent = self.samples.recent(timing.now_s);
+        Tick {
+            index: self.ticks.executed,
+            t_s: timing.now_s,
+            side: self.side,
+            state: self.state(),
+            mode: self.leader.modes.mode,
+            delay_s: self.link.delay_s(),
+            leader_m: if lead.tip_m.is_some() { lead.target.tip_m } else { seen.tip_m },
+            tip_m: seen.tip_m,
+            measured_n: force.measured_n(),
+            force,
+            wrist: recent.and_then(|seen| seen.sensed.wrist()).copied(),
+            // A pose that is not new would look as if it were held still.
+            frames: if self.samples.came { seen.frames } else { FrameSample::default() },
+            view: seen.view,
+            prompt: self.screen.prompt,
+            guide_m: self.screen.guide_m,
+            delayed_n: delivery.delayed_n,
+            asked_n: rendered.force_n,
+            rendered_n: felt.rendered_n,
+            gates: felt.gates,
+            gate_settings: *self.leader.gates.chain.settings(),
+            identification: *self.link.far().map_or_else(|| self.follower.identifier.report(), |far| far.report()),
+            wake_s: timing.wake_s,
+            work_s: timing.work_s,
+            sample_to_force_s: timing.sample_to_force_s,
+            missed: self.ticks.missed,
+            dropped: 0,
+        }
+    }
+
+    /// Over a network a gap is no fault until it has lasted for [`LINK_SILENT_AFTER_S`], but its force is not that of now.
+    fn force_now(&self, seen: &Inputs) -> ForceReport {
+        if seen.silent_s > SILENT_AFTER_S { NO_FORCE } else { self.follower.force }
+    }
+}

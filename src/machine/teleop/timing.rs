@@ -1,0 +1,110 @@
+//! The times of a tick, and how they follow from those of the tick before.
+
+/// A loop that moves its phase takes periods that are longer by a thousandth; twice that is no drift, as a fraction of a period.
+const MOVES_PHASE: f64 = 0.002;
+/// A tick wakes within a period after its deadline, so ticks in a row drift from whole periods by less than this, periods.
+const DRIFT_MAX: f64 = 2.5;
+
+/// Times measured by the caller: the pair never reads a clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Timing {
+    /// Loop time of this tick, s.
+    pub now_s: f64,
+    /// How late the tick woke after its deadline, s.
+    pub wake_s: f64,
+    /// Duration of the work of the previous tick, s.
+    pub work_s: f64,
+    /// Time from the arrival of the oldest measurement of the previous tick until its force was given to the device, s;
+    /// `None` without a measurement.
+    pub sample_to_force_s: Option<f64>,
+    /// Periods missed just before this tick.
+    pub missed_now: u64,
+}
+
+/// How the time of a tick follows from that of the tick before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Passed {
+    /// By one period and those that were missed.
+    Evenly,
+    /// Forwards by another time.
+    Unevenly,
+    /// It stood still, went back, or is not a number.
+    Backwards,
+}
+
+/// Counts the ticks of a pair and compares their times.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ticks {
+    /// Executed ticks.
+    pub(super) executed: u64,
+    /// Missed periods.
+    pub(super) missed: u64,
+    last_s: Option<f64>,
+    period_s: f64,
+    /// How far recent ticks came late, and early, against whole periods: cumulative sums, periods.
+    late: f64,
+    early: f64,
+}
+
+impl Ticks {
+    pub(super) const fn new(period_s: f64) -> Self {
+        Self { executed: 0, missed: 0, last_s: None, period_s, late: 0.0, early: 0.0 }
+    }
+
+    /// Time must advance by one period plus those missed, and each tick may wake up to a period after its deadline. A clock that runs
+    /// too slowly or too fast keeps within that from tick to tick, but drifts.
+    pub(super) fn pass(&mut self, timing: &Timing) -> Passed {
+        self.missed += timing.missed_now;
+        let Some(last_s) = self.last_s.replace(timing.now_s) else { return Passed::Evenly };
+        if timing.now_s.is_nan() || timing.now_s <= last_s {
+            return Passed::Backwards;
+        }
+        let surplus = (timing.now_s - last_s) / self.period_s - (1 + timing.missed_now) as f64;
+        self.late = (self.late + surplus - MOVES_PHASE).max(0.0);
+        self.early = (self.early - surplus - MOVES_PHASE).max(0.0);
+        let drifts = self.late.max(self.early) > DRIFT_MAX;
+        if drifts {
+            (self.late, self.early) = (0.0, 0.0);
+        }
+        // A tenth more for a loop that moves its phase.
+        if surplus.abs() <= 1.1 && !drifts { Passed::Evenly } else { Passed::Unevenly }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::runtime::{ClockProfile, TickTimes};
+
+    const PERIOD_S: f64 = 1e-3;
+
+    /// The tick from which on the clock is not even any more, if there is one.
+    fn uneven(ticks: u32, now_s: impl Fn(u32) -> f64) -> Option<u32> {
+        let mut counted = Ticks::new(PERIOD_S);
+        (0..ticks).find(|tick| counted.pass(&Timing { now_s: now_s(*tick), ..Timing::default() }) != Passed::Evenly)
+    }
+
+    #[test]
+    fn a_clock_at_half_or_at_twice_its_rate_is_uneven_within_six_ticks() {
+        for rate in [0.5, 0.7, 1.5, 2.0] {
+            let found = uneven(20, |tick| rate * f64::from(tick) * PERIOD_S);
+            assert!(found.is_some_and(|tick| tick <= 10), "{rate}: {found:?}");
+        }
+        assert!(uneven(20, |tick| 0.5 * f64::from(tick) * PERIOD_S).is_some_and(|tick| tick <= 6));
+        assert_eq!(uneven(100_000, |tick| f64::from(tick) * PERIOD_S), None);
+        // A loop that moves its phase, as long as that may ever take.
+        assert_eq!(uneven(1000, |tick| 1.001 * f64::from(tick) * PERIOD_S), None);
+    }
+
+    #[test]
+    fn late_ticks_are_even() {
+        for profile in ClockProfile::ALL {
+            let mut times = TickTimes::new(profile, 3, 1.0 / PERIOD_S);
+            let mut counted = Ticks::new(PERIOD_S);
+            for _ in 0..100_000 {
+                let timing = Timing::from(times.advance());
+                assert_eq!(counted.pass(&timing), Passed::Evenly, "{profile} at {} s", timing.now_s);
+            }
+        }
+    }
+}

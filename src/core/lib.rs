@@ -10,8 +10,12 @@ pub mod calibration;
 pub mod frames;
 pub mod impedance;
 pub mod kinematics;
+pub mod limits;
 pub mod noise;
 pub mod safety;
+mod side;
 pub mod signal;
 pub mod statistics;
 pub mod tip_force;
+
+pub use side::{SIDES, Side};

@@ -13,7 +13,7 @@ use crate::Lens;
 /// Inner corners along a side.
 const CORNERS: std::ops::RangeInclusive<usize> = 3..=40;
 /// Side of a square, m.
-const SQUARE_M: std::ops::RangeInclusive<f64> = 0.000_5..=0.2;
+pub const SQUARE_M: std::ops::RangeInclusive<f64> = 0.000_5..=0.2;
 /// White paper around the squares, in squares.
 const MARGIN: f64 = 1.0;
 /// Samples of a pixel along each side where an edge runs through it.
@@ -38,13 +38,13 @@ pub enum BoardError {
     #[error("\"{0}\" is no board; give its inner corners, such as 9x6")]
     Text(String),
     /// A side has too few or too many corners.
-    #[error("{0} inner corners along a side are not supported; give 3 to 40")]
+    #[error("{0} inner corners along a side are not supported; give {least} to {most}", least = CORNERS.start(), most = CORNERS.end())]
     Corners(usize),
     /// It looks the same upside down.
     #[error("a board of {0}x{1} inner corners looks the same upside down; give an odd and an even number, such as 9x6")]
     Ambiguous(usize, usize),
     /// Its squares are too small or too large.
-    #[error("squares of {0} mm are not supported; give 0.5 to 200 mm")]
+    #[error("squares of {0} mm are not supported; give {least} to {most} mm", least = SQUARE_M.start() * 1e3, most = SQUARE_M.end() * 1e3)]
     Square(f64),
 }
 

@@ -12,8 +12,8 @@ mod teleoperation;
 use std::path::Path;
 
 use nima_core::{
-    impedance::{MAX_DEGREE, MAX_DELAY_S, MAX_REST_N, Mode, ModeSet, RIDGES, Settings},
-    kinematics::SCALES,
+    impedance::{MAX_DEGREE, Mode, ModeSet, Settings},
+    limits::{self, GAIN, MAX_CEILING_N, WINDOW_SAMPLES},
     safety::ChainSettings,
     tip_force::Fallback,
 };
@@ -31,7 +31,7 @@ pub use own_copy::{change_rig, own_copy};
 pub use rig_file::{Chosen, RigFile, RigFileError};
 pub use teleoperation::{LeaderMount, Teleoperation};
 
-use crate::rig::{self, Part, Side};
+use crate::rig::{self, DeviceName, DeviceRole, Part, Side};
 
 /// The settings of a rig: its loop, and its devices if it has any.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -189,16 +189,16 @@ impl RigConfig {
     }
 
     /// Names and makes of the devices, in the order of the roster.
-    pub fn device_names(&self) -> Vec<String> {
+    pub fn device_names(&self) -> Vec<DeviceName> {
         let parts = self.devices.iter().flat_map(|devices| {
-            Part::ALL.into_iter().filter(|part| part.is_in(devices)).map(|part| part.name_and_make(devices))
+            Part::ALL.into_iter().filter(|part| part.is_in(devices)).map(|part| part.device(devices))
         });
-        let handle = |desk: &rig::DeskSettings| {
-            desk.handle.as_ref().map(|handle| Part::Handle(Side::Right).name_of_make(handle.maker()))
-        };
+        let named = |role, make| DeviceName { role, make };
         let desk = self.desk.iter().flat_map(|desk| {
-            let cap = desk.leading_cap().map(|_| "cap".to_owned());
-            [handle(desk), cap, desk.pedal.as_ref().map(|_| "pedal".to_owned())]
+            let handle = DeviceRole::Part(Part::Handle(Side::Right));
+            let handle = desk.handle.as_ref().map(|chosen| named(handle, Some(chosen.maker())));
+            let cap = desk.leading_cap().map(|_| named(DeviceRole::Cap, None));
+            [handle, cap, desk.pedal.as_ref().map(|_| named(DeviceRole::Part(Part::Pedal), None))]
         });
         parts.chain(desk.flatten()).collect()
     }
@@ -257,8 +257,8 @@ impl RigConfig {
     /// [`ConfigError`] for the first value outside its range, with its key.
     pub fn validate(&self) -> Result<(), ConfigError> {
         let ranges = Ranges { kind: "rig", name: &self.name };
-        ranges.check("rate_hz", self.rate_hz, (20.0..=10_000.0).contains(&self.rate_hz), "20 to 10000 Hz")?;
-        ranges.check("delay_s", self.delay_s, (0.0..=MAX_DELAY_S).contains(&self.delay_s), "0 to 1 s")?;
+        ranges.within("rate_hz", self.rate_hz, &limits::RATE_HZ)?;
+        ranges.within("delay_s", self.delay_s, &limits::DELAY_S)?;
         ranges.positive("follower_speed_max_m_s", self.follower_speed_max_m_s)?;
         if let Some(desk) = &self.desk {
             let speed = desk.speed_m_s;
@@ -271,8 +271,7 @@ impl RigConfig {
                 "left out: a rig has one or the other",
             )?;
         }
-        let scale = self.teleoperation.scale;
-        ranges.check("teleoperation.scale", scale, SCALES.contains(&scale), "0.01 to 5")?;
+        ranges.within("teleoperation.scale", self.teleoperation.scale, &limits::SCALE)?;
         ranges.finite("teleoperation.world_from_view_deg", &self.teleoperation.world_from_view_deg)?;
         if let Some(measured_deg) = &self.teleoperation.view_from_leader_deg {
             ranges.finite("teleoperation.view_from_leader_deg", measured_deg)?;
@@ -282,27 +281,30 @@ impl RigConfig {
         ranges.check(
             "identification.window_s",
             window_s,
-            (10.0..=10_000.0).contains(&samples),
-            "10 to 10000 samples long",
+            WINDOW_SAMPLES.contains(samples),
+            format!("{WINDOW_SAMPLES} long"),
         )?;
         let degree = self.identification.max_degree;
-        ranges.check("identification.max_degree", degree as f64, (1..=MAX_DEGREE).contains(&degree), "1 to 5")?;
-        let rest_n = self.identification.rest_n;
-        ranges.check("identification.rest_n", rest_n, (0.0..=MAX_REST_N).contains(&rest_n), "0 to 1 N")?;
-        let ridge = self.identification.literal.ridge;
-        ranges.check("identification.literal.ridge", ridge, RIDGES.contains(&ridge), "0 to 1e6")?;
+        ranges.check(
+            "identification.max_degree",
+            degree as f64,
+            (1..=MAX_DEGREE).contains(&degree),
+            format!("1 to {MAX_DEGREE}"),
+        )?;
+        ranges.within("identification.rest_n", self.identification.rest_n, &limits::REST_N)?;
+        ranges.within("identification.literal.ridge", self.identification.literal.ridge, &limits::RIDGE)?;
         let gates = &self.gates;
         ranges.check(
             "gates.gain",
             gates.gain,
-            (0.0..=1.0).contains(&gates.gain),
-            "0 to 1 (more needs the operator)",
+            GAIN.contains(gates.gain),
+            format!("{GAIN} (more needs the operator)"),
         )?;
         ranges.check(
             "gates.ceiling_n",
             gates.ceiling_n,
-            gates.ceiling_n > 0.0 && gates.ceiling_n <= 12.0,
-            "above 0, at most 12 N",
+            gates.ceiling_n > 0.0 && gates.ceiling_n <= MAX_CEILING_N,
+            format!("above 0, at most {MAX_CEILING_N} N"),
         )?;
         ranges.positive("gates.slew_n_per_s", gates.slew_n_per_s)?;
         ranges.positive("gates.gain_rate_per_s", gates.gain_rate_per_s)?;
@@ -372,8 +374,8 @@ mod tests {
             ("choice = \"best\"", ["best", "window"]),
             ("constant = 1", ["line 14", "boolean"]),
             ("ridges = 1.0", ["ridges", "ridge"]),
-            ("ridge = -1.0", ["identification.literal.ridge is -1", "0 to 1e6"]),
-            ("ridge = nan", ["identification.literal.ridge", "0 to 1e6"]),
+            ("ridge = -1.0", ["identification.literal.ridge is -1", "0 to 1000000"]),
+            ("ridge = nan", ["identification.literal.ridge", "0 to 1000000"]),
         ] {
             let told = with(wrong).unwrap_err().to_string();
             assert!(words.iter().all(|word| told.contains(word)) && !told.contains('\n'), "{wrong}: {told}");

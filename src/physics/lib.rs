@@ -23,6 +23,6 @@ mod wire;
 pub use instrument::{Instrument, Loads, OPENING_MOST_RAD, Touching};
 pub use objects::{Doing, Objects, RingState};
 pub use peg_transfer::PegTransfer;
-pub use setting::{Board, Contact, Friction, Jaws, Pegs, Setting, SettingError, Shape, Start, View};
+pub use setting::{Board, Contact, Friction, Jaws, Pegs, RINGS_MAX, Setting, SettingError, Shape, Start, View};
 pub use watch::Watch;
 pub use wire::{Curve, Hoop, Wire, WireContact, WireSetting, WireState, WireTask};

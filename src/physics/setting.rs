@@ -5,6 +5,8 @@ mod check;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+pub use check::RINGS_MAX;
+
 /// Board, pegs, rings and jaws: the section `[objects]` of a scene file. Workspace frame, z up. Every key has a default: the peg transfer
 /// of FLS, six rings on the pegs of the left side.
 ///

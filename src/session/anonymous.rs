@@ -6,7 +6,10 @@
 use std::{collections::BTreeMap, fs, ops::Range, path::Path, sync::atomic::AtomicBool, time::UNIX_EPOCH};
 
 use nima_core::impedance::Mode;
-use nima_machine::{rig::Side, runtime::ClockProfile};
+use nima_machine::{
+    rig::{DeviceName, Side},
+    runtime::ClockProfile,
+};
 use nima_recording::{
     messages::{
         JointStateDecoder,
@@ -20,14 +23,15 @@ use crate::{
     cut::{self, CutError, stretch},
     kept::{FIGURES, VERDICTS, verdicts},
     layouts::layouts,
+    logged::Logged,
     objects,
     outlet::{Channel, Outlet},
     plotted,
     recorder::Attached,
     topics::{
         ALARM_LINE, ARROWS_TOPIC, FRAMES_TOPIC, HAPPENING_LINE, HAPPENINGS_TOPIC, LINE, LOG_TOPIC, MARK_LINE,
-        MARKS_TOPIC, RINGS_TOPIC, happenings_channel, line, marks, marks_channel, marks_of, plot::Plot, plots, redrawn,
-        rings, rings_channel, rings_of,
+        MARKS_TOPIC, RINGS_TOPIC, Words, happenings_channel, line, marks, marks_channel, marks_of, plot::Plot, plots,
+        redrawn, rings, rings_channel, rings_of,
     },
 };
 
@@ -49,8 +53,10 @@ pub struct Known<'a> {
     pub program: &'a str,
     /// Files to attach, in place of those that are in the session.
     pub files: &'a [Attached],
-    /// Whether a line of the log is this program's own, without a name that a person gave.
-    pub is_ours: &'a dyn Fn(&str) -> bool,
+    /// Texts for the values of the log.
+    pub words: Words,
+    /// The devices of the session's rig, in the order of its roster.
+    pub devices: &'a [DeviceName],
 }
 
 impl std::fmt::Debug for Known<'_> {
@@ -225,8 +231,12 @@ impl Topic {
                         .into_iter()
                         .find(|name| *name == log.name)
                         .unwrap_or(LINE);
-                    let words = if (known.is_ours)(&log.message) { log.message } else { WITHHELD.to_owned() };
-                    out.message(*channel, time_ns, &line(time_ns, level, name, words))?;
+                    let value = log.value.as_deref().and_then(Logged::decode);
+                    let words = value.as_ref().map_or_else(
+                        || WITHHELD.to_owned(),
+                        |value| known.words.of(value, known.devices).unwrap_or(log.message),
+                    );
+                    out.message(*channel, time_ns, &line(time_ns, level, name, words, value.as_ref()))?;
                 }
             }
         }

@@ -12,6 +12,7 @@ use prost::Message as _;
 use crate::{
     cut,
     journal::{Message, Start, decode},
+    logged::Logged,
     plotted,
     recorder::JOURNAL_TOPIC,
     replay::{Cursor, Journal, Keyframe, Messages, ReplayError, decoded},
@@ -30,14 +31,16 @@ const FAR_AHEAD: usize = 80;
 const MARGIN_NS: u64 = 1_000_000;
 
 /// A line of the log of a session.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     /// Its time, ns since 1970 (UTC).
     pub time_ns: u64,
     /// What it is about.
     pub kind: LineKind,
-    /// What happened.
+    /// What happened, in English.
     pub words: String,
+    /// The same as a value; `None` in a session of an earlier version, and where a name may be in the words.
+    pub value: Option<Logged>,
 }
 
 /// What a line of the log is about, the most urgent first.
@@ -129,7 +132,8 @@ impl Recorded {
                 (Level::Warning, _) => LineKind::Warning,
                 _ => LineKind::Told,
             };
-            Ok(Some(Line { time_ns: message.log_time_ns(), kind, words: line.message }))
+            let value = line.value.as_deref().and_then(Logged::decode);
+            Ok(Some(Line { time_ns: message.log_time_ns(), kind, words: line.message, value }))
         };
         self.0.messages(&["log"], times_ns).map(line).filter_map(Result::transpose).collect()
     }

@@ -33,6 +33,7 @@ pub mod file;
 pub mod journal;
 mod kept;
 pub mod layouts;
+mod logged;
 pub mod objects;
 pub mod outlet;
 pub mod outlook;
@@ -47,4 +48,5 @@ pub mod shelf;
 mod topics;
 pub mod watched;
 
+pub use logged::Logged;
 pub use topics::{STATES, Words};

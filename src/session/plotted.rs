@@ -7,7 +7,7 @@ use std::{
 
 use nalgebra::{Isometry3, Vector3};
 use nima_core::impedance::{AXES, Sample};
-use nima_machine::rig::Side;
+use nima_machine::{messages::LoopState, rig::Side};
 use nima_recording::{
     csv::{Recording, RecordingError},
     session::{Message, ReadError, Reader},
@@ -56,8 +56,8 @@ pub struct PlottedTick {
     pub delayed_n: Vector3<f64>,
     pub asked_n: Vector3<f64>,
     pub rendered_n: Vector3<f64>,
-    /// In a word.
-    pub state: &'static str,
+    /// Of faults only that there was one is plotted.
+    pub state: LoopState,
 }
 
 /// When the session began, ns: for a stretch that was cut out, the session that it was cut from.
@@ -185,8 +185,8 @@ fn tick(
     Some(PlottedTick { time_ns, t_s, tip_m, leader_m, measured_n, delayed_n, asked_n, rendered_n, state })
 }
 
-/// The word of a state, from its number in the plots.
-fn state(number: f64) -> Option<&'static str> {
+/// A state from its number in the plots.
+fn state(number: f64) -> Option<LoopState> {
     let index = (number >= 0.0 && number.fract() == 0.0).then_some(number as usize)?;
-    STATES.get(index).map(|state| state.word())
+    STATES.get(index).copied()
 }

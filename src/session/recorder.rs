@@ -114,6 +114,8 @@ pub struct Note {
     pub warns: bool,
     /// What.
     pub words: String,
+    /// Whether a name that a person gave may be in the words.
+    pub names: bool,
 }
 
 /// What a note is about.

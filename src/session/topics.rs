@@ -12,7 +12,7 @@ mod timing;
 use nima_core::safety::{Gate, State};
 use nima_machine::{
     messages::{Event, Fault, LoopState, Tick},
-    rig::{SIDES, Side},
+    rig::{DeviceName, SIDES, Side},
     runtime::{Operation, Stepped},
 };
 use nima_recording::{
@@ -28,6 +28,7 @@ pub(crate) use scene::{ARROWS_TOPIC, FRAMES_TOPIC, endoscope_of};
 pub(crate) use timing::{TIMES, TIMING_TOPIC};
 
 use crate::{
+    logged::Logged,
     objects::ObjectSource,
     outlet::{Channel, Outlet},
     pictures::{PictureSource, Taken},
@@ -47,11 +48,23 @@ use self::{
 #[derive(Clone, Copy, Debug)]
 pub struct Words {
     /// For what the loop tells, with the names of the rig's devices in the order of its roster.
-    pub event: fn(&Event, &[String]) -> String,
+    pub event: fn(&Event, &[DeviceName]) -> String,
     /// For what is done to the loop, with the same names.
-    pub operation: fn(&Operation, &[String]) -> String,
+    pub operation: fn(&Operation, &[DeviceName]) -> String,
     /// For what happens to the objects of a scene.
     pub happening: fn(&nima_score::Event) -> String,
+}
+
+impl Words {
+    /// The text of a value of the log; `None` for one that has no text of its own.
+    pub fn of(&self, logged: &Logged, devices: &[DeviceName]) -> Option<String> {
+        match logged {
+            Logged::Event(event) => Some((self.event)(event, devices)),
+            Logged::Operation(operation) => Some((self.operation)(operation, devices)),
+            Logged::Happening(event) => Some((self.happening)(event)),
+            Logged::Screen => None,
+        }
+    }
 }
 
 /// Topic of the log.
@@ -73,7 +86,7 @@ pub(crate) struct Topics {
     times: Times,
     log: Channel,
     words: Words,
-    devices: Vec<String>,
+    devices: Vec<DeviceName>,
     /// Of a scene that tells of its objects.
     objects: Option<OfObjects>,
     /// Of an endoscope.
@@ -135,7 +148,7 @@ impl Topics {
         out: &mut Outlet,
         sides: [bool; SIDES],
         words: Words,
-        devices: Vec<String>,
+        devices: Vec<DeviceName>,
     ) -> Result<Self, WriteError> {
         let mut of = [None, None];
         for side in Side::ALL.into_iter().filter(|side| sides[side.index()]) {
@@ -168,8 +181,10 @@ impl Topics {
     ) -> Result<(), WriteError> {
         let Some(objects) = &mut self.objects else { return Ok(()) };
         for happening in objects.until(out, t_s, &time_ns)? {
-            let (time_ns, words) = (time_ns(happening.t_s), (self.words.happening)(&happening.event));
-            out.message(self.log, time_ns, &line(time_ns, Level::Info, HAPPENING_LINE, words))?;
+            let time_ns = time_ns(happening.t_s);
+            let words = (self.words.happening)(&happening.event);
+            let value = Logged::Happening(happening.event);
+            out.message(self.log, time_ns, &line(time_ns, Level::Info, HAPPENING_LINE, words, Some(&value)))?;
         }
         Ok(())
     }
@@ -215,7 +230,7 @@ impl Topics {
                 Event::CommandRefused { .. } => Level::Warning,
                 Event::StateChanged { .. } | Event::Device(_) | Event::Scheduling(_) => Level::Info,
             };
-            self.log(out, time_ns, level, (self.words.event)(event, &self.devices))?;
+            self.log(out, time_ns, level, (self.words.event)(event, &self.devices), &Logged::Event(*event))?;
         }
         Ok(())
     }
@@ -227,32 +242,42 @@ impl Topics {
         time_ns: u64,
         operation: &Operation,
     ) -> Result<(), WriteError> {
-        self.log(out, time_ns, Level::Info, (self.words.operation)(operation, &self.devices))
+        let words = (self.words.operation)(operation, &self.devices);
+        self.log(out, time_ns, Level::Info, words, &Logged::Operation(*operation))
     }
 
-    fn log(&self, out: &mut Outlet, time_ns: u64, level: Level, message: String) -> Result<(), WriteError> {
-        out.message(self.log, time_ns, &line(time_ns, level, LINE, message))
+    fn log(
+        &self,
+        out: &mut Outlet,
+        time_ns: u64,
+        level: Level,
+        words: String,
+        value: &Logged,
+    ) -> Result<(), WriteError> {
+        out.message(self.log, time_ns, &line(time_ns, level, LINE, words, Some(value)))
     }
 
     /// Writes what a screen adds to the log.
     pub(crate) fn note(&self, out: &mut Outlet, time_ns: u64, note: Note) -> Result<(), WriteError> {
-        let Note { kind, warns, words } = note;
+        let Note { kind, warns, words, names } = note;
         let level = if warns { Level::Warning } else { Level::Info };
         let name = match kind {
             NoteKind::Mark => MARK_LINE,
             NoteKind::Alarm => ALARM_LINE,
         };
-        out.message(self.log, time_ns, &line(time_ns, level, name, words))
+        let value = (!names).then_some(&Logged::Screen);
+        out.message(self.log, time_ns, &line(time_ns, level, name, words, value))
     }
 }
 
-/// A line of the log.
-pub(crate) fn line(time_ns: u64, level: Level, name: &str, message: String) -> Vec<u8> {
+/// A line of the log, with the value that it is made from; `None` where a name may be in the text.
+pub(crate) fn line(time_ns: u64, level: Level, name: &str, message: String, value: Option<&Logged>) -> Vec<u8> {
     let log = Log {
         timestamp: Some(foxglove::Timestamp::of_ns(time_ns)),
         level: level as i32,
         message,
         name: name.to_owned(),
+        value: value.map(Logged::encode),
         ..Log::default()
     };
     prost::Message::encode_to_vec(&log)

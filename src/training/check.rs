@@ -6,7 +6,7 @@
 
 use nima_core::{
     calibration::{Judgement, Verdict},
-    tip_force::{Check, Estimator},
+    tip_force::{Check, Estimator, NO_MODEL},
 };
 use nima_recording::{
     store::utc_now,
@@ -63,7 +63,7 @@ fn judge(evaluation: &Evaluation, [rows, free]: [usize; 2]) -> (Verdict, String)
         method.outputs.iter().map(|stats| stats.map_or(f64::INFINITY, |stats| stats.mae)).fold(0.0, f64::max)
     };
     let mae_n = worst(&part.methods[0]);
-    let wrist_n = part.methods.iter().find(|method| method.method == "no model").map_or(f64::INFINITY, worst);
+    let wrist_n = part.methods.iter().find(|method| method.method == NO_MODEL).map_or(f64::INFINITY, worst);
     let free_n = part.no_contact.iter().map(|rest| rest.mean.abs()).fold(0.0, f64::max);
     let doubt = part.doubt_share;
     if !evaluation.trained_on.is_empty() {

@@ -13,8 +13,8 @@ use nima_devices::{
     hid::{CapDriver, Held, PedalDriver, PedalRoles},
 };
 use nima_machine::rig::{
-    Act, Acts, DeskSettings, DeviceEvent, GUIDE_MAX_M, Healths, Inputs, Outputs, Rig, RigError, Roster, RosterEntry,
-    SIDES, Side, Switches, Watch,
+    Act, Acts, DeskSettings, DeviceEvent, DeviceRole, GUIDE_MAX_M, Healths, Inputs, Outputs, Part, Rig, RigError,
+    Roster, RosterEntry, SIDES, Side, Switches, Watch,
 };
 
 use super::{Worlds, held::Held as HeldHandle};
@@ -66,7 +66,7 @@ impl Desk {
             let driver = format!("cap, {}", cap.source);
             let slot = Slot::start("cap", move || CapDriver::open(&cap))?;
             let view = slot.view();
-            roster.push(RosterEntry::new("cap", driver, view));
+            roster.push(RosterEntry::new(DeviceRole::Cap, driver, view));
             Ok::<_, RigError>((slot, Held::default()))
         });
         let cap = cap.transpose()?;
@@ -76,7 +76,7 @@ impl Desk {
             let driver = format!("foot pedal, {}", pedal.source);
             let slot = Slot::start("pedal", move || PedalDriver::open(&pedal))?;
             let view = slot.view();
-            roster.push(RosterEntry::new("pedal", driver, view));
+            roster.push(RosterEntry::new(DeviceRole::Part(Part::Pedal), driver, view));
             Ok::<_, RigError>((slot, Held::default(), roles))
         });
         let pedal = pedal.transpose()?;

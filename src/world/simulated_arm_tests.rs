@@ -77,7 +77,7 @@ fn a_rig_leads_an_arm_of_another_make_that_its_file_names() {
         let folder = tempfile::tempdir().unwrap();
         let (settings, _serving) = devices(folder.path());
         let (mut rig, roster) = DeviceRig::start(&settings, 1e-3, [false; SIDES]).unwrap();
-        let drivers: Vec<_> = roster.iter().map(|entry| (entry.name.as_str(), entry.driver.as_str())).collect();
+        let drivers: Vec<_> = roster.iter().map(|entry| (entry.name(), entry.driver.as_str())).collect();
         assert_eq!(drivers[1], ("right arm", "simulated arm"));
         assert!(drivers[0].1.starts_with("Force Dimension omega.7") && drivers[2].1.starts_with("Bota sensor"));
         let begin = Instant::now();

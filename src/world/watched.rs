@@ -3,11 +3,10 @@
 use crossbeam_channel::{Receiver, Sender, bounded};
 use nalgebra::Vector3;
 use nima_machine::rig::SIDES;
+pub use nima_physics::RINGS_MAX;
 use nima_physics::{Loads, RingState};
 use nima_score::Happening;
 
-/// Rings of which a moment tells.
-pub const RINGS_MAX: usize = 12;
 /// Marks of which a moment tells.
 pub const MARKS_MAX: usize = 32;
 /// Moments and happenings that wait for each reader; what does not fit is left out. Moments of 5 s: a loop on the virtual clock is 2.5 s

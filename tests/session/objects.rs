@@ -8,7 +8,7 @@ use nima_machine::{
     runtime::{self, Assembly, tap},
 };
 use nima_recording::session::Reader;
-use nima_score::{Event, Happening, Side as Hand};
+use nima_score::{Event, Happening};
 use nima_session::{
     anonymous, cut,
     file::{LineKind, Recorded},
@@ -59,7 +59,7 @@ fn moment(number: u32) -> Objects {
 
 /// Of every scene that there may be.
 fn events() -> Vec<Happening> {
-    let side = Hand::Left;
+    let side = Side::Left;
     let events = [
         (0.5, Event::RingGrasped { ring: 1, side }),
         (1.0, Event::RingDropped { ring: 1, side, in_view: false }),
@@ -127,12 +127,16 @@ fn a_stretch_and_an_anonymous_session_keep_the_objects() {
     let times_ns = begin_ns + 1_000_000_000..begin_ns + 2_000_000_000;
     let asked = AtomicBool::new(false);
     cut::write(&reader, "session", &times_ns, &part, &asked).unwrap();
-    let known = anonymous::Known { program: "test", files: &[], is_ours: &|line| line.starts_with("Ring") };
+    let known = anonymous::Known { program: "test", files: &[], words: about().words, devices: &[] };
     anonymous::write(&reader, &known, &(0..u64::MAX), &shared, &asked).unwrap();
+    let shared_path = shared.clone();
     let [part, shared] = [part, shared].map(|path| Reader::open(&path).unwrap());
     assert_eq!(all(&part), events()[1..5]);
     assert_eq!(shown(&part, 1.237), Some(moment(123)));
     assert_eq!(all(&shared), events());
+    let log = Recorded::open(&shared_path).unwrap().log(0..u64::MAX).unwrap();
+    let told: Vec<_> = log.iter().filter(|line| line.kind == LineKind::Happening).collect();
+    assert!(told.len() == 6 && told[1].words.contains("RingDropped"), "{told:?}");
     for number in [0, 123, 250] {
         assert_eq!(shown(&shared, f64::from(number) * 0.01), Some(moment(number)), "moment {number}");
     }

@@ -106,7 +106,7 @@ impl Bench {
     }
 
     fn place(&self, name: &str) -> usize {
-        self.handle.roster().iter().position(|entry| entry.name == name).unwrap()
+        self.handle.roster().iter().position(|entry| entry.name() == name).unwrap()
     }
 
     /// Releases a latched state if necessary, engages, and waits until the tip has pressed on the tissue for a while.

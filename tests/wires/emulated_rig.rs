@@ -208,7 +208,7 @@ fn the_tracker_tells_how_the_endoscope_looks_whatever_the_rig_file_has() {
     for (side, number) in [(Side::Right, "SN000901"), (Side::Left, "SN000902")] {
         let of_side: Vec<_> = roster.iter().filter(|entry| entry.force_sensor_of() == Some(side)).collect();
         assert_eq!(of_side.len(), 1);
-        assert_eq!(of_side[0].name, format!("{} sensor", side.word()));
+        assert_eq!(of_side[0].name(), format!("{} sensor", side.word()));
         assert_eq!(of_side[0].view.report().identity.unwrap().serial, number);
     }
     // The tracker sends nothing: the orientation of the endoscope must not be assumed.

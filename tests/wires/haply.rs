@@ -92,13 +92,13 @@ fn a_haply_handle_feels_the_simulated_tissue_and_a_silent_one_takes_the_force_aw
         assert!(!rig.is_harmless() && !rig.has_simulated_hand(), "nobody else than a person engages it");
         rig.desk.as_mut().unwrap().handle = Some(LeaderSettings::Haply(Settings::at(serving.endpoint.as_str())));
         rig.validate().unwrap();
-        assert_eq!(rig.device_names(), ["right handle (Haply)"]);
+        assert_eq!(rig.device_names()[0].to_string(), "right handle (Haply)");
         (rig.mode, rig.gates.static_hold) = (Mode::Dfr, true);
         let scene = Scene::load("peg_transfer").unwrap();
         // A wish that is not granted: a person's hand may be at the handle.
         let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
         let handle = nima_world::start(&plan).unwrap();
-        assert_eq!(handle.roster()[0].name, "right handle");
+        assert_eq!(handle.roster()[0].name(), "right handle");
         let mut bench = Bench { handle, newest: None, lost: Vec::new() };
         bench.until("half a second", |bench| bench.newest.is_some_and(|tick| tick.t_s > 0.5));
         assert!(bench.is(LoopState::Idle) && felt.force_n() == Vector3::zeros());

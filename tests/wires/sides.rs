@@ -292,7 +292,8 @@ impl Machine {
     }
 
     fn troubles(&self) -> Vec<(String, Trouble)> {
-        let trouble = |entry: &nima_machine::rig::RosterEntry| Some((entry.name.clone(), entry.view.report().trouble?));
+        let trouble =
+            |entry: &nima_machine::rig::RosterEntry| Some((entry.name().to_owned(), entry.view.report().trouble?));
         self.handle.roster().iter().filter_map(trouble).collect()
     }
 

@@ -16,6 +16,9 @@ use nima_world::Plan;
 
 use crate::words::{event, happening, operation};
 
+/// Texts of the log.
+pub(crate) const WORDS: Words = Words { event, operation, happening };
+
 /// Name and version of this program.
 pub(crate) const PROGRAM: &str = concat!("nima ", env!("CARGO_PKG_VERSION"));
 
@@ -71,6 +74,6 @@ fn about(plan: &Plan, clock: Option<VirtualClock>) -> About {
         started_ns,
         metadata: BTreeMap::from([("session".to_owned(), session)]),
         files: texts.into_iter().filter_map(file).collect(),
-        words: Words { event, operation, happening },
+        words: WORDS,
     }
 }

@@ -74,7 +74,7 @@ pub use mode::{Baseline, MODES, Mode, ParseModeError, SLOTS};
 pub use packed::{PACKED_MAX, Packed};
 pub use recipe::{Choice, Reading, Recipe};
 pub use renderer::Renderer;
-pub use settings::{MAX_DELAY_S, MAX_REST_N, ModeSet, OwnMotion, RIDGES, Settings, SettingsError};
+pub use settings::{MAX_DELAY_S, ModeSet, OwnMotion, Settings, SettingsError};
 pub use solution::Solution;
 pub use window::{SlidingWindow, Summary};
 

@@ -3,19 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::{AXES, Baseline, MAX_DEGREE, MODES, Mode, features::Scales, recipe::Recipe};
-use crate::signal::DifferentiatorKind;
+use crate::{
+    limits::{DELAY_S, RATE_HZ, REST_N, RIDGE, WINDOW_SAMPLES},
+    signal::DifferentiatorKind,
+};
 
 /// Longest programmed delay of the link (s); the rings are made for it.
-pub const MAX_DELAY_S: f64 = 1.0;
-
-/// Largest force that may count as none (N).
-pub const MAX_REST_N: f64 = 1.0;
-
-/// Fewest and most samples in a window.
-const WINDOW_SAMPLES: std::ops::RangeInclusive<f64> = 10.0..=10_000.0;
-
-/// Least and greatest ridge.
-pub const RIDGES: std::ops::RangeInclusive<f64> = 0.0..=1e6;
+pub const MAX_DELAY_S: f64 = DELAY_S.max;
 
 /// The modes to compute; what is not asked for costs nothing.
 ///
@@ -173,14 +167,14 @@ impl Settings {
     /// ```
     pub fn validate(&self) -> Result<(), SettingsError> {
         use SettingsError as E;
-        if !(20.0..=10_000.0).contains(&self.rate_hz) {
+        if !RATE_HZ.contains(self.rate_hz) {
             return Err(E::Rate { rate_hz: self.rate_hz });
         }
         let samples = (self.window_s * self.rate_hz).round();
-        if !WINDOW_SAMPLES.contains(&samples) {
+        if !WINDOW_SAMPLES.contains(samples) {
             return Err(E::Window { window_s: self.window_s, samples });
         }
-        if !(0.0..=MAX_DELAY_S).contains(&self.delay_s) {
+        if !DELAY_S.contains(self.delay_s) {
             return Err(E::Delay { delay_s: self.delay_s });
         }
         if !(1..=MAX_DEGREE).contains(&self.max_degree) {
@@ -200,11 +194,11 @@ impl Settings {
                 return Err(E::Scale { name, value });
             }
         }
-        if !(0.0..=MAX_REST_N).contains(&self.rest_n) {
+        if !REST_N.contains(self.rest_n) {
             return Err(E::Rest { rest_n: self.rest_n });
         }
         for ridge in [self.ridge, self.literal.ridge] {
-            if !RIDGES.contains(&ridge) {
+            if !RIDGE.contains(ridge) {
                 return Err(E::Ridge { ridge });
             }
         }
@@ -218,7 +212,7 @@ impl Settings {
 
     /// The programmed delay in samples, at most [`MAX_DELAY_S`].
     pub fn delay_ticks(&self, delay_s: f64) -> usize {
-        let delay_s = if delay_s.is_finite() { delay_s.clamp(0.0, MAX_DELAY_S) } else { 0.0 };
+        let delay_s = if delay_s.is_finite() { delay_s.clamp(DELAY_S.min, DELAY_S.max) } else { 0.0 };
         (delay_s * self.rate_hz).round() as usize
     }
 }
@@ -228,18 +222,18 @@ impl Settings {
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum SettingsError {
     /// Sampling rate out of range.
-    #[error("the sampling rate is {rate_hz} Hz; it must lie between 20 and 10000 Hz")]
+    #[error("the sampling rate is {rate_hz} Hz; give {RATE_HZ}")]
     Rate { rate_hz: f64 },
     /// Window too short or too long.
-    #[error("a window of {window_s} s holds {samples} samples; it must hold 10 to 10000")]
+    #[error("a window of {window_s} s holds {samples} samples; give {WINDOW_SAMPLES}")]
     Window {
         window_s: f64,
         /// Samples at the given rate.
         samples: f64,
     },
-    #[error("the delay is {delay_s} s; it must lie between 0 and 1 s")]
+    #[error("the delay is {delay_s} s; give {DELAY_S}")]
     Delay { delay_s: f64 },
-    #[error("the highest degree is {degree}; it must lie between 1 and 5")]
+    #[error("the highest degree is {degree}; give 1 to {MAX_DEGREE}")]
     Degree { degree: usize },
     /// Number of axes out of range.
     #[error("{axes} axes were asked for; it must be 1, 2 or 3")]
@@ -251,8 +245,8 @@ pub enum SettingsError {
         name: &'static str,
         value: f64,
     },
-    #[error("the force at which the identification rests is {rest_n} N; it must lie between 0 and {MAX_REST_N} N")]
+    #[error("the force at which the identification rests is {rest_n} N; give {REST_N}")]
     Rest { rest_n: f64 },
-    #[error("the ridge is {ridge}; it must lie between 0 and 1e6")]
+    #[error("the ridge is {ridge}; give {RIDGE}")]
     Ridge { ridge: f64 },
 }

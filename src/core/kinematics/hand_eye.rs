@@ -7,8 +7,7 @@
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use thiserror::Error;
 
-/// Smallest and largest scale of the hand's motion.
-pub const SCALES: std::ops::RangeInclusive<f64> = 0.01..=5.0;
+use crate::limits::SCALE;
 
 /// Why a mapping is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -18,7 +17,7 @@ pub enum MappingError {
     #[error("the rotation from the leader to the arm's base is not finite: give the endoscope's pose again")]
     Rotation,
     /// The scale is out of range.
-    #[error("the motion scale is {scale}: it must be between 0.01 and 5")]
+    #[error("the motion scale is {scale}: give {SCALE}")]
     Scale { scale: f64 },
 }
 
@@ -70,7 +69,7 @@ impl Mapping {
     /// The mapping `world_from_view * view_from_leader`; `scale` is the tip's distance per distance of the hand.
     ///
     /// # Errors
-    /// [`MappingError`] if a rotation is not finite or the scale is not within [`SCALES`].
+    /// [`MappingError`] if a rotation is not finite or the scale is not within [`SCALE`].
     pub fn new(
         world_from_view: &UnitQuaternion<f64>,
         view_from_leader: &UnitQuaternion<f64>,
@@ -81,7 +80,7 @@ impl Mapping {
         if !world_from_leader.coords.iter().all(|x| x.is_finite()) {
             return Err(MappingError::Rotation);
         }
-        if !SCALES.contains(&scale) {
+        if !SCALE.contains(scale) {
             return Err(MappingError::Scale { scale });
         }
         Ok(Self { world_from_leader, scale })
@@ -90,9 +89,9 @@ impl Mapping {
     /// The same with another scale.
     ///
     /// # Errors
-    /// [`MappingError`] if the scale is not within [`SCALES`].
+    /// [`MappingError`] if the scale is not within [`SCALE`].
     pub fn scaled(&self, scale: f64) -> Result<Self, MappingError> {
-        if SCALES.contains(&scale) { Ok(Self { scale, ..*self }) } else { Err(MappingError::Scale { scale }) }
+        if SCALE.contains(scale) { Ok(Self { scale, ..*self }) } else { Err(MappingError::Scale { scale }) }
     }
 
     /// Rotation from the leader's frame to `world`.

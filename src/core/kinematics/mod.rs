@@ -25,7 +25,7 @@ mod velocity;
 mod wrist;
 
 pub use gen3::{ACCELERATION_RAD_S2, Chain, JOINTS, Joints, LIMIT_RAD, SPEED_RAD_S, limit_margin_rad};
-pub use hand_eye::{Hand, HandEye, Mapping, MappingError, SCALES, Target, view_from_omega, world_from_tracked_view};
+pub use hand_eye::{Hand, HandEye, Mapping, MappingError, Target, view_from_omega, world_from_tracked_view};
 pub use instrument::{Arm, ArmError, ArmSettings, Pose};
 pub use inverse::{Inverse, KEEP_OFF_RAD, Measures, START_MISS_M, Step};
 pub use limits::JointLimits;

@@ -6,8 +6,9 @@ use nalgebra::SVector;
 
 use super::{
     Age, Ceiling, ChainSettings, DeadBand, Energy, EnergyMode, Gain, Gate, GateCounts, GateReport, Governor, Reading,
-    Reason, Slew, admitted, settings::DEAD_BAND_MAX_M_S,
+    Reason, Slew, admitted,
 };
+use crate::limits::DEAD_BAND_M_S;
 
 /// One force asking to reach the hand. [`Request::default`] is one that is not permitted.
 #[derive(Clone, Copy, Debug)]
@@ -111,7 +112,7 @@ impl<const D: usize> Chain<D> {
         self.settings.gain = self.gain.chosen();
     }
 
-    /// The second, deliberate action: chooses a gain up to [`MAX_GAIN`](super::MAX_GAIN). NaN is ignored.
+    /// The second, deliberate action: chooses a gain within [`GAIN_ABOVE_ONE`](crate::limits::GAIN_ABOVE_ONE). NaN is ignored.
     pub const fn set_gain_above_one(&mut self, gain: f64) {
         self.gain.choose_above_one(gain);
         self.settings.gain = self.gain.chosen();
@@ -120,7 +121,7 @@ impl<const D: usize> Chain<D> {
     /// Chooses the dead band, m/s, 0 to 0.1; anything else is pulled in, NaN is ignored.
     pub fn set_dead_band(&mut self, threshold_m_s: f64) {
         if !threshold_m_s.is_nan() {
-            self.settings.dead_band_m_s = threshold_m_s.clamp(0.0, DEAD_BAND_MAX_M_S);
+            self.settings.dead_band_m_s = threshold_m_s.clamp(DEAD_BAND_M_S.min, DEAD_BAND_M_S.max);
             self.dead_band.threshold_m_s = self.settings.dead_band_m_s;
         }
     }

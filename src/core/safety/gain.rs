@@ -1,9 +1,7 @@
 //! Fourth gate: the operator's factor, ramped, above 1 only by a second, deliberate action.
 
 use super::Reason;
-
-/// Highest gain an operator can choose.
-pub const MAX_GAIN: f64 = 3.0;
+use crate::limits::{GAIN, GAIN_ABOVE_ONE};
 
 /// The gain and its ramp.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +16,7 @@ pub struct Gain {
 impl Gain {
     /// Starts at this gain (at most 1: nobody has taken the second action yet), changing by at most `rate_per_s` (1/s).
     pub const fn new(gain: f64, rate_per_s: f64) -> Self {
-        let chosen = if gain.is_nan() { 0.0 } else { gain.clamp(0.0, 1.0) };
+        let chosen = if gain.is_nan() { 0.0 } else { gain.clamp(GAIN.min, GAIN.max) };
         Self { chosen, above_one: false, now: chosen, rate_per_s }
     }
 
@@ -29,14 +27,14 @@ impl Gain {
             return;
         }
         self.above_one = self.above_one && gain > 1.0;
-        self.chosen = gain.clamp(0.0, if self.above_one { MAX_GAIN } else { 1.0 });
+        self.chosen = gain.clamp(GAIN.min, if self.above_one { GAIN_ABOVE_ONE.max } else { GAIN.max });
     }
 
-    /// The second, deliberate action: chooses a gain of 0 to [`MAX_GAIN`]. NaN is ignored.
+    /// The second, deliberate action: chooses a gain within [`GAIN_ABOVE_ONE`]. NaN is ignored.
     pub const fn choose_above_one(&mut self, gain: f64) {
         if !gain.is_nan() {
             self.above_one = gain > 1.0;
-            self.chosen = gain.clamp(0.0, MAX_GAIN);
+            self.chosen = gain.clamp(GAIN_ABOVE_ONE.min, GAIN_ABOVE_ONE.max);
         }
     }
 
@@ -81,7 +79,7 @@ mod tests {
                     allowed = if choice.is_nan() { allowed } else { allowed && choice > 1.0 };
                 }
                 let (now, _) = gain.step(1e-3);
-                prop_assert!((0.0..=MAX_GAIN).contains(&now) && (now - last).abs() <= 2e-3 + 1e-12);
+                prop_assert!(GAIN_ABOVE_ONE.contains(now) && (now - last).abs() <= 2e-3 + 1e-12);
                 prop_assert!(allowed || gain.chosen() <= 1.0);
                 last = now;
             }

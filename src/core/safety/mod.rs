@@ -23,7 +23,7 @@ pub use ceiling::Ceiling;
 pub use chain::{Chain, GripperChain, Request, TorqueChain};
 pub use dead_band::DeadBand;
 pub use energy::{ALLOWANCE_J, Energy, LEAK_S, MOST_J};
-pub use gain::{Gain, MAX_GAIN};
+pub use gain::Gain;
 pub use governor::{Governed, Governor, Handle, Reading};
 pub use interlock::{Change, Interlock, Permits, READY_WITHIN_S, Refused, Seen, State, Why, Wish};
 pub use plausibility::{

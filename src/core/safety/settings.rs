@@ -1,6 +1,7 @@
 //! Limits and knobs of a chain, and their safe values.
 
-use super::{Handle, MAX_GAIN};
+use super::Handle;
+use crate::limits::{DEAD_BAND_M_S, GAIN_ABOVE_ONE, OMEGA7_FORCE_N, OMEGA7_GRIPPER_N, USUAL_CEILING_N};
 
 /// What the energy gate does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -69,9 +70,8 @@ impl Default for ChainSettings {
         Self {
             gain: 1.0,
             gain_rate_per_s: 2.0,
-            ceiling_n: 4.0,
-            // An omega.7 gives 12 N.
-            device_limit_n: 12.0,
+            ceiling_n: USUAL_CEILING_N,
+            device_limit_n: OMEGA7_FORCE_N,
             // 5 N within 10 ms: faster than a hand can feel as a ramp, slow enough that one bad sample moves 0.5 N.
             slew_n_per_s: 500.0,
             fade_after_s: 0.005,
@@ -91,9 +91,9 @@ impl Default for ChainSettings {
 }
 
 impl ChainSettings {
-    /// For the force of a gripper (N between the fingers; an omega.7 gives 8 N): the same gates, but what is held is felt.
+    /// For the force of a gripper (N between the fingers): the same gates, but what is held is felt.
     pub fn gripper() -> Self {
-        Self { device_limit_n: 8.0, static_hold: true, ..Self::default() }.without_governor()
+        Self { device_limit_n: OMEGA7_GRIPPER_N, static_hold: true, ..Self::default() }.without_governor()
     }
 
     /// For a torque on the handle (Nm, rad/s; a sigma.7 gives 0.4 Nm, an omega.7 none: then the limit is 0).
@@ -136,7 +136,7 @@ impl ChainSettings {
         };
         let fade_after_s = fit(self.fade_after_s, 0.0, 1.0, safe.fade_after_s);
         Self {
-            gain: fit(self.gain, 0.0, MAX_GAIN, 0.0),
+            gain: fit(self.gain, GAIN_ABOVE_ONE.min, GAIN_ABOVE_ONE.max, 0.0),
             gain_rate_per_s: fit(self.gain_rate_per_s, 0.0, 1e3, safe.gain_rate_per_s),
             ceiling_n: fit(self.ceiling_n, 0.0, 1e3, 0.0),
             device_limit_n: fit(self.device_limit_n, 0.0, 1e3, 0.0),
@@ -147,14 +147,11 @@ impl ChainSettings {
             handle_step_m: fit(self.handle_step_m, 1e-7, 1e-3, safe.handle_step_m),
             brake_n_s_m: fit(self.brake_n_s_m, 0.0, 1e3, safe.brake_n_s_m),
             handle_n_s_m: fit(self.handle_n_s_m, 0.0, 100.0, safe.handle_n_s_m),
-            dead_band_m_s: fit(self.dead_band_m_s, 0.0, DEAD_BAND_MAX_M_S, safe.dead_band_m_s),
+            dead_band_m_s: fit(self.dead_band_m_s, DEAD_BAND_M_S.min, DEAD_BAND_M_S.max, safe.dead_band_m_s),
             ..self
         }
     }
 }
-
-/// Widest dead band that can be chosen, m/s.
-pub(super) const DEAD_BAND_MAX_M_S: f64 = 0.1;
 
 #[cfg(test)]
 mod tests {

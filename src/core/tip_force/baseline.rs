@@ -26,8 +26,12 @@ pub struct Baselines {
     soft: Vec<f32>,
 }
 
+/// Name of the baseline that takes the wrist force as it is.
+pub const NO_MODEL: &str = "no model";
+/// Name of the baseline that models the friction.
+pub const FRICTION: &str = "friction";
 /// Names of the baselines, in the order of [`Baselines::predict`].
-pub const BASELINES: [&str; 3] = ["no model", "linear", "friction"];
+pub const BASELINES: [&str; 3] = [NO_MODEL, "linear", FRICTION];
 
 impl Baselines {
     /// Fits the baselines on rows of these input and output columns, row by row.

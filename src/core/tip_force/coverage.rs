@@ -81,12 +81,51 @@ const CONTACT_SHARE: [f64; 2] = [0.15, 0.85];
 /// One requirement and how far it is met.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
-    /// Its name.
-    pub name: &'static str,
+    /// What is required.
+    pub what: GoalKind,
     /// How far it is met, 0 to 1.
     pub share: f64,
+}
+
+/// What a recording has to cover.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum GoalKind {
+    Tilt,
+    Depth,
+    InAndOut,
+    Speed,
+    Force,
+    Contact,
+    Rows,
+}
+
+impl GoalKind {
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Tilt => "Tilt of the shaft",
+            Self::Depth => "Depth",
+            Self::InAndOut => "In and out",
+            Self::Speed => "Speed",
+            Self::Force => "Force at the tip",
+            Self::Contact => "Contact and free",
+            Self::Rows => "Rows",
+        }
+    }
+
     /// What to do until it is met.
-    pub advice: &'static str,
+    pub const fn advice(self) -> &'static str {
+        match self {
+            Self::Tilt => "reach left, right, near and far",
+            Self::Depth => "move in and out by 2 cm",
+            Self::InAndOut => "move as often outwards as inwards",
+            Self::Speed => "make quick strokes in and out, 10 cm/s at their fastest",
+            Self::Force => "press into the tissue up to 3 N, and drag it sideways",
+            Self::Contact => "be in contact half of the time",
+            Self::Rows => "go on",
+        }
+    }
 }
 
 /// The coverage of a recording so far.
@@ -150,7 +189,7 @@ impl Coverage {
     pub fn goals(&self) -> [Goal; 7] {
         let rows = self.rows.max(1) as f64;
         let part = |have: f32, want: f32| f64::from(have / want).clamp(0.0, 1.0);
-        let goal = |name, share: f64, advice| Goal { name, share, advice };
+        let goal = |what, share: f64| Goal { what, share };
         let tilt = self.tilt_span.iter().map(|span| part(span.width(), TILT_SPAN)).fold(1.0, f64::min);
         let [x, y, z] = self.force_span.map(|span| span.width());
         let force = part(x.min(y), ACROSS_SPAN_N).min(part(z, ALONG_SPAN_N));
@@ -160,13 +199,13 @@ impl Coverage {
         let [least, most] = CONTACT_SHARE;
         let mixed = (contact / least).min((1.0 - contact) / (1.0 - most));
         [
-            goal("Tilt of the shaft", tilt, "reach left, right, near and far"),
-            goal("Depth", part(self.depth_span.width(), DEPTH_SPAN_M), "move in and out by 2 cm"),
-            goal("In and out", (way / WAY_SHARE).min(1.0), "move as often outwards as inwards"),
-            goal("Speed", brisk.min(1.0), "make quick strokes in and out, 10 cm/s at their fastest"),
-            goal("Force at the tip", force, "press into the tissue up to 3 N, and drag it sideways"),
-            goal("Contact and free", mixed.clamp(0.0, 1.0), "be in contact half of the time"),
-            goal("Rows", (self.rows as f64 / ROWS as f64).min(1.0), "go on"),
+            goal(GoalKind::Tilt, tilt),
+            goal(GoalKind::Depth, part(self.depth_span.width(), DEPTH_SPAN_M)),
+            goal(GoalKind::InAndOut, (way / WAY_SHARE).min(1.0)),
+            goal(GoalKind::Speed, brisk.min(1.0)),
+            goal(GoalKind::Force, force),
+            goal(GoalKind::Contact, mixed.clamp(0.0, 1.0)),
+            goal(GoalKind::Rows, (self.rows as f64 / ROWS as f64).min(1.0)),
         ]
     }
 
@@ -190,7 +229,7 @@ mod tests {
                 coverage.add(&inputs, &[0.0; 3], false);
             }
         }
-        coverage.goals().into_iter().find(|goal| goal.name == "Speed").unwrap().share
+        coverage.goals().into_iter().find(|goal| goal.what == GoalKind::Speed).unwrap().share
     }
 
     #[test]

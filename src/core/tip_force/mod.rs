@@ -19,9 +19,9 @@ mod network;
 mod normal;
 mod origin;
 
-pub use baseline::{BASELINES, Baselines};
+pub use baseline::{BASELINES, Baselines, FRICTION, NO_MODEL};
 pub use columns::{DEFAULT_INPUTS, DEFAULT_OUTPUTS, Expansion, MAX_FEATURES, MAX_OUTPUTS};
-pub use coverage::{Coverage, DEPTH_M, FORCE_N, Goal, MAP, Map, SPEED_M_S, Span, TILT};
+pub use coverage::{Coverage, DEPTH_M, FORCE_N, Goal, GoalKind, MAP, Map, SPEED_M_S, Span, TILT};
 pub use doubt::{Doubt, FALSE_ALARMS};
 pub use estimator::{Estimate, Estimator};
 pub use features::{FeatureSettings, Features, LIVE_INPUTS, NoRow, Row};

@@ -2,14 +2,15 @@
 
 use std::{net::SocketAddr, path::PathBuf};
 
+use nima_core::{Side, limits};
 use serde::{Deserialize, Serialize};
 
 use crate::Trouble;
 
 /// Largest force of an omega.7, N.
-pub const FORCE_MAX_N: f64 = 12.0;
+pub const FORCE_MAX_N: f64 = limits::OMEGA7_FORCE_N;
 /// Largest force of its gripper, N.
-pub const GRIPPER_MAX_N: f64 = 8.0;
+pub const GRIPPER_MAX_N: f64 = limits::OMEGA7_GRIPPER_N;
 
 /// Behaviour of the handle while no force is wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,25 +21,6 @@ pub enum IdleMode {
     Brake,
     /// No current: it moves freely and sinks under its weight.
     Free,
-}
-
-/// The hand for which a handle is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the names say it")]
-pub enum Hand {
-    Right,
-    Left,
-}
-
-impl Hand {
-    /// Its name.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Right => "right",
-            Self::Left => "left",
-        }
-    }
 }
 
 /// Settings of one omega.7.
@@ -53,7 +35,7 @@ pub struct Settings {
     /// The hand that it must be made for, by its own word. If omitted: that of its side on a rig with two handles, any on a
     /// rig with one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub hand: Option<Hand>,
+    pub hand: Option<Side>,
     /// Rate of the readings, Hz: 100 to 2000.
     pub rate_hz: f64,
     /// Time without a force command after which the device switches its force off by itself, ms: 1 to 31.

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// Longest time limit, s: the trajectory of a trial is kept at 100 Hz until it ends.
-const LONGEST_S: f64 = 1200.0;
+/// Longest time limit of a trial, s: its trajectory is kept at 100 Hz until it ends.
+pub const LONGEST_TRIAL_S: f64 = 1200.0;
 
 /// Which measures apply, and what counts as an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -123,12 +123,12 @@ impl TaskFile {
         let positive = |key, value: f64, up_to: f64, allowed| {
             if value > 0.0 && value <= up_to { Ok(()) } else { Err(TaskError::Setting { key, value, allowed }) }
         };
-        positive("time_limit_s", self.time_limit_s, LONGEST_S, "above 0 s and at most 1200 s")?;
-        positive("reference_time_s", self.reference_time_s, LONGEST_S, "above 0 s and at most 1200 s")?;
+        positive("time_limit_s", self.time_limit_s, LONGEST_TRIAL_S, "above 0 s and at most 1200 s")?;
+        positive("reference_time_s", self.reference_time_s, LONGEST_TRIAL_S, "above 0 s and at most 1200 s")?;
         positive("force_threshold_n", self.force_threshold_n, 1e3, "above 0 N and at most 1000 N")?;
         positive("contact_n", self.contact_n, 1e3, "above 0 N and at most 1000 N")?;
-        positive("proficiency.time_s", self.proficiency.time_s, LONGEST_S, "above 0 s and at most 1200 s")?;
-        if !(0.0..=LONGEST_S).contains(&self.penalty_s) {
+        positive("proficiency.time_s", self.proficiency.time_s, LONGEST_TRIAL_S, "above 0 s and at most 1200 s")?;
+        if !(0.0..=LONGEST_TRIAL_S).contains(&self.penalty_s) {
             let allowed = "from 0 s to 1200 s";
             return Err(TaskError::Setting { key: "penalty_s", value: self.penalty_s, allowed });
         }
@@ -143,7 +143,7 @@ impl TaskFile {
 
     /// The time limit, s, also for a task that was never checked: a trial is always bounded.
     pub(crate) fn limit_s(&self) -> f64 {
-        if self.time_limit_s > 0.0 { self.time_limit_s.min(LONGEST_S) } else { time_limit_s() }
+        if self.time_limit_s > 0.0 { self.time_limit_s.min(LONGEST_TRIAL_S) } else { time_limit_s() }
     }
 }
 

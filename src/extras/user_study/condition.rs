@@ -2,11 +2,12 @@
 
 use std::fmt;
 
-use nima_core::impedance::{Mode, OwnMotion};
+use nima_core::{
+    impedance::{Mode, OwnMotion},
+    limits::{DELAY_S, GAIN},
+};
 use serde::{Deserialize, Serialize};
 
-/// Longest delay, ms.
-const DELAY_MAX_MS: f64 = 2000.0;
 /// Longest name, letters.
 const NAME_MAX: usize = 40;
 
@@ -22,10 +23,10 @@ pub struct Condition {
     /// How the force is made.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mode: Option<Mode>,
-    /// What it is multiplied by, above 0 to 1; 1 where it is not named.
+    /// What it is multiplied by, above 0, within [`GAIN`]; 1 where it is not named.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain: Option<f64>,
-    /// One-way delay of the link, ms.
+    /// One-way delay of the link, ms, within [`DELAY_S`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub delay_ms: Option<f64>,
     /// The motion from which the leader makes the force; the rig's where it is not named.
@@ -60,11 +61,12 @@ impl Condition {
         if !*no_force && delay_ms.is_none() {
             wrong.push("delay_ms is missing; 0 is no delay".to_owned());
         }
-        if delay_ms.is_some_and(|delay_ms| !(0.0..=DELAY_MAX_MS).contains(&delay_ms)) {
-            wrong.push(format!("delay_ms has to be from 0 to {DELAY_MAX_MS:.0}"));
+        let delays_ms = DELAY_S.per(1e-3, "ms");
+        if delay_ms.is_some_and(|delay_ms| !delays_ms.contains(delay_ms)) {
+            wrong.push(format!("delay_ms has to be from {delays_ms}"));
         }
-        if gain.is_some_and(|gain| !(gain > 0.0 && gain <= 1.0)) {
-            wrong.push("gain has to be above 0 and at most 1; without force say no_force = true".to_owned());
+        if gain.is_some_and(|gain| !(gain > GAIN.min && gain <= GAIN.max)) {
+            wrong.push(format!("gain has to be above 0 and at most {}; without force say no_force = true", GAIN.max));
         }
         wrong
     }

@@ -2,19 +2,25 @@
 
 use std::{collections::BTreeSet, fmt};
 
-use nima_score::{Criterion, Definition, Feedback, MEASURES, Side, TaskFile};
+use nima_core::Side;
+use nima_score::{Criterion, Definition, Feedback, LONGEST_TRIAL_S, MEASURES, TaskFile};
 use serde::{Deserialize, Serialize};
 
 use crate::{Condition, ExclusionRule, Label, Questionnaire, telling};
 
-/// Most participants, and most trials under a condition.
-const PARTICIPANTS_MAX: u32 = 200;
-const TRIALS_MAX: u32 = 100;
-const NAME_MAX: usize = 120;
-/// Most attempts at a trial.
-const ATTEMPTS_MAX: u32 = 10;
+/// Maximum number of participants.
+pub const PARTICIPANTS_MAX: u32 = 200;
+/// Maximum number of trials under a condition.
+pub const TRIALS_MAX: u32 = 100;
+/// Maximum attempts at a trial.
+pub const ATTEMPTS_MAX: u32 = 10;
+/// Maximum practice trials.
+pub const PRACTICE_MAX: u32 = 200;
+/// Maximum trials between two breaks.
+pub const BREAK_AFTER_MAX: u32 = 1000;
 /// Longest break that can be required, s.
-const BREAK_MAX_S: f64 = 7200.0;
+pub const BREAK_MAX_S: f64 = 7200.0;
+const NAME_MAX: usize = 120;
 
 /// A study, as its TOML file says it.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -169,12 +175,12 @@ pub(crate) fn is_measure(key: &str) -> bool {
 
 /// The keys of all measures, in the order in which they are shown.
 pub(crate) fn measure_keys() -> impl Iterator<Item = String> {
-    MEASURES.iter().flat_map(|definition| keys_of(definition, &Side::ALL))
+    MEASURES.iter().flat_map(|definition| keys_of(definition, &Side::LEFT_TO_RIGHT))
 }
 
 /// The keys of a measure: one for each of these hands, if it is measured for each.
 pub fn keys_of(definition: &Definition, hands: &[Side]) -> Vec<String> {
-    let of = |side: &Side| format!("{}_{}", definition.id, side.name());
+    let of = |side: &Side| format!("{}_{}", definition.id, side.word());
     if definition.per_hand { hands.iter().map(of).collect() } else { vec![definition.id.to_owned()] }
 }
 
@@ -226,7 +232,7 @@ impl StudyFile {
         within("trials", *trials, TRIALS_MAX);
         within("attempts", *attempts, ATTEMPTS_MAX);
         within("rings", rings.unwrap_or(1), 100);
-        within("breaks.after_trials", breaks.map_or(1, |breaks| breaks.after_trials), 1000);
+        within("breaks.after_trials", breaks.map_or(1, |breaks| breaks.after_trials), BREAK_AFTER_MAX);
         let least_s = breaks.map_or(0.0, |breaks| breaks.least_s);
         if !(0.0..=BREAK_MAX_S).contains(&least_s) {
             wrong.push(format!("breaks.least_s = {least_s}: it has to be from 0 to {BREAK_MAX_S:.0} s"));
@@ -300,11 +306,15 @@ impl StudyFile {
         }
         let Some(Practice { criterion, .. }) = &self.practice else { return };
         let Criterion { time_s, consecutive, additional, max_trials, .. } = *criterion;
-        if !(time_s > 0.0 && time_s <= 1200.0) {
-            wrong.push(format!("practice.criterion.time_s = {time_s}: it has to be above 0 and at most 1200 s"));
+        if !(time_s > 0.0 && time_s <= LONGEST_TRIAL_S) {
+            wrong.push(format!(
+                "practice.criterion.time_s = {time_s}: it has to be above 0 and at most {LONGEST_TRIAL_S} s"
+            ));
         }
-        if consecutive == 0 || max_trials == 0 || max_trials > 200 {
-            wrong.push("practice.criterion: consecutive has to be at least 1, max_trials from 1 to 200".to_owned());
+        if consecutive == 0 || max_trials == 0 || max_trials > PRACTICE_MAX {
+            wrong.push(format!(
+                "practice.criterion: consecutive has to be at least 1, max_trials from 1 to {PRACTICE_MAX}"
+            ));
         }
         if consecutive.saturating_add(additional) > max_trials {
             wrong.push(format!(

@@ -66,7 +66,10 @@ pub use condition::Condition;
 pub use entry::{Ending, Entry, Event, Measures, Phase, TrialId};
 pub use error::StudyError;
 pub use exclusion::{Comparison, Excludes, Exclusion, ExclusionRule};
-pub use file::{Breaks, Interrupted, Mistakes, NotReached, Practice, Questionnaires, StudyFile, keys_of};
+pub use file::{
+    ATTEMPTS_MAX, BREAK_AFTER_MAX, BREAK_MAX_S, Breaks, Interrupted, Mistakes, NotReached, PARTICIPANTS_MAX,
+    PRACTICE_MAX, Practice, Questionnaires, StudyFile, TRIALS_MAX, keys_of,
+};
 pub use label::Label;
 pub use learning::Learning;
 pub use plan::{Participant, Plan, Practising, Told};

@@ -1,6 +1,7 @@
 //! The endoscope's picture on the surgeon's monitor. Nothing of it touches the loop.
 
 use nalgebra::Vector3;
+use nima_core::limits::{BASELINE_M, DISTORTION};
 use serde::{Deserialize, Serialize};
 
 use super::{ConfigError, Ranges};
@@ -154,7 +155,7 @@ impl Endoscope {
         )?;
         if let Some(baseline_m) = self.baseline_m {
             let place = "endoscope.baseline_m";
-            ranges.check(place, baseline_m, (0.000_5..=0.05).contains(&baseline_m), "0.0005 to 0.05 m")?;
+            ranges.within(place, baseline_m, &BASELINE_M)?;
             let halves = if self.view.is_some() { 2.0 } else { 1.0 };
             ranges.check(
                 "endoscope.view (halves, beside baseline_m)",
@@ -179,7 +180,7 @@ impl EndoscopeCamera {
         let [x, y] = self.centre_px.unwrap_or([0.5 * width, 0.5 * height]);
         let inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
         ranges.check("endoscope.camera.centre_px", x, inside, "within the picture")?;
-        ranges.check("endoscope.camera.k1", self.k1, (-2.0..=2.0).contains(&self.k1), "-2 to 2")?;
+        ranges.within("endoscope.camera.k1", self.k1, &DISTORTION)?;
         ranges.check("endoscope.camera.k2", self.k2, (-5.0..=5.0).contains(&self.k2), "-5 to 5")?;
         for (key, value) in [("endoscope.camera.p1", self.p1), ("endoscope.camera.p2", self.p2)] {
             ranges.check(key, value, (-0.5..=0.5).contains(&value), "-0.5 to 0.5")?;

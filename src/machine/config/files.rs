@@ -1,8 +1,12 @@
 //! Reading of settings files: by name, with the line of an error, and with range checks.
 
-use std::path::{Path, PathBuf};
+use std::{
+    borrow::Cow,
+    path::{Path, PathBuf},
+};
 
 use nalgebra::Vector3;
+use nima_core::limits::Limits;
 use nima_devices::Trouble;
 use nima_files::{Misfit, PASSAGE, from_table, shortened};
 use serde::de::DeserializeOwned;
@@ -51,7 +55,7 @@ pub enum ConfigError {
         name: String,
         key: &'static str,
         value: f64,
-        range: &'static str,
+        range: Cow<'static, str>,
     },
 }
 
@@ -124,11 +128,25 @@ impl Ranges<'_> {
     ///
     /// # Errors
     /// [`ConfigError::Range`].
-    pub fn check(&self, key: &'static str, value: f64, good: bool, range: &'static str) -> Result<(), ConfigError> {
+    pub fn check(
+        &self,
+        key: &'static str,
+        value: f64,
+        good: bool,
+        range: impl Into<Cow<'static, str>>,
+    ) -> Result<(), ConfigError> {
         if good && value.is_finite() {
             return Ok(());
         }
-        Err(ConfigError::Range { kind: self.kind, name: self.name.to_owned(), key, value, range })
+        Err(ConfigError::Range { kind: self.kind, name: self.name.to_owned(), key, value, range: range.into() })
+    }
+
+    /// Refuses a value outside these limits.
+    ///
+    /// # Errors
+    /// [`ConfigError::Range`].
+    pub fn within(&self, key: &'static str, value: f64, limits: &Limits) -> Result<(), ConfigError> {
+        self.check(key, value, limits.contains(value), limits.to_string())
     }
 
     /// Refuses a vector that is not finite. Each entry is checked on its own, because infinities can cancel in a sum.

@@ -18,7 +18,7 @@ use nima_devices::Loss;
 pub use bulletin::{Bulletin, FarStop};
 pub use force::{ForceReport, ForceSource, UNKNOWN_N};
 pub use refusal::Refusal;
-pub use scheduling::Scheduling;
+pub use scheduling::{Lack, Scheduling};
 pub use watchdog::Watchdog;
 
 use crate::rig::{Act, DeviceEvent, Prompt, Side, View};
@@ -33,13 +33,13 @@ pub enum Command {
     SetMode(Mode),
     /// Compute every mode beside the one that is rendered, to compare them (true), or only that one (false).
     Compare(bool),
-    /// Feedback gain, 0 to 1; a value above 1 is refused here, see [`Command::SetGainAboveOne`].
+    /// Feedback gain, within [`nima_core::limits::GAIN`]; a value above is refused here, see [`Command::SetGainAboveOne`].
     SetGain(f64),
-    /// Feedback gain up to 3, which the operator must confirm separately.
+    /// Feedback gain, within [`nima_core::limits::GAIN_ABOVE_ONE`], which the operator must confirm separately.
     SetGainAboveOne(f64),
-    /// One-way delay of the link, seconds, 0 to [`nima_core::impedance::MAX_DELAY_S`].
+    /// One-way delay of the link, s, within [`nima_core::limits::DELAY_S`].
     SetDelay(f64),
-    /// Speed (m/s) below which nothing is rendered.
+    /// Speed below which nothing is rendered, m/s, within [`nima_core::limits::DEAD_BAND_M_S`].
     SetDeadBand(f64),
     /// Keep rendering at standstill (true) or fade to zero in the dead band as the paper does (false).
     SetStaticHold(bool),
@@ -57,7 +57,7 @@ pub enum Command {
     LetGo(bool),
     /// Leave the governor out (false) or let it watch again (true). On a simulated rig only, where nobody holds the handle.
     SetGovernor(bool),
-    /// Distance of the tip per distance of the hand, within [`nima_core::kinematics::SCALES`].
+    /// Distance of the tip per distance of the hand, within [`nima_core::limits::SCALE`].
     SetScale(f64),
     /// Start force feedback and motion of every arm pair that is idle. Refused while the force at the tip is not known.
     Engage,

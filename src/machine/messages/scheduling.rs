@@ -12,19 +12,49 @@ pub struct Scheduling {
 }
 
 impl Scheduling {
-    /// How to get the missing privileges, for the user; `None` if all were granted.
-    pub const fn advice(&self) -> Option<&'static str> {
+    /// What is missing; `None` if all was granted.
+    pub const fn lack(&self) -> Option<Lack> {
         if cfg!(not(target_os = "linux")) {
-            return Some("real-time scheduling is used on Linux only; expect more missed ticks here");
+            return Some(Lack::NotLinux);
         }
         match (self.fifo || self.deadline, self.memory_locked) {
             (true, true) => None,
-            (false, _) => Some(
-                "no real-time priority: add the line \"@realtime - rtprio 95\" to /etc/security/limits.d/realtime.conf, join the group realtime and log in again",
-            ),
-            (true, false) => Some(
-                "memory is not locked: add the line \"@realtime - memlock unlimited\" to /etc/security/limits.d/realtime.conf, join the group realtime and log in again",
-            ),
+            (false, _) => Some(Lack::Priority),
+            (true, false) => Some(Lack::Memory),
+        }
+    }
+
+    /// What is missing and how to get it, for the user; `None` if all was granted.
+    pub fn advice(&self) -> Option<String> {
+        let [cause, cure] = self.lack()?.words();
+        Some(format!("{cause}: {cure}"))
+    }
+}
+
+/// What a loop lacks for real time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lack {
+    /// The operating system has none, as far as this program uses it.
+    NotLinux,
+    /// A priority above that of other programs.
+    Priority,
+    /// Memory that is never paged out.
+    Memory,
+}
+
+impl Lack {
+    /// What is missing, and what to do.
+    pub const fn words(self) -> [&'static str; 2] {
+        match self {
+            Self::NotLinux => ["real-time scheduling is used on Linux only", "expect more missed ticks here"],
+            Self::Priority => [
+                "no real-time priority",
+                "add the line \"@realtime - rtprio 95\" to /etc/security/limits.d/realtime.conf, join the group realtime and log in again",
+            ],
+            Self::Memory => [
+                "memory is not locked",
+                "add the line \"@realtime - memlock unlimited\" to /etc/security/limits.d/realtime.conf, join the group realtime and log in again",
+            ],
         }
     }
 }

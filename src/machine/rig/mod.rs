@@ -24,11 +24,11 @@ mod probes;
 mod prompt;
 mod seeking;
 mod settings;
-mod side;
 mod starting;
 mod watch;
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+pub use nima_core::{SIDES, Side};
 use nima_core::{calibration::frames::FrameSample, frames::WristSample, kinematics::Hand, safety::RawReadings};
 use nima_devices::{ClearFaults, Health, Lever, SlotView, Standing};
 
@@ -46,12 +46,11 @@ pub use makes::{FollowerSettings, LeaderSettings, SensorSettings};
 pub(crate) use makes::{Misread, take_out_makes};
 pub use nominal::Nominal;
 pub use obstacle::{Awaited, Exchange, Obstacle};
-pub use part::{Part, PartKind};
+pub use part::{DeviceName, DeviceRole, Part, PartKind};
 pub use probes::rig_probes;
 pub use prompt::Prompt;
 pub use seeking::{Offer, Sought, seek};
 pub use settings::{ArmSet, DeskSettings, EndoscopeSettings, Ends, SensorPlace, Settings};
-pub use side::{SIDES, Side};
 pub use watch::Watch;
 
 /// The force measurement, by the place of the sensor.
@@ -376,8 +375,8 @@ pub struct DeviceEvent {
 /// One device of a rig, as threads other than the real-time thread see it.
 #[derive(Clone, Debug)]
 pub struct RosterEntry {
-    /// Its name in the rig: `left wrist sensor`.
-    pub name: String,
+    /// What it is in the rig.
+    pub role: DeviceRole,
     /// Name of its driver and address: `Bota socket 192.168.1.1`.
     pub driver: String,
     /// Connects and disconnects it, and reports why it is not connected.
@@ -391,13 +390,18 @@ pub struct RosterEntry {
 
 impl RosterEntry {
     /// A device that is no part of the rig and that has no faults to clear.
-    pub fn new(name: impl Into<String>, driver: impl Into<String>, view: SlotView) -> Self {
-        Self { name: name.into(), driver: driver.into(), view, part: None, clear_faults: None }
+    pub fn new(role: DeviceRole, driver: impl Into<String>, view: SlotView) -> Self {
+        Self { role, driver: driver.into(), view, part: None, clear_faults: None }
     }
 
     /// A part of the rig.
     pub fn of(part: Part, driver: impl Into<String>, view: SlotView) -> Self {
-        Self { part: Some(part), ..Self::new(part.name(), driver, view) }
+        Self { part: Some(part), ..Self::new(DeviceRole::Part(part), driver, view) }
+    }
+
+    /// Its name in files and in English text.
+    pub const fn name(&self) -> &'static str {
+        self.role.name()
     }
 
     /// The side of the arm that carries it, if it is a force sensor at an arm: calibrations are bound to it.

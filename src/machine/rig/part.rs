@@ -1,5 +1,7 @@
 //! The parts of a rig: what a device is used for, and where a rig file describes it.
 
+use std::fmt;
+
 use super::{SensorSettings, Settings, Side};
 
 /// What a device is used for in a rig.
@@ -19,6 +21,41 @@ pub enum Part {
     Tracker,
     /// The foot pedal.
     Pedal,
+}
+
+/// What a device is in its rig.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DeviceRole {
+    /// A part of the rig; on a simulated rig, a device that leads it in place of this part.
+    Part(Part),
+    /// A cap that leads a simulated rig.
+    Cap,
+}
+
+impl DeviceRole {
+    /// Its name in files and in English text: `left sensor`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Part(part) => part.name(),
+            Self::Cap => "cap",
+        }
+    }
+}
+
+/// A device by its role and its make. Shown as `right handle (Force Dimension)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DeviceName {
+    /// What it is.
+    pub role: DeviceRole,
+    /// One of [`Part::makes`]; `None` for a device with one make only.
+    pub make: Option<&'static str>,
+}
+
+impl fmt::Display for DeviceName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.role.name())?;
+        self.make.map_or(Ok(()), |make| write!(f, " ({make})"))
+    }
 }
 
 /// Devices of one kind can take each other's places.
@@ -114,9 +151,9 @@ impl Part {
         }
     }
 
-    /// Its name and make in a rig with these devices: `right handle (Force Dimension)`.
-    pub fn name_and_make(self, devices: &Settings) -> String {
-        self.make(devices).map_or_else(|| self.name().to_owned(), |make| self.name_of_make(make))
+    /// The device of this part in a rig with these devices.
+    pub(crate) fn device(self, devices: &Settings) -> DeviceName {
+        DeviceName { role: DeviceRole::Part(self), make: self.make(devices) }
     }
 
     /// Its make in a rig with these devices, one of [`Part::makes`].
@@ -135,11 +172,6 @@ impl Part {
     /// Whether the rig has the usual make here, the one that is looked for by itself.
     pub(super) fn has_usual_make(self, devices: &Settings) -> bool {
         self.make(devices) == self.makes().first().copied()
-    }
-
-    /// Its name with this make.
-    pub fn name_of_make(self, make: &str) -> String {
-        format!("{} ({make})", self.name())
     }
 
     /// Key of its table in a rig file.

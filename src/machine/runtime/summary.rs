@@ -171,7 +171,7 @@ impl Summary {
         }
         let name = |state| match state {
             LoopState::Faulted(Fault::DeviceLost { device, .. }) => {
-                roster.get(usize::from(device)).map(|entry| entry.name.clone())
+                roster.get(usize::from(device)).map(|entry| entry.name().to_owned())
             }
             _ => None,
         };

@@ -91,7 +91,7 @@ pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
         wrists,
         engage,
         scheduling,
-        names: roster.iter().map(|entry| entry.name.clone()).collect(),
+        names: roster.iter().map(|entry| entry.name().to_owned()).collect(),
         period_ns: (1e9 / rate_hz).round() as u64,
         is_late: false,
         clock,

@@ -2,9 +2,10 @@
 
 use super::{Setting, SettingError, Start};
 
-/// Most pegs and rings: what a step costs is bounded.
+/// Maximum number of pegs: what a step costs is bounded.
 const PEGS_MOST: usize = 32;
-const RINGS_MOST: usize = 12;
+/// Maximum number of rings.
+pub const RINGS_MAX: usize = 12;
 
 fn within(key: &'static str, value: f64, fits: bool, allowed: &'static str) -> Result<(), SettingError> {
     if fits && value.is_finite() { Ok(()) } else { Err(SettingError { key, value, allowed }) }
@@ -52,7 +53,7 @@ impl Setting {
         within("ring.major_radius_m", ring.major_radius_m, fits, "above tube_radius_m, at most 0.05 m")?;
         within("ring.mass_kg", ring.mass_kg, (5e-4..=0.05).contains(&ring.mass_kg), "from 0.0005 to 0.05 kg")?;
         let count = self.rings.len();
-        within("rings (count)", count as f64, count <= RINGS_MOST, "at most 12")?;
+        within("rings (count)", count as f64, count <= RINGS_MAX, "at most 12")?;
         for start in &self.rings {
             match start {
                 Start::Peg(peg) => {

@@ -207,6 +207,7 @@ fn line(tick: u64, time_ns: u64) -> Log {
         name: "right".into(),
         file: String::new(),
         line: 0,
+        value: None,
     }
 }
 

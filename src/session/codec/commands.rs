@@ -47,6 +47,21 @@ choice!(Command {
     21 => Task { 0: side: Side, 1: act: Act },
 });
 
+choice!(nima_score::Event {
+    0 => Begun {},
+    1 => Ended {},
+    2 => Aborted {},
+    3 => RingGrasped { ring: ring: usize, side: side: Side },
+    4 => RingLifted { ring: ring: usize, side: side: Side },
+    5 => RingTransferred { ring: ring: usize, to: taker: Side },
+    6 => RingPlaced { ring: ring: usize, side: side: Side, peg: peg: usize },
+    7 => RingDropped { ring: ring: usize, side: side: Side, in_view: in_view: bool },
+    8 => RingKnockedOff { ring: ring: usize, side: side: Option<Side> },
+    9 => LumpMarked { side: side: Side, lump: lump: Option<usize> },
+    10 => WireTouched { side: side: Side },
+    11 => WireLeft { side: side: Side },
+});
+
 choice!(Act { 0 => Begin {}, 1 => Mark {}, 2 => End {} });
 choice!(Side { 0 => Right {}, 1 => Left {} });
 choice!(Watchdog { 0 => Loop {}, 1 => Source {}, 2 => Link {} });

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nima_machine::{
     messages::Event,
-    rig::{SIDES, Side},
+    rig::{DeviceName, SIDES, Side},
     runtime::{Operation, Stepped},
     teleop::Calibrations,
 };
@@ -37,7 +37,7 @@ impl SessionFile {
         about: About,
         known: &[(Side, BTreeMap<String, String>)],
         sides: [bool; SIDES],
-        devices: Vec<String>,
+        devices: Vec<DeviceName>,
     ) -> Result<Self, RecordError> {
         let About { program, started_ns, metadata, files, words } = about;
         let mut out = Outlet::create(to, &program, started_ns)?;

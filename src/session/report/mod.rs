@@ -99,11 +99,39 @@ pub struct Missing {
 pub struct Mark {
     /// When, s from the beginning of the session.
     pub t_s: f64,
-    /// How much it matters: `error`, `warning` or `info`; `mark` for a moment that the operator marked, `event` for what happened to the
-    /// objects of the scene.
-    pub level: &'static str,
+    /// How much it matters, or what it is.
+    pub level: MarkLevel,
     /// What.
     pub words: String,
+}
+
+/// How much a mark matters, or what it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MarkLevel {
+    /// A fault.
+    Error,
+    /// A refusal, or an alarm.
+    Warning,
+    /// Anything else that was told.
+    Info,
+    /// A moment that the operator marked.
+    Mark,
+    /// What happened to the objects of the scene.
+    Event,
+}
+
+impl MarkLevel {
+    /// The word in files.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+            Self::Info => "info",
+            Self::Mark => "mark",
+            Self::Event => "event",
+        }
+    }
 }
 
 /// Timing of the loop.
@@ -302,11 +330,11 @@ fn journal(t_s: f64, data: &[u8], figures: &mut Figures) {
 fn mark(t_s: f64, data: &[u8]) -> Option<Mark> {
     let log = Log::decode(data).ok()?;
     let level = match log.level {
-        _ if log.name == MARK_LINE => "mark",
-        _ if log.name == HAPPENING_LINE => "event",
-        level if level >= Level::Error as i32 => "error",
-        level if level == Level::Warning as i32 => "warning",
-        _ => "info",
+        _ if log.name == MARK_LINE => MarkLevel::Mark,
+        _ if log.name == HAPPENING_LINE => MarkLevel::Event,
+        level if level >= Level::Error as i32 => MarkLevel::Error,
+        level if level == Level::Warning as i32 => MarkLevel::Warning,
+        _ => MarkLevel::Info,
     };
     Some(Mark { t_s, level, words: log.message })
 }

@@ -90,7 +90,7 @@ fn the_figures_of_a_made_session_are_those_of_the_books() {
     near(arm.stored_least_j, 0.1 - 1e-5 * 7999.0, 1e-9);
     near(arm.withheld_mean_n, 0.25, 1e-9);
     let mark = &figures.marks[0];
-    assert_eq!((mark.level, mark.words.as_str()), ("error", "right arm: fault: a <b>"));
+    assert_eq!((mark.level, mark.words.as_str()), (MarkLevel::Error, "right arm: fault: a <b>"));
     near(mark.t_s, 8.0, 1e-6);
     assert!(figures.notes.iter().any(|note| note.contains("older version")), "{:?}", figures.notes);
 }

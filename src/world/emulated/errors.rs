@@ -10,8 +10,10 @@ use serde::Serialize;
 
 use super::Truth;
 
+/// Name of the force that the loop uses.
+pub const IN_USE: &str = "tip force";
 /// What is compared: the force that the loop uses, and what it would have without the later calibrations.
-const METHODS: [&str; 3] = ["tip force", "gravity only", "wrist only"];
+const METHODS: [&str; 3] = [IN_USE, "gravity only", "wrist only"];
 
 /// Mean and deviation, per axis (x, y, z of `world`), N.
 #[derive(Clone, Copy, Debug, Default)]

@@ -45,7 +45,7 @@ use nima_machine::{
 use side::SideWorld;
 
 pub use clocked::{ArmReadings, Clocked, Wiring};
-pub use errors::{DoubtShares, FreeError, TipError, TipErrors};
+pub use errors::{DoubtShares, FreeError, IN_USE, TipError, TipErrors};
 pub use screen::{NoScreen, Screen, Task};
 pub use side::Truth;
 pub use stand_in::provide_handles;

@@ -52,13 +52,13 @@ pub(super) fn all(
         devices.push(handle(side, set, shared)?);
         devices.push(arm(side, set, shared)?);
         let (world, name) = (shared.clone(), format!("{} sensor", side.word()));
-        devices.push(sensor(name, &set.sensor, side, Box::new(move |_| world.with(SideWorld::feel)))?);
+        devices.push(sensor(name, &set.sensor, 901 + side.index(), Box::new(move |_| world.with(SideWorld::feel)))?);
         if let Some(chosen) = &set.servos {
             devices.push(servos(side, chosen)?);
         }
     }
     if let Some(chosen) = &settings.tissue_sensor {
-        devices.push(sensor("tissue sensor".to_owned(), chosen, Side::Right, under_the_tissue(sides))?);
+        devices.push(sensor("tissue sensor".to_owned(), chosen, 901 + SIDES, under_the_tissue(sides))?);
     }
     if let Some(chosen) = &settings.tracker {
         let marked = settings.endoscope.map(|settings| (settings, Arc::clone(endoscope)));
@@ -78,7 +78,7 @@ fn handle(side: Side, set: &ArmSet, shared: &Shared) -> Served {
         return Err(EmulatedRigError::Place { device: name, place: "no address".to_owned(), wanted });
     };
     places::local(&name, &address.ip().to_string())?;
-    let left_handed = chosen.hand.map_or(side == Side::Left, |hand| hand == force_dimension::Hand::Left);
+    let left_handed = chosen.hand.unwrap_or(side) == Side::Left;
     let usual = emulators::force_dimension::Emulated::default();
     let emulated = emulators::force_dimension::Emulated {
         serial: chosen.serial.unwrap_or(usual.serial + side.index() as u16),
@@ -106,14 +106,13 @@ fn arm(side: Side, set: &ArmSet, shared: &Shared) -> Served {
     served(name, emulated.with(body))
 }
 
-fn sensor(name: String, chosen: &SensorSettings, side: Side, body: emulators::bota::Body) -> Served {
+fn sensor(name: String, chosen: &SensorSettings, usual_serial: usize, body: emulators::bota::Body) -> Served {
     let Some(chosen) = chosen.bota() else { return Err(EmulatedRigError::Make { device: name }) };
     let usual = emulators::bota::Emulated::default();
     let digits = |serial: &String| serial.trim().trim_start_matches("SN").to_owned();
-    let usual_serial = format!("{}", 901 + side.index() + usize::from(name.starts_with("tissue")) * SIDES);
     let mut emulated = emulators::bota::Emulated {
         transport: chosen.transport,
-        serial: chosen.serial_number.as_ref().map_or(usual_serial, digits),
+        serial: chosen.serial_number.as_ref().map_or_else(|| usual_serial.to_string(), digits),
         baud: Some(chosen.baud).filter(|_| !chosen.is_usb()),
         boot_s: BOOT_S,
         link: Some(PathBuf::from(&chosen.port)),

@@ -12,7 +12,7 @@ impl Scene {
     pub(super) fn validate_objects(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
         if let Some(objects) = &self.objects {
             let rings = objects.rings.len();
-            ranges.check("objects.rings (count)", rings as f64, rings <= RINGS_MAX, "at most 12")?;
+            ranges.check("objects.rings (count)", rings as f64, rings <= RINGS_MAX, format!("at most {RINGS_MAX}"))?;
             if let Err(SettingError { key, value, allowed }) = objects.validate() {
                 ranges.check(key, value, false, allowed)?;
             }

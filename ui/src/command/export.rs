@@ -10,7 +10,10 @@ use std::{
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_files::write_atomically;
-use nima_machine::{config::RigConfig, rig::Side};
+use nima_machine::{
+    config::RigConfig,
+    rig::{DeviceName, Side},
+};
 use nima_recording::session::Reader;
 use nima_session::{
     anonymous::{self, Known},
@@ -23,11 +26,9 @@ use nima_world::scene::Scene;
 
 use super::{motion, output, stretch::Stretch};
 use crate::{
-    console::sessions,
     leaving::Leave,
-    recording::{PROGRAM, RIG, SCENE, toml_file},
+    recording::{PROGRAM, RIG, SCENE, WORDS, toml_file},
     telling::tell,
-    words::Lines,
 };
 
 const HEADER: &str = "t_s,time_ns,x_m,y_m,z_m,fx_n,fy_n,fz_n,leader_x_m,leader_y_m,leader_z_m,\
@@ -165,7 +166,7 @@ fn row(tick: &PlottedTick) -> String {
     for value in [tip_m, measured_n, leader_m, delayed_n, asked_n, rendered_n].into_iter().flatten() {
         row += &output::cell(*value);
     }
-    writeln!(row, ",{state}").ok();
+    writeln!(row, ",{}", state.word()).ok();
     row
 }
 
@@ -195,31 +196,37 @@ fn cut_out(reader: &Reader, times_ns: &Range<u64>, session: &Path, new: &Path, l
 }
 
 fn anonymously(reader: &Reader, times_ns: &Range<u64>, new: &Path, leave: &Leave) -> anyhow::Result<Told> {
-    let lines = Lines::all(&sessions::lines());
-    let known = Known { program: PROGRAM, files: &files(reader)?, is_ours: &|line| lines.has(line) };
+    let (files, devices) = files(reader)?;
+    let known = Known { program: PROGRAM, files: &files, words: WORDS, devices: &devices };
     let messages = anonymous::write(reader, &known, times_ns, new, leave.flag())?;
     Ok((format!("{messages} messages"), "anonymous, without the journal: see what remains in docs/sessions.md"))
 }
 
-/// Rig and scene of the session without their names; one that this program cannot read is left out.
-fn files(reader: &Reader) -> anyhow::Result<Vec<Attached>> {
+/// Rig and scene of the session without their names, and the rig's devices; one that this program cannot read is left out.
+fn files(reader: &Reader) -> anyhow::Result<(Vec<Attached>, Vec<DeviceName>)> {
     let mut files = Vec::new();
+    let mut devices = Vec::new();
     for attachment in reader.attachments() {
         let Ok(text) = String::from_utf8(reader.attachment(attachment)?) else { continue };
         let path = Path::new(&attachment.name);
         let (name, text) = match &*attachment.name {
-            RIG => (RIG, RigConfig::parse(path, &text).ok().map(|rig| toml::to_string(&rig.anonymous()))),
+            RIG => {
+                let rig = RigConfig::parse(path, &text).ok();
+                devices = rig.as_ref().map_or_else(Vec::new, RigConfig::device_names);
+                (RIG, rig.map(|rig| toml::to_string(&rig.anonymous())))
+            }
             SCENE => (SCENE, Scene::parse(path, &text).ok().map(|scene| toml::to_string(&scene.anonymous()))),
             _ => continue,
         };
         files.extend(text.transpose()?.map(|text| toml_file(name, text)));
     }
-    Ok(files)
+    Ok((files, devices))
 }
 
 #[cfg(test)]
 mod tests {
     use nalgebra::Vector3;
+    use nima_machine::messages::LoopState;
 
     use super::*;
 
@@ -235,7 +242,7 @@ mod tests {
             delayed_n: unknown,
             asked_n: Vector3::zeros(),
             rendered_n: Vector3::zeros(),
-            state: "Idle",
+            state: LoopState::Idle,
         };
         let row = row(&tick);
         assert_eq!(row, "0.25,7,0,0.5,-1,,,,0,0.5,-1,,,,0,0,0,0,0,0,Idle\n");

@@ -11,7 +11,10 @@ use std::{
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima_core::impedance::{MAX_DELAY_S, Mode};
+use nima_core::{
+    impedance::Mode,
+    limits::{DELAY_S, GAIN, Limits},
+};
 use nima_session::{
     file::Recorded,
     replay::{Change, Differs, Hole, Journal, Messages, Outcome, ReplayError, verify},
@@ -36,8 +39,7 @@ pub(super) struct Arguments {
     /// What if: this one-way delay of the link in ms
     #[arg(long, value_name = "D", value_parser = delay_ms, allow_negative_numbers = true)]
     delay_ms: Option<f64>,
-    /// What if: this feedback gain, 0 to 1
-    #[arg(long, value_name = "G", value_parser = gain, allow_negative_numbers = true)]
+    #[arg(long, value_name = "G", value_parser = gain, allow_negative_numbers = true, help = format!("What if: this feedback gain, {GAIN}"))]
     gain: Option<f64>,
     /// Write the forces of both, tick by tick, into this folder (with a change only)
     #[arg(long, value_name = "DIR")]
@@ -47,19 +49,17 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-fn within(text: &str, most: f64, words: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if (0.0..=most).contains(&value) => Ok(value),
-        _ => Err(words.to_owned()),
-    }
+fn within(text: &str, limits: &Limits) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| limits.contains(*value));
+    value.ok_or_else(|| format!("give {limits}"))
 }
 
 fn delay_ms(text: &str) -> Result<f64, String> {
-    within(text, MAX_DELAY_S * 1e3, "give 0 to 1000 ms")
+    within(text, &DELAY_S.per(1e-3, "ms"))
 }
 
 fn gain(text: &str) -> Result<f64, String> {
-    within(text, 1.0, "give 0 to 1")
+    within(text, &GAIN)
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {

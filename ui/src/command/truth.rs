@@ -14,7 +14,7 @@ use nima_machine::{
     messages::Tick,
     rig::{SIDES, Side},
 };
-use nima_world::emulated::{DoubtShares, TipError, TipErrors};
+use nima_world::emulated::{DoubtShares, IN_USE, TipError, TipErrors};
 use serde::{Deserialize, Serialize};
 
 /// Ticks of a side that are kept for the truth about them: two seconds at 1 kHz.
@@ -108,7 +108,7 @@ pub(super) fn in_words(figures: &[TipError]) -> String {
             let ([a, b, c], [d, e, f]) = (free.mean_n, free.sd_n);
             write!(text, "   without contact mean {a:.3} {b:.3} {c:.3}   sd {d:.3} {e:.3} {f:.3}").ok();
         }
-        if *method == "tip force" {
+        if *method == IN_USE {
             write!(text, "   without the network {:.1} % of the time", 100.0 * without_network).ok();
             let DoubtShares { extrapolated, outside_training, not_moved, missing } = doubt;
             for (share, why) in [

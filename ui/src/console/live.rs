@@ -19,7 +19,7 @@ use nima_devices::Standing;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Fault, LoopState, Refusal, Scheduling, Tick, attention},
-    rig::{DEVICES_MAX, Gauges, Healths, Roster, SIDES, Side},
+    rig::{DEVICES_MAX, DeviceName, Gauges, Healths, Roster, SIDES, Side},
 };
 use nima_session::objects::Objects;
 use nima_world::{Training, scene::Scene};
@@ -41,7 +41,7 @@ use super::{
     stiffness::ContactStiffness,
     text,
 };
-use crate::words::{device_name, loss_words};
+use crate::words::{loss_words, role_name};
 
 /// Period of the degree histograms, s.
 pub const DEGREES_S: f64 = 120.0;
@@ -152,7 +152,7 @@ pub struct Live {
     /// The devices of the rig; empty if everything is simulated.
     pub roster: Roster,
     /// Where nothing may act on the devices: their names, and how each is at the moment that is shown.
-    pub devices_then: Vec<(String, Standing)>,
+    pub devices_then: Vec<(DeviceName, Standing)>,
     /// Health of the devices, in the same order.
     pub healths: Healths,
     /// What was last told of the line to the machine with the arm, if it is at another one.
@@ -398,7 +398,7 @@ impl Live {
                 // The first attempt to open a device takes some time.
                 (None, _) => return None,
             };
-            Some(Missing { place, name: device_name(&entry.name), was_there, cause, cure })
+            Some(Missing { place, name: role_name(entry.role), was_there, cause, cure })
         })
     }
 

@@ -10,7 +10,7 @@ use std::{
 };
 
 use nima_endoscope::Reel;
-use nima_machine::{messages::Scheduling, runtime::Tap};
+use nima_machine::runtime::Tap;
 use nima_recording::store::utc_now;
 use nima_session::{
     objects::ObjectSource,
@@ -22,7 +22,7 @@ use nima_session::{
 use nima_world::Plan;
 
 use super::{
-    alarms::{Alarm, Kind, Priority, Signs, judge, log::AlarmLog},
+    alarms::{Alarm, Kind, Priority, log::AlarmLog},
     chain, text,
 };
 use crate::language::{self, Language};
@@ -206,14 +206,20 @@ impl Sessions {
             told.marks += 1;
             told.last_mark_s = Some(t_s);
             let words = language::with(Language::English, || text::sessions::mark(told.marks));
-            recorder.note(t_s, Note { kind: NoteKind::Mark, warns: false, words });
+            recorder.note(t_s, Note { kind: NoteKind::Mark, warns: false, words, names: false });
         }
         let live: Vec<&Alarm> = alarms.live().into_iter().map(|entry| &entry.alarm).collect();
-        let alarm = |warns, words| recorder.note(now_s, Note { kind: NoteKind::Alarm, warns, words });
+        let alarm = |kind: Kind, warns, words| {
+            recorder.note(now_s, Note { kind: NoteKind::Alarm, warns, words, names: kind.has_names() });
+        };
         told.alarms.retain(|before| {
             let stays = live.iter().any(|alarm| alarm.kind == before.kind);
             if !stays {
-                alarm(false, language::with(Language::English, || text::sessions::alarm_over(&before.cause)));
+                alarm(
+                    before.kind,
+                    false,
+                    language::with(Language::English, || text::sessions::alarm_over(&before.cause)),
+                );
             }
             stays
         });
@@ -222,7 +228,7 @@ impl Sessions {
             if !known && !matches!(new.kind, Kind::Fault(_)) {
                 let new = written.iter().find(|alarm| alarm.kind == new.kind).unwrap_or(new);
                 let words = language::with(Language::English, || text::sessions::alarm(&new.cause));
-                alarm(new.priority < Priority::Low, words);
+                alarm(new.kind, new.priority < Priority::Low, words);
                 told.alarms.push(new.clone());
             }
         }
@@ -284,22 +290,6 @@ impl Sessions {
     }
 }
 
-/// The lines that this adds to a log, as far as there is no name in them.
-pub(crate) fn lines() -> Vec<String> {
-    let scheduling = [(false, false), (true, false)];
-    let signs = scheduling.map(|(fifo, memory_locked)| Signs {
-        stop_is_stuck: true,
-        missed_share: 1.0,
-        scheduling: Some(Scheduling { fifo, deadline: false, memory_locked }),
-        bias_moved_n: Some(0.0),
-        is_unchecked: true,
-        ..Signs::default()
-    });
-    let alarms = signs.iter().flat_map(judge).map(|alarm| alarm.cause);
-    let both = alarms.flat_map(|cause| [text::sessions::alarm(&cause), text::sessions::alarm_over(&cause)]);
-    both.chain([text::sessions::mark(1)]).collect()
-}
-
 impl Drop for Sessions {
     fn drop(&mut self) {
         self.end();
@@ -312,10 +302,14 @@ mod tests {
         config::RigConfig,
         runtime::{Assembly, start},
     };
-    use nima_session::{file::Recorded, replay::replay, report::Figures};
+    use nima_session::{
+        file::Recorded,
+        replay::replay,
+        report::{Figures, MarkLevel},
+    };
     use nima_world::scene::Scene;
 
-    use crate::console::alarms::log::Moment;
+    use crate::console::alarms::{Signs, judge, log::Moment};
 
     use super::*;
 
@@ -406,10 +400,13 @@ mod tests {
         assert_eq!(told.len(), 3, "{told:?}");
         for (number, ((t_s, level, words), expected_s)) in told.iter().zip(&marks_s).enumerate() {
             assert!((t_s - expected_s).abs() < 1e-6, "{t_s} s, it was {expected_s} s");
-            assert_eq!((*level, words.as_str()), ("mark", &*format!("mark {}", number + 1)));
+            assert_eq!((*level, words.as_str()), (MarkLevel::Mark, &*format!("mark {}", number + 1)));
         }
         let [(raised_s, level, words)] = &of("alarm: ")[..] else { panic!("{:?}", figures.marks) };
-        assert!((raised_s - marks_s[1]).abs() < 1e-6 && *level == "warning" && words.contains("0.41 N"), "{words}");
+        assert!(
+            (raised_s - marks_s[1]).abs() < 1e-6 && *level == MarkLevel::Warning && words.contains("0.41 N"),
+            "{words}"
+        );
         let [(over_s, ..)] = &of("alarm over: ")[..] else { panic!("{:?}", figures.marks) };
         assert!((over_s - marks_s[2]).abs() < 1e-6);
         let file = Recorded::open(&path).unwrap();

@@ -108,7 +108,7 @@ fn definitions() -> String {
 mod tests {
     use std::collections::BTreeMap;
 
-    use nima_session::report::Mark;
+    use nima_session::report::{Mark, MarkLevel};
 
     use super::*;
 
@@ -121,7 +121,7 @@ mod tests {
                 BTreeMap::from([("network_tool".to_owned(), rig.to_owned())]),
             )]),
             notes: vec![rig.to_owned()],
-            marks: vec![Mark { t_s: 1.0, level: "error", words: rig.to_owned() }],
+            marks: vec![Mark { t_s: 1.0, level: MarkLevel::Error, words: rig.to_owned() }],
             ..Figures::default()
         }
     }
@@ -129,8 +129,11 @@ mod tests {
     #[test]
     fn a_mark_is_told_with_its_time_and_is_no_fault() {
         let mark = |t_s, level, words: &str| Mark { t_s, level, words: words.to_owned() };
-        let marks =
-            vec![mark(1.5, "mark", "mark 1"), mark(2.0, "warning", "alarm: late"), mark(3.25, "mark", "mark 2")];
+        let marks = vec![
+            mark(1.5, MarkLevel::Mark, "mark 1"),
+            mark(2.0, MarkLevel::Warning, "alarm: late"),
+            mark(3.25, MarkLevel::Mark, "mark 2"),
+        ];
         let page = page(&[Figures { marks, ..session("rig") }]);
         assert!(page.contains("<td>marks of the operator</td><td>1.500 s, 3.250 s</td>"), "{page}");
         assert!(page.contains("<td>faults</td><td>0</td>") && page.contains("alarm: late"), "{page}");

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use nima_session::{
     anonymous::ANONYMOUS,
-    report::{ArmFigures, Figures, Mark, PicturesFigures},
+    report::{ArmFigures, Figures, Mark, MarkLevel, PicturesFigures},
 };
 
 use super::{
@@ -55,9 +55,9 @@ pub(super) fn summary(session: &Figures) -> String {
     if let Some(pictures) = &session.pictures {
         rows.push(vec!["endoscope's pictures".to_owned(), of_pictures(pictures)]);
     }
-    let faults = of_level(session, "error").count();
+    let faults = of_level(session, MarkLevel::Error).count();
     rows.push(vec!["faults".to_owned(), faults.to_string()]);
-    let marked: Vec<_> = of_level(session, "mark").take(20).map(|mark| time(mark.t_s)).collect();
+    let marked: Vec<_> = of_level(session, MarkLevel::Mark).take(20).map(|mark| time(mark.t_s)).collect();
     rows.push(vec![
         "marks of the operator".to_owned(),
         if marked.is_empty() { "none".into() } else { marked.join(", ") },
@@ -74,7 +74,7 @@ pub(super) fn summary(session: &Figures) -> String {
     for note in &session.notes {
         writeln!(out, "<p class=\"warning\">Note: {}</p>", escape(note)).ok();
     }
-    for fault in of_level(session, "error").take(10) {
+    for fault in of_level(session, MarkLevel::Error).take(10) {
         writeln!(out, "<p class=\"error\">{}: {}</p>", time(fault.t_s), escape(&fault.words)).ok();
     }
     out.push_str("</section>\n");
@@ -107,7 +107,7 @@ fn of_pictures(pictures: &PicturesFigures) -> String {
     format!("{count}{rate}, {megabytes:.1} MB; {missing}; longest gap {longest_gap_s:.2} s")
 }
 
-fn of_level<'a>(session: &'a Figures, level: &'a str) -> impl Iterator<Item = &'a Mark> {
+fn of_level(session: &Figures, level: MarkLevel) -> impl Iterator<Item = &Mark> {
     session.marks.iter().filter(move |mark| mark.level == level)
 }
 
@@ -122,7 +122,7 @@ pub(super) fn happenings(session: &Figures) -> String {
 
 /// Everything that happened, in order.
 pub(super) fn marks(session: &Figures) -> String {
-    let row = |mark: &Mark| vec![time(mark.t_s), mark.level.to_owned(), escape(&mark.words)];
+    let row = |mark: &Mark| vec![time(mark.t_s), mark.level.word().to_owned(), escape(&mark.words)];
     let rows: Vec<_> = session.marks.iter().take(MARKS).map(row).collect();
     let more = session.marks.len().saturating_sub(MARKS);
     let more = if more == 0 { String::new() } else { format!("<p>{more} more are not listed; use --json</p>\n") };
@@ -208,7 +208,7 @@ pub(super) fn comparison(sessions: &[Figures]) -> String {
         row("mode at the start", sessions, about("mode")),
         row("delay at the start (s)", sessions, about("delay_s")),
         row("end", sessions, |session| end(session).split(':').next().unwrap_or_default().to_owned()),
-        row("faults", sessions, |session| of_level(session, "error").count().to_string()),
+        row("faults", sessions, |session| of_level(session, MarkLevel::Error).count().to_string()),
         row("periods missed", sessions, |session| {
             session.timing.as_ref().map_or_else(|| "-".to_owned(), |of| of.missed.to_string())
         }),

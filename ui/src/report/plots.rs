@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use nima_session::report::{ArmFigures, Figures, Mark, STATES, Span, Trace};
+use nima_session::report::{ArmFigures, Figures, Mark, MarkLevel, STATES, Span, Trace};
 use nima_study::picture::COLOURS;
 
 use super::html::escape;
@@ -84,10 +84,10 @@ pub(super) fn states(session: &Figures, arm: &ArmFigures) -> String {
                 .ok();
         }
     }
-    let is_mark = |mark: &&Mark| mark.level == "mark";
-    for mark in session.marks.iter().filter(|mark| mark.level != "info" && !is_mark(mark)).take(MARKS) {
+    let is_mark = |mark: &&Mark| mark.level == MarkLevel::Mark;
+    for mark in session.marks.iter().filter(|mark| mark.level != MarkLevel::Info && !is_mark(mark)).take(MARKS) {
         let x = across(mark.t_s, session.length_s);
-        let fill = if mark.level == "error" { "#000000" } else { "#ffffff" };
+        let fill = if mark.level == MarkLevel::Error { "#000000" } else { "#ffffff" };
         writeln!(
             out,
             "<path d=\"M{x:.1} {top}l-5 -11h10z\" fill=\"{fill}\" stroke=\"#000000\"><title>{}</title></path>",

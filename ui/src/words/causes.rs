@@ -10,7 +10,7 @@ use nima_machine::{
 use super::{
     Remedy as _, cure_of_refusal,
     findings::finding_words,
-    names::device_name,
+    names::role_name,
     ready::{capital, with},
     refused_because, side_word,
     sides::{arm_stuck, exchanged, handle_askew, handle_pulls, handle_stuck, marker_stuck, no_push, trocar_moved},
@@ -236,7 +236,7 @@ const STOP_CURE: Text = Text::of(
 );
 
 fn name(place: usize, roster: &Roster) -> String {
-    roster.get(place).map_or_else(|| word("a device", "Gerät").to_owned(), |entry| device_name(&entry.name))
+    roster.get(place).map_or_else(|| word("a device", "Gerät").to_owned(), |entry| role_name(entry.role))
 }
 
 fn missing(place: usize, roster: &Roster) -> [String; 2] {

@@ -3,7 +3,7 @@
 use nima_core::impedance::Mode;
 use nima_machine::{
     messages::{Command, Watchdog},
-    rig::Act,
+    rig::{Act, DeviceName},
     runtime::Operation,
 };
 
@@ -13,7 +13,7 @@ use super::side_word;
 use crate::language::{told, word};
 
 /// What was done to the loop; `devices` as for an [`event`](super::event).
-pub(crate) fn operation(operation: &Operation, devices: &[String]) -> String {
+pub(crate) fn operation(operation: &Operation, devices: &[DeviceName]) -> String {
     match *operation {
         Operation::Command { command: of, .. } => told!("command: {}", "Befehl: {}", command(of)),
         Operation::Device(event) => device(&event, devices),

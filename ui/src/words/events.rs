@@ -3,16 +3,14 @@
 use nima_devices::Standing;
 use nima_machine::{
     messages::{Event, Fault},
-    rig::DeviceEvent,
+    rig::{DeviceEvent, DeviceName},
 };
 
-use super::{
-    Remedy as _, commands, device_name, loss_words, refused_because, scheduling_advice, side_word, state_name,
-};
+use super::{Remedy as _, commands, device_name, loss_words, refused_because, scheduling_words, side_word, state_name};
 use crate::language::{told, word};
 
 /// What happened; `devices` are the names of the rig's devices, in the order of its roster.
-pub(crate) fn event(event: &Event, devices: &[String]) -> String {
+pub(crate) fn event(event: &Event, devices: &[DeviceName]) -> String {
     match *event {
         Event::StateChanged { side, from, to, .. } => {
             told!("{} arm: from {} to {}", "Arm {}: von {} zu {}", side_word(side), state_name(from), state_name(to))
@@ -34,15 +32,13 @@ pub(crate) fn event(event: &Event, devices: &[String]) -> String {
             )
         }
         Event::Device(event) => device(&event, devices),
-        Event::Scheduling(granted) => scheduling_advice(granted).map_or_else(
-            || word("real-time scheduling granted", "Echtzeitpriorität gewährt").to_owned(),
-            str::to_owned,
-        ),
+        Event::Scheduling(granted) => scheduling_words(granted)
+            .unwrap_or_else(|| word("real-time scheduling granted", "Echtzeitpriorität gewährt").to_owned()),
     }
 }
 
 /// What became of a device.
-pub(super) fn device(event: &DeviceEvent, devices: &[String]) -> String {
+pub(super) fn device(event: &DeviceEvent, devices: &[DeviceName]) -> String {
     let standing = match event.standing {
         Standing::Closed => word("closed", "geschlossen"),
         Standing::Opening => word("is being opened", "wird geöffnet"),
@@ -53,10 +49,10 @@ pub(super) fn device(event: &DeviceEvent, devices: &[String]) -> String {
 }
 
 /// The name of a device by its place in the roster.
-fn name_of(device: u8, devices: &[String]) -> String {
+fn name_of(device: u8, devices: &[DeviceName]) -> String {
     devices
         .get(usize::from(device))
-        .map_or_else(|| told!("device {device}", "Gerät {device}"), |name| device_name(name))
+        .map_or_else(|| told!("device {device}", "Gerät {device}"), |name| device_name(*name))
 }
 
 #[cfg(test)]
@@ -79,7 +75,7 @@ mod tests {
             let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
             let roster = plan.assembly().unwrap().roster;
             assert_eq!(names.len(), roster.len(), "{name}: {names:?}");
-            assert!(names.iter().zip(&roster).all(|(name, entry)| name.starts_with(&entry.name)), "{name}: {names:?}");
+            assert!(names.iter().zip(&roster).all(|(name, entry)| name.role == entry.role), "{name}: {names:?}");
         }
     }
 

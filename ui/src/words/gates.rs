@@ -81,3 +81,19 @@ pub(crate) fn gate_words(gate: Gate) -> [&'static str; 2] {
         ],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nima_core::safety::PLAUSIBLE_N;
+
+    use super::*;
+    use crate::language::{self, Language};
+
+    #[test]
+    fn the_implausible_force_is_that_of_the_gate() {
+        for one in [Language::English, Language::German] {
+            let [_, meaning] = language::with(one, || gate_words(Gate::Validity));
+            assert!(meaning.contains(&format!("{PLAUSIBLE_N} N")), "{meaning}");
+        }
+    }
+}

@@ -17,7 +17,6 @@ mod force;
 mod frames;
 mod gates;
 mod happenings;
-mod known;
 mod link;
 mod modes;
 mod names;
@@ -37,12 +36,11 @@ pub(crate) use findings::finding_words;
 pub(crate) use frames::{axes_words, cause, phase};
 pub(crate) use gates::gate_words;
 pub(crate) use happenings::happening;
-pub(crate) use known::Lines;
 pub(crate) use link::{link_rows, link_trouble, state_in_words};
 pub(crate) use modes::{mode_meaning, mode_name};
 pub(crate) use names::{
-    device_name, exchange_words, goal_words, loss_words, obstacle_words, part_name, scheduling_advice, side_word,
-    state_name, within,
+    device_name, exchange_words, goal_words, lack_words, loss_words, obstacle_words, part_name, role_name,
+    scheduling_words, side_word, state_name, within,
 };
 pub(crate) use numbers::{newtons, newtons_in_three, newtons_read, three_digits};
 pub(crate) use ready::{ask_words, check_name, figure_words, lacks_words, unit};

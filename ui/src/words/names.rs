@@ -1,10 +1,10 @@
 //! Texts: names and short clauses of the libraries that stand within other texts.
 
-use nima_core::tip_force::Goal;
+use nima_core::tip_force::GoalKind;
 use nima_devices::Loss;
 use nima_machine::{
-    messages::{LoopState, Scheduling},
-    rig::{Awaited, Exchange, Obstacle, Part, Side},
+    messages::{Lack, LoopState, Scheduling},
+    rig::{Awaited, DeviceName, DeviceRole, Exchange, Obstacle, Part, Side},
 };
 
 use crate::language::{Language, current, told, word};
@@ -35,12 +35,17 @@ pub(crate) fn within(name: &str) -> String {
     if current() == Language::German { name.to_owned() } else { name.to_lowercase() }
 }
 
-/// A device by its name in the roster, `right handle`, or with its make, `right handle (Haply)`.
-pub(crate) fn device_name(name: &str) -> String {
-    let known = Part::ALL.into_iter().find_map(|part| Some((part, name.strip_prefix(part.name())?)));
-    match known {
-        Some((part, make)) if make.is_empty() || make.starts_with(" (") => part_name(part) + make,
-        _ => name.to_owned(),
+/// A device by its role and make: `right handle (Haply)`.
+pub(crate) fn device_name(name: DeviceName) -> String {
+    let DeviceName { role, make } = name;
+    role_name(role) + &make.map_or_else(String::new, |make| format!(" ({make})"))
+}
+
+/// What a device is in its rig.
+pub(crate) fn role_name(role: DeviceRole) -> String {
+    match role {
+        DeviceRole::Part(part) => part_name(part),
+        DeviceRole::Cap => word("cap", "Kappe").to_owned(),
     }
 }
 
@@ -117,61 +122,71 @@ pub(crate) fn obstacle_words(obstacle: &Obstacle) -> String {
     }
 }
 
-/// What of real-time scheduling was refused and what to do, parted by a colon or a semicolon.
-pub(crate) fn scheduling_advice(scheduling: Scheduling) -> Option<&'static str> {
-    let english = scheduling.advice()?;
-    Some(match (english.contains("rtprio"), english.contains("memlock")) {
-        (true, _) => word(
-            "no real-time priority: add the line \"@realtime - rtprio 95\" to /etc/security/limits.d/realtime.conf, join \
-             the group realtime and log in again",
-            "keine Echtzeitpriorität: Zeile \"@realtime - rtprio 95\" in /etc/security/limits.d/realtime.conf eintragen, \
-             der Gruppe realtime beitreten und neu anmelden",
-        ),
-        (_, true) => word(
-            "memory is not locked: add the line \"@realtime - memlock unlimited\" to \
-             /etc/security/limits.d/realtime.conf, join the group realtime and log in again",
-            "Speicher ist nicht gesperrt: Zeile \"@realtime - memlock unlimited\" in \
-             /etc/security/limits.d/realtime.conf eintragen, der Gruppe realtime beitreten und neu anmelden",
-        ),
-        _ => word(
-            "real-time scheduling is used on Linux only; expect more missed ticks here",
-            "Echtzeitpriorität gibt es nur unter Linux; hier sind mehr versäumte Takte zu erwarten",
-        ),
-    })
+/// What a loop lacks for real time, and what to do.
+pub(crate) fn lack_words(lack: Lack) -> [&'static str; 2] {
+    match lack {
+        Lack::Priority => [
+            word("no real-time priority", "keine Echtzeitpriorität"),
+            word(
+                "add the line \"@realtime - rtprio 95\" to /etc/security/limits.d/realtime.conf, join the group \
+                 realtime and log in again",
+                "Zeile \"@realtime - rtprio 95\" in /etc/security/limits.d/realtime.conf eintragen, der Gruppe realtime \
+                 beitreten und neu anmelden",
+            ),
+        ],
+        Lack::Memory => [
+            word("memory is not locked", "Speicher ist nicht gesperrt"),
+            word(
+                "add the line \"@realtime - memlock unlimited\" to /etc/security/limits.d/realtime.conf, join the group \
+                 realtime and log in again",
+                "Zeile \"@realtime - memlock unlimited\" in /etc/security/limits.d/realtime.conf eintragen, der Gruppe \
+                 realtime beitreten und neu anmelden",
+            ),
+        ],
+        Lack::NotLinux => [
+            word("real-time scheduling is used on Linux only", "Echtzeitpriorität gibt es nur unter Linux"),
+            word("expect more missed ticks here", "hier sind mehr versäumte Takte zu erwarten"),
+        ],
+    }
+}
+
+/// The same in one clause.
+pub(crate) fn scheduling_words(scheduling: Scheduling) -> Option<String> {
+    let [cause, cure] = lack_words(scheduling.lack()?);
+    Some(format!("{cause}: {cure}"))
 }
 
 /// A goal of a tip-force recording by its name, and what to do until it is met.
-pub(crate) fn goal_words(goal: &Goal) -> [&'static str; 2] {
-    match goal.name {
-        "Tilt of the shaft" => [
+pub(crate) fn goal_words(what: GoalKind) -> [&'static str; 2] {
+    match what {
+        GoalKind::Tilt => [
             word("Tilt of the shaft", "Neigung des Schafts"),
             word("reach left, right, near and far", "nach links, rechts, nah und fern reichen"),
         ],
-        "Depth" => [word("Depth", "Tiefe"), word("move in and out by 2 cm", "2 cm hinein- und herausbewegen")],
-        "In and out" => [
+        GoalKind::Depth => [word("Depth", "Tiefe"), word("move in and out by 2 cm", "2 cm hinein- und herausbewegen")],
+        GoalKind::InAndOut => [
             word("In and out", "Hinein und heraus"),
             word("move as often outwards as inwards", "so oft heraus wie hinein bewegen"),
         ],
-        "Speed" => [
+        GoalKind::Speed => [
             word("Speed", "Tempo"),
             word(
                 "make quick strokes in and out, 10 cm/s at their fastest",
                 "schnell hinein- und herausfahren, bis zu 10 cm/s",
             ),
         ],
-        "Force at the tip" => [
+        GoalKind::Force => [
             word("Force at the tip", "Kraft an der Spitze"),
             word(
                 "press into the tissue up to 3 N, and drag it sideways",
                 "bis 3 N in das Gewebe drücken und es seitwärts ziehen",
             ),
         ],
-        "Contact and free" => [
+        GoalKind::Contact => [
             word("Contact and free", "Kontakt und frei"),
             word("be in contact half of the time", "die Hälfte der Zeit in Kontakt sein"),
         ],
-        "Rows" => [word("Rows", "Zeilen"), word("go on", "weitermachen")],
-        _ => [goal.name, goal.advice],
+        GoalKind::Rows => [word("Rows", "Zeilen"), word("go on", "weitermachen")],
     }
 }
 
@@ -198,23 +213,25 @@ mod tests {
         }
         for (fifo, memory_locked) in [(false, false), (true, false), (true, true)] {
             let scheduling = Scheduling { fifo, deadline: false, memory_locked };
-            assert_eq!(scheduling_advice(scheduling), scheduling.advice());
+            assert_eq!(scheduling_words(scheduling), scheduling.advice());
         }
     }
 
     #[test]
     fn every_goal_of_a_recording_has_german_words() {
         for goal in Coverage::default().goals() {
-            assert_eq!(goal_words(&goal), [goal.name, goal.advice]);
-            let german = language::with(Language::German, || goal_words(&goal));
-            assert!(german[0] != goal.name && german[1] != goal.advice, "{german:?}");
+            let english = goal_words(goal.what);
+            assert_eq!(english, [goal.what.name(), goal.what.advice()]);
+            let german = language::with(Language::German, || goal_words(goal.what));
+            assert!(german[0] != english[0] && german[1] != english[1], "{german:?}");
         }
     }
 
     #[test]
     fn a_device_is_named_in_german_with_its_make() {
-        let german = |name: &str| language::with(Language::German, || device_name(name));
-        assert_eq!(german("right handle (Force Dimension)"), "Handgerät rechts (Force Dimension)");
-        assert_eq!((german("tracker"), german("left armadillo")), ("Tracker".to_owned(), "left armadillo".to_owned()));
+        let name = DeviceName { role: DeviceRole::Part(Part::Handle(Side::Right)), make: Some("Force Dimension") };
+        assert_eq!(device_name(name), name.to_string());
+        let german = language::with(Language::German, || device_name(name));
+        assert_eq!(german, "Handgerät rechts (Force Dimension)");
     }
 }

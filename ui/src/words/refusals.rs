@@ -1,7 +1,7 @@
 //! Texts: why a command was refused, and what the operator can do.
 
 use nima_machine::{
-    messages::{Fault, ForceSource, LoopState, Refusal},
+    messages::{Fault, LoopState, Refusal},
     rig::Obstacle,
 };
 
@@ -135,30 +135,30 @@ fn lower(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
 
-/// The refusals whose words depend on nothing else.
-pub(super) const REFUSALS: [Refusal; 15] = [
-    Refusal::ForceUnknown(ForceSource::Uncalibrated),
-    Refusal::ForceUnknown(ForceSource::NoOrientation),
-    Refusal::ForceUnknown(ForceSource::Poisoned),
-    Refusal::ForceUnknown(ForceSource::NoSample),
-    Refusal::ForceUnknown(ForceSource::Unidentified),
-    Refusal::EndoscopeUnseen,
-    Refusal::DrivesOff,
-    Refusal::Moving,
-    Refusal::HandAbsent,
-    Refusal::ClutchPressed,
-    Refusal::NotChecked,
-    Refusal::OutOfRange,
-    Refusal::DelayIsMeasured,
-    Refusal::SimulatedOnly,
-    Refusal::NoSuchArm,
-];
-
 #[cfg(test)]
 mod tests {
-    use nima_machine::rig::Exchange;
+    use nima_machine::{messages::ForceSource, rig::Exchange};
 
     use super::*;
+
+    /// The refusals whose words depend on nothing else.
+    const REFUSALS: [Refusal; 15] = [
+        Refusal::ForceUnknown(ForceSource::Uncalibrated),
+        Refusal::ForceUnknown(ForceSource::NoOrientation),
+        Refusal::ForceUnknown(ForceSource::Poisoned),
+        Refusal::ForceUnknown(ForceSource::NoSample),
+        Refusal::ForceUnknown(ForceSource::Unidentified),
+        Refusal::EndoscopeUnseen,
+        Refusal::DrivesOff,
+        Refusal::Moving,
+        Refusal::HandAbsent,
+        Refusal::ClutchPressed,
+        Refusal::NotChecked,
+        Refusal::OutOfRange,
+        Refusal::DelayIsMeasured,
+        Refusal::SimulatedOnly,
+        Refusal::NoSuchArm,
+    ];
 
     #[test]
     fn no_two_refusals_say_the_same() {

@@ -7,7 +7,11 @@ use std::{
     process::Command,
 };
 
-use nima_core::{impedance::Mode, safety::Gate};
+use nima_core::{
+    impedance::Mode,
+    limits::{GAIN, GAIN_ABOVE_ONE, USUAL_CEILING_N},
+    safety::{ChainSettings, Gate, PLAUSIBLE_N},
+};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
@@ -160,4 +164,25 @@ fn the_glossary_has_every_gate_mode_and_state() {
     let missing: Vec<String> =
         gates.chain(modes).chain(states).filter(|row| !glossary.contains(row.as_str())).collect();
     assert!(missing.is_empty(), "not in docs/glossary.md: {missing:?}");
+}
+
+#[test]
+fn the_pages_have_the_limits_of_the_gates() {
+    let page = |name: &str| std::fs::read_to_string(root().join(name)).unwrap();
+    let ChainSettings { fade_after_s, zero_after_s, dead_band_m_s, slew_n_per_s, ceiling_n, .. } =
+        ChainSettings::default();
+    let glossary = page("docs/glossary.md");
+    for (gate, figure) in [
+        (Gate::Validity, format!("more than {PLAUSIBLE_N} N")),
+        (Gate::Age, format!("from {} ms beyond", fade_after_s * 1e3)),
+        (Gate::Age, format!("zero from {} ms on", zero_after_s * 1e3)),
+        (Gate::DeadBand, format!("slower than {} mm/s", dead_band_m_s * 1e3)),
+        (Gate::Gain, format!("{GAIN}, up to {} with a second action", GAIN_ABOVE_ONE.max)),
+        (Gate::Slew, format!("to {slew_n_per_s} N/s")),
+        (Gate::Ceiling, format!("to {ceiling_n} N, and")),
+    ] {
+        let row = glossary.lines().find(|line| line.starts_with(&format!("| `{}` |", gate.name()))).unwrap();
+        assert!(row.contains(&figure), "{figure} is not in: {row}");
+    }
+    assert!(page("docs/faults.md").contains(&format!("the ceiling ({USUAL_CEILING_N} N by default)")));
 }

@@ -1,7 +1,10 @@
 //! Checks everything that leaves a chain and counts violations. It knows the limits, not how the gates keep them.
 
 use nalgebra::SVector;
-use nima_core::safety::{ChainSettings, Gate, GateReport, MAX_GAIN, MOST_J, Reason};
+use nima_core::{
+    limits::{GAIN, GAIN_ABOVE_ONE},
+    safety::{ChainSettings, Gate, GateReport, MOST_J, Reason},
+};
 use serde::Serialize;
 
 /// Rounding allowed in a limit, relative.
@@ -87,13 +90,13 @@ impl<const D: usize> Watch<D> {
         let change_n = (now_n - self.last_n).norm();
         // The rounding of a gain near 3 is larger than the relative rounding of a slow ramp.
         let gain_change = (report.gain - self.gain).abs() - 4.0 * f64::EPSILON;
-        let chosen_well = (0.0..=if self.above_one { MAX_GAIN } else { 1.0 }).contains(&chosen);
+        let chosen_well = (if self.above_one { GAIN_ABOVE_ONE } else { GAIN }).contains(chosen);
         breaches.not_finite += u64::from(!finite);
         breaches.ceiling += u64::from(!within(now_n.norm(), self.most_n));
         // The tolerance is the rounding of the two forces, which is larger than that of their small difference.
         breaches.slew += u64::from(!falls && !within(change_n - 1e-14 * self.most_n, step_n));
         breaches.gain_rate += u64::from(!within(gain_change, self.gain_per_s * dt_s));
-        breaches.gain_range += u64::from(!chosen_well || !(0.0..=MAX_GAIN).contains(&report.gain));
+        breaches.gain_range += u64::from(!chosen_well || !GAIN_ABOVE_ONE.contains(report.gain));
         breaches.uncalled += u64::from(let_go && now_n.norm() != 0.0);
         breaches.energy += u64::from(!within(report.stored_j.abs(), MOST_J));
         (self.last_n, self.gain, self.let_go) = (*now_n, report.gain, lets_go);

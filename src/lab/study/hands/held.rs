@@ -18,7 +18,7 @@ use crate::pair::RATE_HZ;
 /// Nominal period, s, the slew limit, N/s, and the ceiling of the asked force, N: those of the chain as it comes.
 pub(super) const PERIOD_S: f64 = 1.0 / RATE_HZ;
 pub(super) const SLEW_N_PER_S: f64 = 500.0;
-const CEILING_N: f64 = 4.0;
+const CEILING_N: f64 = nima_core::limits::USUAL_CEILING_N;
 /// A withheld fraction above this begins an alarm, which ends when nothing is withheld.
 const ALARM: f64 = 0.02;
 /// A force that opposes the asked one by more than this is reversed, and a weaker asked force is not judged for its withheld part, N.

@@ -10,7 +10,7 @@ use nima_devices::{
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::Opener;
-use crate::rig::{Part, RigError, RosterEntry, Side};
+use crate::rig::{DeviceRole, Part, RigError, RosterEntry, Side};
 
 /// The handle of a rig file.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -135,16 +135,13 @@ impl LeaderSettings {
     pub(in crate::rig) fn for_hand_of(&self, side: Side) -> Self {
         let mut of_side = self.clone();
         if let Self::ForceDimension(settings) = &mut of_side {
-            settings.hand = settings.hand.or(Some(match side {
-                Side::Right => force_dimension::Hand::Right,
-                Side::Left => force_dimension::Hand::Left,
-            }));
+            settings.hand = settings.hand.or(Some(side));
         }
         of_side
     }
 
     /// The hand that it must be made for, if the settings say so.
-    pub(in crate::rig) fn hand(&self) -> Option<force_dimension::Hand> {
+    pub(in crate::rig) fn hand(&self) -> Option<Side> {
         self.force_dimension().and_then(|settings| settings.hand)
     }
 
@@ -187,9 +184,9 @@ impl LeaderSettings {
     pub fn start(&self, lever: &Lever) -> Result<(Slot<Box<dyn Leader>>, RosterEntry), RigError> {
         let Opener { driver, mut open, clear_faults } = self.opener();
         let lever = lever.clone();
-        let name = Part::Handle(Side::Right).name();
-        let slot = Slot::start(name, move || open().inspect(|handle| handle.attach(&lever)))?;
-        let entry = RosterEntry { clear_faults, ..RosterEntry::new(name, driver, slot.view()) };
+        let role = DeviceRole::Part(Part::Handle(Side::Right));
+        let slot = Slot::start(role.name(), move || open().inspect(|handle| handle.attach(&lever)))?;
+        let entry = RosterEntry { clear_faults, ..RosterEntry::new(role, driver, slot.view()) };
         Ok((slot, entry))
     }
 

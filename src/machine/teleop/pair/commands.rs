@@ -3,8 +3,9 @@
 use std::ops::RangeInclusive;
 
 use nima_core::{
-    impedance::{MAX_DELAY_S, Mode},
-    safety::{Change, MAX_GAIN, Wish},
+    impedance::Mode,
+    limits::{DEAD_BAND_M_S, DELAY_S, GAIN, GAIN_ABOVE_ONE, Limits},
+    safety::{Change, Wish},
 };
 
 use super::Pair;
@@ -13,9 +14,6 @@ use crate::{
     rig::{GRIP_MAX_RAD, GUIDE_MAX_M, Identified, Prompt},
     teleop::Link,
 };
-
-/// Highest speed of the dead band, m/s.
-const DEAD_BAND_MAX_M_S: f64 = 0.1;
 
 impl<L: Link> Pair<L> {
     /// Carries out one command, or returns why it cannot. [`Command::Shutdown`] is handled by the runtime.
@@ -29,14 +27,14 @@ impl<L: Link> Pair<L> {
                 self.leader.modes.compares = compares;
                 self.compute();
             }
-            Command::SetGain(gain) => self.leader.gates.chain.set_ordinary_gain(within(0.0..=1.0, gain)?),
+            Command::SetGain(gain) => self.leader.gates.chain.set_ordinary_gain(within(&GAIN, gain)?),
             Command::SetGainAboveOne(gain) => {
-                self.leader.gates.chain.set_gain_above_one(within(0.0..=MAX_GAIN, gain)?);
+                self.leader.gates.chain.set_gain_above_one(within(&GAIN_ABOVE_ONE, gain)?);
             }
             Command::SetDelay(_) if self.link.far().is_some() => return Err(Refusal::DelayIsMeasured),
-            Command::SetDelay(delay_s) => self.set_delay(within(0.0..=MAX_DELAY_S, delay_s)?),
+            Command::SetDelay(delay_s) => self.set_delay(within(&DELAY_S, delay_s)?),
             Command::SetDeadBand(speed_m_s) => {
-                self.leader.gates.chain.set_dead_band(within(0.0..=DEAD_BAND_MAX_M_S, speed_m_s)?);
+                self.leader.gates.chain.set_dead_band(within(&DEAD_BAND_M_S, speed_m_s)?);
             }
             Command::SetStaticHold(hold) => self.leader.gates.chain.set_static_hold(hold),
             Command::SetScale(scale) => {
@@ -191,8 +189,8 @@ impl<L: Link> Pair<L> {
     }
 }
 
-fn within(range: RangeInclusive<f64>, value: f64) -> Result<f64, Refusal> {
-    if range.contains(&value) { Ok(value) } else { Err(Refusal::OutOfRange) }
+fn within(limits: &Limits, value: f64) -> Result<f64, Refusal> {
+    if limits.contains(value) { Ok(value) } else { Err(Refusal::OutOfRange) }
 }
 
 fn all_within<'a>(range: RangeInclusive<f64>, mut values: impl Iterator<Item = &'a f64>) -> Result<(), Refusal> {

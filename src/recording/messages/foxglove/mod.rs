@@ -174,6 +174,9 @@ pub struct Log {
     /// And line.
     #[prost(fixed32, tag = "6")]
     pub line: u32,
+    /// The same as a value of the program that wrote it. Not in the schema of Foxglove, whose readers pass over it.
+    #[prost(bytes = "vec", optional, tag = "1000")]
+    pub value: Option<Vec<u8>>,
 }
 
 /// An arrow along its x axis.

@@ -6,6 +6,7 @@
 
 use std::io::{Error, ErrorKind, Result};
 
+use nima_core::limits::{BASELINE_M, DISTORTION};
 use nima_endoscope::{Board, board::Corners};
 use nima_machine::rig::Side;
 
@@ -37,8 +38,8 @@ pub(in crate::emulators) fn endoscope(settings: &Settings) -> Result<Box<dyn Emu
     }
     // The same field at any size.
     camera.focal_px *= camera.size_px[1] as f64 / height as f64;
-    if !(-2.0..=2.0).contains(&camera.k1) {
-        return Err(unusable("k1", camera.k1, "give -2 to 2"));
+    if !DISTORTION.contains(camera.k1) {
+        return Err(unusable("k1", camera.k1, &format!("give {DISTORTION}")));
     }
     let usual = Emulated::of(&scene, settings.get_or("port", PORT)?);
     let rate_hz = settings.get_or("rate_hz", usual.rate_hz)?;
@@ -50,8 +51,8 @@ pub(in crate::emulators) fn endoscope(settings: &Settings) -> Result<Box<dyn Emu
         return Err(unusable("quality", quality, "give 1 to 100"));
     }
     let baseline_m = settings.get("baseline_m")?;
-    if let Some(baseline_m) = baseline_m.filter(|baseline_m| !(0.000_5..=0.05).contains(baseline_m)) {
-        return Err(unusable("baseline_m", baseline_m, "give 0.0005 to 0.05"));
+    if let Some(baseline_m) = baseline_m.filter(|baseline_m| !BASELINE_M.contains(*baseline_m)) {
+        return Err(unusable("baseline_m", baseline_m, &format!("give {BASELINE_M}")));
     }
     let pipe = settings.get::<std::path::PathBuf>("pipe")?;
     if let Some(path) = &pipe {

@@ -190,7 +190,7 @@ impl Bench {
     /// Why a device is not there.
     fn missing(&self) -> Option<String> {
         let roster = self.handle.as_ref()?.roster();
-        roster.iter().find_map(|entry| Some(format!("{}: {}", entry.name, entry.view.report().trouble?)))
+        roster.iter().find_map(|entry| Some(format!("{}: {}", entry.name(), entry.view.report().trouble?)))
     }
 
     /// Takes in what the loop has sent, and shows the technician what the wizard asks for.

@@ -33,7 +33,7 @@ impl Troubles {
         for (entry, told) in handle.roster().iter().zip(&mut self.told) {
             let trouble = entry.view.report().trouble;
             if let Some(trouble) = &trouble {
-                let words = format!("{}: {trouble}. {}", entry.name, trouble.cure());
+                let words = format!("{}: {trouble}. {}", entry.name(), trouble.cure());
                 if told.as_ref() != Some(trouble) {
                     status.tell(&words);
                 }

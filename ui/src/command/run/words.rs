@@ -57,7 +57,7 @@ pub(super) fn in_words(plan: &Plan, summary: &Summary, is_measured: bool) -> Str
     }
     if let (Some(advice), "real") = (summary.scheduling.advice(), summary.clock) {
         text.push_str("\nnote: ");
-        text.push_str(advice);
+        text.push_str(&advice);
     }
     text
 }

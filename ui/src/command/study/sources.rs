@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima_core::impedance::MAX_DELAY_S;
+use nima_core::limits::DELAY_S;
 use nima_machine::{rig::Side, runtime::VirtualClock};
 use nima_recording::csv::Mapping;
 use nima_study::tradeoff::Source;
@@ -68,9 +68,9 @@ impl Sources {
 
 /// Delays in seconds from `--delay-ms`, all within what the link can do.
 pub(super) fn delays_s(asked_ms: &[f64]) -> anyhow::Result<Vec<f64>> {
-    let most_ms = MAX_DELAY_S * 1e3;
-    if let Some(delay_ms) = asked_ms.iter().find(|delay_ms| !(0.0..=most_ms).contains(*delay_ms)) {
-        bail!("--delay-ms {delay_ms}: the delay must lie between 0 and {most_ms} ms");
+    let limits_ms = DELAY_S.per(1e-3, "ms");
+    if let Some(delay_ms) = asked_ms.iter().find(|delay_ms| !limits_ms.contains(**delay_ms)) {
+        bail!("--delay-ms {delay_ms}: give {limits_ms}");
     }
     Ok(asked_ms.iter().map(|ms| ms * 1e-3).collect())
 }

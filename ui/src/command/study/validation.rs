@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use nima_core::impedance::MAX_DELAY_S;
+use nima_core::limits::DELAY_S;
 use nima_machine::rig::Side;
 use nima_recording::tip_force::MOST_ROWS;
 use nima_study::validation::{Options, isolation::ROWS, paper};
@@ -55,10 +55,9 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 fn delay_ms(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(delay_ms) if (0.0..=1e3 * MAX_DELAY_S).contains(&delay_ms) => Ok(delay_ms),
-        _ => Err(format!("give a delay from 0 to {:.0} ms", 1e3 * MAX_DELAY_S)),
-    }
+    let limits = DELAY_S.per(1e-3, "ms");
+    let delay_ms = text.parse::<f64>().ok().filter(|delay_ms| limits.contains(*delay_ms));
+    delay_ms.ok_or_else(|| format!("give a delay from {limits}"))
 }
 
 impl Asked for Validation {

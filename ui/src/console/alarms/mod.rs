@@ -12,7 +12,7 @@ use nima_machine::messages::{Fault, LoopState, Scheduling};
 use nima_network::endpoint::Control;
 
 use super::theme;
-use crate::words::scheduling_advice;
+use crate::words::lack_words;
 use crate::{console::text, words::Remedy as _};
 
 /// Urgency by IEC 60601-1-8.
@@ -87,6 +87,23 @@ pub enum Kind {
     ControlAsked,
     /// The session is not recorded, or will soon not be.
     Unrecorded,
+}
+
+impl Kind {
+    /// Whether a name that a person gave may be in its text, such as that of a folder.
+    pub const fn has_names(self) -> bool {
+        match self {
+            Self::Device(_) | Self::Unrecorded => true,
+            Self::StopStuck
+            | Self::Fault(_)
+            | Self::Silence
+            | Self::Missed
+            | Self::BiasMoved
+            | Self::Scheduling
+            | Self::Unchecked
+            | Self::ControlAsked => false,
+        }
+    }
 }
 
 /// One alarm.
@@ -197,8 +214,8 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             cure: text::alarms::BIAS_MOVED_CURE.get().to_owned(),
         });
     }
-    if let Some(advice) = signs.scheduling.and_then(scheduling_advice) {
-        let (cause, cure) = advice.split_once(": ").or_else(|| advice.split_once("; ")).unwrap_or((advice, ""));
+    if let Some(lack) = signs.scheduling.and_then(|granted| granted.lack()) {
+        let [cause, cure] = lack_words(lack);
         alarms.push(Alarm {
             kind: Kind::Scheduling,
             priority: Priority::Low,

@@ -54,7 +54,7 @@ pub(super) struct OfSide {
     pub(super) last: Option<WristId>,
     pub(super) correspondence: Option<Loaded<CorrespondenceRecord>>,
     /// Calibrations whose files cannot be used, and why.
-    unusable: Vec<(&'static str, String)>,
+    unusable: Vec<(Which, String)>,
     /// Other sensors with a calibration for the same tool.
     others: Vec<String>,
     gravity: Option<Loaded<GravityRecord>>,
@@ -73,10 +73,9 @@ impl OfSide {
         let (Some(store), Bound::To(wrist)) = (store, &this.bound) else { return this };
         let WristId { serial_number, tool } = wrist;
         let (now, bad) = (SystemTime::now(), &mut this.unusable);
-        this.tip_force = usable(text::calibrations::TIP_FORCE.get(), kept_model(store, serial_number, tool, now), bad);
-        this.correspondence =
-            usable(text::calibrations::CORRESPONDENCE.get(), store.load(serial_number, tool, now), bad);
-        this.gravity = usable(text::calibrations::GRAVITY.get(), store.load(serial_number, tool, now), bad);
+        this.tip_force = usable(Which::TipForce, kept_model(store, serial_number, tool, now), bad);
+        this.correspondence = usable(Which::Correspondence, store.load(serial_number, tool, now), bad);
+        this.gravity = usable(Which::Gravity, store.load(serial_number, tool, now), bad);
         this.drift = this.gravity.as_ref().map(|Loaded { record, .. }| {
             (DriftCheck::new(record.model, record.drift_limit_n(), StillSettings::default()), String::new())
         });
@@ -138,7 +137,7 @@ impl OfSide {
         ]
         .map(|(which, kept, since)| Line {
             wanted: Wanted { side, which, by_handle: false },
-            kept: match (kept, self.unusable.iter().find(|(what, _)| *what == which.name())) {
+            kept: match (kept, self.unusable.iter().find(|(what, _)| *what == which)) {
                 (None, Some((_, why))) => Err(why.clone()),
                 (kept, _) => Ok(kept),
             },
@@ -179,7 +178,7 @@ impl OfSide {
         let elsewhere = |sensor: &&str| across.is_none_or(|across| across.serial_number != *sensor);
         let others: Vec<_> = self.others.iter().map(String::as_str).filter(elsewhere).collect();
         let swapped = self.without_gravity().filter(|_| !others.is_empty());
-        let unusable = self.unusable.last().map(|(what, why)| text::calibrations::not_in_force(what, why));
+        let unusable = self.unusable.last().map(|(what, why)| text::calibrations::not_in_force(what.name(), why));
         unusable.or_else(|| {
             swapped.map(|wrist| {
                 text::calibrations::other_sensors_are_calibrated(&wrist.serial_number, &wrist.tool, &others.join(", "))
@@ -215,7 +214,7 @@ impl OfSide {
         let tip_force = model.map(|model| TipForce::new(model, fallback)).transpose();
         Calibrations {
             gravity: self.gravity.as_ref().map(|loaded| loaded.record.model),
-            tip_force: usable(text::calibrations::TIP_FORCE.get(), tip_force, &mut self.unusable),
+            tip_force: usable(Which::TipForce, tip_force, &mut self.unusable),
             gravity_check: self.gravity.as_ref().map(|loaded| GravityCheck::of(&loaded.record)),
         }
     }
@@ -271,9 +270,9 @@ fn kept_of(record: &impl Record, age: Age, error: String) -> Kept {
 
 /// The loaded record; if its file cannot be used, the reason is stored.
 fn usable<R>(
-    what: &'static str,
+    what: Which,
     loaded: Result<Option<R>, impl std::error::Error>,
-    unusable: &mut Vec<(&'static str, String)>,
+    unusable: &mut Vec<(Which, String)>,
 ) -> Option<R> {
     loaded.unwrap_or_else(|error| {
         unusable.retain(|(known, _)| *known != what);

@@ -3,10 +3,11 @@
 //! Controls show the values in force as reported by the loop. While a control is being moved, and for a moment after,
 //! it shows the requested value.
 
-use std::ops::RangeInclusive;
-
 use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
-use nima_core::impedance::Mode;
+use nima_core::{
+    impedance::Mode,
+    limits::{GAIN, GAIN_ABOVE_ONE, Limits, SLIDER_DEAD_BAND_M_S, SLIDER_DELAY_S},
+};
 use nima_machine::messages::Command;
 
 use super::stable_gain::stable_gain_ui;
@@ -23,9 +24,7 @@ use crate::{
 /// How long a control shows the requested value before it shows the value in force again, s: the gain ramps at 2 per
 /// second.
 const ASKED_SHOWN_S: f64 = 1.6;
-const DELAY_MS: RangeInclusive<f64> = 0.0..=500.0;
-const DEAD_BAND_MM_S: RangeInclusive<f64> = 0.0..=10.0;
-const GAIN_LIMIT: f64 = 3.0;
+
 /// A requested value and when it was requested (s on the window's clock).
 #[derive(Clone, Copy, Debug, Default)]
 struct Asked(Option<(f64, f64)>);
@@ -88,9 +87,9 @@ fn mode_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
 }
 
 /// One setting: its name, its value and a slider over its range.
-struct Setting {
+struct Setting<'a> {
     name: &'static str,
-    meaning: &'static str,
+    meaning: &'a str,
     suffix: &'static str,
     decimals: u8,
     /// Send the value to the loop while the slider moves, not only when it is released.
@@ -100,8 +99,8 @@ struct Setting {
 /// Shows the setting; returns the newly requested value, if there is one, and the slider's rectangle.
 fn setting_ui(
     ui: &mut Ui,
-    setting: &Setting,
-    range: RangeInclusive<f64>,
+    setting: &Setting<'_>,
+    limits: &Limits,
     in_force: f64,
     asked: &mut Asked,
 ) -> (Option<f64>, egui::Rect) {
@@ -112,9 +111,9 @@ fn setting_ui(
     let whole = |value: f64| (value / step).round() * step;
     let mut value = whole(asked.shown(in_force, time_s));
     let number = DragValue::new(&mut value)
-        .range(range.clone())
+        .range(limits.min..=limits.max)
         .clamp_existing_to_range(false)
-        .speed((range.end() - range.start()) / 300.0)
+        .speed((limits.max - limits.min) / 300.0)
         .fixed_decimals(usize::from(setting.decimals))
         .suffix(setting.suffix);
     let row = ui.horizontal(|ui| {
@@ -127,7 +126,7 @@ fn setting_ui(
     });
     let (label, number) = row.inner;
     ui.spacing_mut().slider_width = ui.available_width();
-    let slider = Slider::new(&mut value, range).show_value(false).clamping(SliderClamping::Edits);
+    let slider = Slider::new(&mut value, limits.min..=limits.max).show_value(false).clamping(SliderClamping::Edits);
     let slider = ui.add(slider).labelled_by(label).on_hover_text(setting.meaning);
     let rail = slider.rect;
     let both = slider.union(number);
@@ -142,23 +141,23 @@ fn setting_ui(
 fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let setting = Setting {
         name: text::feedback::GAIN.get(),
-        meaning: text::feedback::GAIN_HOVER.get(),
+        meaning: &text::feedback::gain_hover(live.gate_settings().gain_rate_per_s),
         suffix: "",
         decimals: 2,
         at_once: true,
     };
-    let limit = if state.allow_above_one { GAIN_LIMIT } else { 1.0 };
-    let (wanted, rail) = setting_ui(ui, &setting, 0.0..=limit, live.gain(), &mut state.gain);
-    stable_gain_ui(ui, live, rail, limit);
+    let limits = if state.allow_above_one { GAIN_ABOVE_ONE } else { GAIN };
+    let (wanted, rail) = setting_ui(ui, &setting, &limits, live.gain(), &mut state.gain);
+    stable_gain_ui(ui, live, rail, limits.max);
     if let Some(gain) = wanted {
-        outbox.push(if gain > 1.0 { Command::SetGainAboveOne(gain) } else { Command::SetGain(gain) });
+        outbox.push(if gain > GAIN.max { Command::SetGainAboveOne(gain) } else { Command::SetGain(gain) });
     }
     ui.horizontal(|ui| {
-        let meaning = text::feedback::ALLOW_ABOVE_1_HOVER.get();
+        let meaning = text::feedback::allow_above_1_hover();
         let unlock =
             ui.checkbox(&mut state.allow_above_one, text::feedback::ALLOW_ABOVE_1.get()).on_hover_text(meaning);
-        if unlock.changed() && !state.allow_above_one && live.gain() > 1.0 {
-            outbox.push(Command::SetGain(1.0));
+        if unlock.changed() && !state.allow_above_one && live.gain() > GAIN.max {
+            outbox.push(Command::SetGain(GAIN.max));
             state.gain = Asked::default();
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -168,17 +167,16 @@ fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Out
     });
 }
 
-/// The gain alone, large: one number, one slider, two buttons for steps of 0.1. Never above 1.
+/// The gain alone, large: one number, one slider, two buttons for steps of 0.1. Never above [`GAIN`].
 pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let time_s = ui.input(|input| input.time);
     let shown = state.gain.shown(live.gain(), time_s);
     let mut wanted = None;
+    let meaning = &text::feedback::gain_hover(live.gate_settings().gain_rate_per_s);
     ui.horizontal(|ui| {
-        ui.label(RichText::new(text::feedback::GAIN.get()).font(theme::strong(17.0)))
-            .on_hover_text(text::feedback::GAIN_HOVER.get());
+        ui.label(RichText::new(text::feedback::GAIN.get()).font(theme::strong(17.0))).on_hover_text(meaning);
         at_the_right(ui, |ui| {
-            ui.label(RichText::new(format!("{shown:.2}")).font(theme::strong(38.0)))
-                .on_hover_text(text::feedback::GAIN_HOVER.get());
+            ui.label(RichText::new(format!("{shown:.2}")).font(theme::strong(38.0))).on_hover_text(meaning);
             ui.add_space(8.0);
             let mut step = |ui: &mut Ui, text: &str, name: &str, by: f64| {
                 let button =
@@ -192,14 +190,14 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
             step(ui, "+", text::feedback::RAISE_GAIN.get(), 0.1);
         });
     });
-    let mut value = shown.min(1.0);
+    let mut value = shown.min(GAIN.max);
     ui.spacing_mut().slider_width = ui.available_width();
-    let slider = ui.add(Slider::new(&mut value, 0.0..=1.0).show_value(false).clamping(SliderClamping::Edits));
+    let slider = ui.add(Slider::new(&mut value, GAIN.min..=GAIN.max).show_value(false).clamping(SliderClamping::Edits));
     slider.widget_info(|| egui::WidgetInfo::slider(true, value, text::feedback::GAIN.get()));
-    if slider.on_hover_text(text::feedback::GAIN_HOVER.get()).changed() {
+    if slider.on_hover_text(meaning).changed() {
         wanted = Some(value);
     }
-    if let Some(gain) = wanted.map(|gain| gain.clamp(0.0, 1.0)) {
+    if let Some(gain) = wanted.map(|gain| gain.clamp(GAIN.min, GAIN.max)) {
         state.gain = Asked(Some((gain, time_s)));
         outbox.push(Command::SetGain(gain));
     }
@@ -208,7 +206,7 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
 fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let setting = Setting {
         name: text::feedback::LINK_DELAY.get(),
-        meaning: text::feedback::DELAY_HOVER.get(),
+        meaning: &text::feedback::delay_hover(),
         suffix: " ms",
         decimals: 0,
         at_once: false,
@@ -216,7 +214,9 @@ fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Ou
     let in_force = live.delay_s() * 1e3;
     let measured = live.line_door.is_some();
     ui.add_enabled_ui(!measured, |ui| {
-        if let Some(delay_ms) = setting_ui(ui, &setting, DELAY_MS, in_force, &mut state.delay_ms).0 {
+        if let Some(delay_ms) =
+            setting_ui(ui, &setting, &SLIDER_DELAY_S.per(1e-3, "ms"), in_force, &mut state.delay_ms).0
+        {
             outbox.push(Command::SetDelay(delay_ms * 1e-3));
         }
     })
@@ -227,13 +227,14 @@ fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Ou
 fn standstill_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let setting = Setting {
         name: text::feedback::DEAD_BAND.get(),
-        meaning: text::feedback::DEAD_BAND_HOVER.get(),
+        meaning: &text::feedback::dead_band_hover(),
         suffix: " mm/s",
         decimals: 1,
         at_once: true,
     };
     let in_force = live.gate_settings().dead_band_m_s * 1e3;
-    if let Some(mm_s) = setting_ui(ui, &setting, DEAD_BAND_MM_S, in_force, &mut state.dead_band_mm_s).0 {
+    let limits = SLIDER_DEAD_BAND_M_S.per(1e-3, "mm/s");
+    if let Some(mm_s) = setting_ui(ui, &setting, &limits, in_force, &mut state.dead_band_mm_s).0 {
         outbox.push(Command::SetDeadBand(mm_s * 1e-3));
     }
     let mut hold = live.gate_settings().static_hold;

@@ -10,7 +10,7 @@ use crate::console::{
     text, theme,
     widgets::{figure, small, weak},
 };
-use crate::words::scheduling_advice;
+use crate::words::scheduling_words;
 
 /// Interval of counting the histograms, which takes some time.
 const BARS_EVERY_S: f64 = 0.25;
@@ -116,8 +116,8 @@ fn scheduling_ui(ui: &mut Ui, live: &Live) {
     let meaning = text::timing::SCHEDULING_HOVER.get();
     figure(ui, text::timing::REAL_TIME_PRIORITY.get(), yes_no(scheduling.fifo), meaning);
     figure(ui, text::timing::LOCKED_MEMORY.get(), yes_no(scheduling.memory_locked), meaning);
-    if let Some(advice) = scheduling_advice(scheduling) {
-        ui.label(small(sentence(advice)));
+    if let Some(advice) = scheduling_words(scheduling) {
+        ui.label(small(sentence(&advice)));
     }
 }
 

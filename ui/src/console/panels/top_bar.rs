@@ -1,5 +1,7 @@
 //! The top bar, always visible: identity, state of the loop, problems, and the stop button.
 
+use std::mem::discriminant;
+
 use egui::{Align, Align2, Area, Button, Id, Label, Layout, Order, Rect, RichText, Sense, Stroke, Ui, vec2};
 use nima_machine::{
     messages::{Command, LoopState, Refusal},
@@ -179,7 +181,7 @@ pub(in crate::console) fn state_ui(ui: &mut Ui, live: &Live, state: LoopState) {
 fn state_lines(live: &Live, state: LoopState) -> Vec<String> {
     let states: Vec<(Side, LoopState)> =
         live.sides().filter_map(|side| Some((side, live.tick_of(side)?.state))).collect();
-    if states.iter().all(|(_, of_side)| of_side.word() == state.word()) {
+    if states.iter().all(|(_, of_side)| discriminant(of_side) == discriminant(&state)) {
         return vec![state_name(state).to_owned()];
     }
     states

@@ -1,6 +1,6 @@
 //! What **Apply** does with a measured point, so that the loop then does the work whose time was measured.
 
-use nima_core::impedance::Mode;
+use nima_core::{impedance::Mode, limits::GAIN};
 use nima_machine::{
     config::{Identification, RigConfig},
     messages::Command,
@@ -48,7 +48,7 @@ fn rig_with(live: &Live, mode: Mode, choice: &Choice) -> RigConfig {
         rig.identification.max_degree = choice.degree;
     }
     rig.gates = live.gate_settings();
-    rig.gates.gain = live.gain().min(1.0);
+    rig.gates.gain = live.gain().min(GAIN.max);
     rig
 }
 

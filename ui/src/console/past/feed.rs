@@ -1,13 +1,12 @@
 //! The ticks of a session from some time on: replayed, or as far as they are plotted in its file.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, mem::discriminant};
 
 use nima_machine::{
-    messages::{Event, LoopState, Tick},
+    messages::{Event, Tick},
     rig::{SIDES, Side},
 };
 use nima_session::{
-    STATES,
     objects::Objects,
     plotted::{self, PlottedError, PlottedTick},
     replay::{Cursor, Differs, Keyframe, Messages, Passed, ReplayError},
@@ -145,8 +144,8 @@ pub(super) fn plots(
 /// A tick like this one, with all that is plotted.
 fn tick(like: &Tick, side: Side, plotted: &PlottedTick) -> Tick {
     let PlottedTick { time_ns: _, t_s, tip_m, leader_m, measured_n, delayed_n, asked_n, rendered_n, state } = plotted;
-    let is_it = |known: &LoopState| known.word() == *state;
-    let state = Some(like.state).filter(is_it).or_else(|| STATES.into_iter().find(is_it)).unwrap_or(like.state);
+    // Which fault it was is not plotted: that of the tick before.
+    let state = if discriminant(state) == discriminant(&like.state) { like.state } else { *state };
     let mut tick = Tick {
         side,
         state,

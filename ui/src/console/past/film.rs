@@ -32,6 +32,7 @@ use crate::console::{
     live::{Live, forces_of},
     text,
 };
+use crate::recording::WORDS;
 
 /// A moment is replayed from this time before it, s, so that traces and figures have their past.
 const LEAD_S: f64 = 10.0;
@@ -246,7 +247,11 @@ impl<'a> Film<'a> {
         self.log_s = self.read_s;
         // A log that cannot be read has nothing to tell; the damage is told by what is replayed or plotted.
         let lines = self.file.recorded.log(times_ns).unwrap_or_default();
-        let note = |Line { time_ns, kind, words }| Note { t_s: self.file.t_s(time_ns), kind, words };
+        let devices = self.file.rig.device_names();
+        let note = |Line { time_ns, kind, words, value }| {
+            let words = value.and_then(|value| WORDS.of(&value, &devices)).unwrap_or(words);
+            Note { t_s: self.file.t_s(time_ns), kind, words }
+        };
         let notes: Vec<Note> = lines.into_iter().map(note).collect();
         self.marks_s.extend(notes.iter().filter(|note| note.kind == LineKind::Mark).map(|note| note.t_s));
         notes

@@ -17,7 +17,7 @@ mod worker;
 use std::path::{Path, PathBuf};
 
 use egui::Context;
-use nima_machine::rig::Side;
+use nima_machine::rig::{DeviceName, Side};
 
 use self::{
     job::Job,
@@ -54,7 +54,7 @@ pub(crate) struct Past {
     overview: Overview,
     calibrations: Tables,
     /// Names of the devices.
-    devices: Vec<String>,
+    devices: Vec<DeviceName>,
     extent: Extent,
     /// Time that is wanted on the screen, s.
     wanted_s: f64,
@@ -172,13 +172,13 @@ impl Past {
         let t_s = self.shown_s();
         let line = |side: Side| {
             let later = self.overview.calibrations(side, t_s);
-            let name = later.map_or_else(|| side_word(side).to_owned(), |(_, number)| number.to_string());
+            let name = later.map_or_else(|| side.word().to_owned(), |(_, number)| number.to_string());
             let table = self.calibrations.get(&name)?;
             Some(text::past::calibrations(side_word(side), table, later.map(|(since_s, _)| since_s)))
         };
         self.in_force = InForce::of_past(Side::ALL.into_iter().filter_map(line).collect());
         if let Some(live) = &mut self.live {
-            let of = |(place, name): (usize, &String)| (name.clone(), self.overview.standing(place, t_s));
+            let of = |(place, name): (usize, &DeviceName)| (*name, self.overview.standing(place, t_s));
             live.devices_then = self.devices.iter().enumerate().map(of).collect();
         }
     }

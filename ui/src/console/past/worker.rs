@@ -11,7 +11,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use nima_machine::config::Endoscope;
+use nima_machine::{config::Endoscope, rig::DeviceName};
 
 use super::{
     feed::Frame,
@@ -40,7 +40,7 @@ pub(super) struct Opened {
     pub(super) end_s: f64,
     pub(super) calibrations: Tables,
     /// By their places in the loop's events.
-    pub(super) devices: Vec<String>,
+    pub(super) devices: Vec<DeviceName>,
     /// The endoscope whose pictures are in it.
     pub(super) endoscope: Option<Endoscope>,
 }

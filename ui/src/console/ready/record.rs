@@ -12,7 +12,7 @@ use crate::words::{cause_words, check_name, lacks_words, unit};
 /// The devices of a rig with the serial numbers that they told.
 pub(crate) fn devices_of(roster: &Roster) -> Vec<CheckedDevice> {
     let device = |entry: &nima_machine::rig::RosterEntry| CheckedDevice {
-        name: entry.name.clone(),
+        name: entry.name().to_owned(),
         driver: entry.driver.clone(),
         serial: entry.view.report().identity.map(|identity| identity.serial).unwrap_or_default(),
     };

@@ -63,7 +63,7 @@ fn devices_then_ui(ui: &mut Ui, live: &Live) {
             ui.label(if elsewhere { text::monitor::SIMULATED.get() } else { text::past::SIMULATED.get() });
         }
         for (name, standing) in &live.devices_then {
-            ui.label(text::past::device(name, *standing));
+            ui.label(text::past::device(*name, *standing));
         }
         ui.add_space(6.0);
         ui.label(weak(if elsewhere { text::monitor::NOT_OF_DEVICES.get() } else { text::past::NOT_OF_DEVICES.get() }));

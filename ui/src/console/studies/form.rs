@@ -3,8 +3,15 @@
 use std::{ops::RangeInclusive, path::Path};
 
 use egui::{Button, ComboBox, DragValue, Grid, Label, RichText, ScrollArea, TextEdit, Ui, vec2};
-use nima_core::impedance::Mode;
-use nima_user_study::{Condition, Interrupted, NotReached, Questionnaire, Study, order};
+use nima_core::{
+    impedance::Mode,
+    limits::{DELAY_S, GAIN},
+};
+use nima_score::LONGEST_TRIAL_S;
+use nima_user_study::{
+    ATTEMPTS_MAX, BREAK_AFTER_MAX, BREAK_MAX_S, Condition, Interrupted, NotReached, PARTICIPANTS_MAX, PRACTICE_MAX,
+    Questionnaire, Study, TRIALS_MAX, order,
+};
 
 use super::{
     column,
@@ -135,9 +142,9 @@ fn what_ui(ui: &mut Ui, draft: &mut Draft) {
         field_ui(ui, text::study_form::NAME.get(), &mut file.name);
         field_ui(ui, text::study_form::RIG.get(), &mut file.rig);
         Grid::new("figures").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
-            whole_ui(ui, text::study_form::PARTICIPANTS.get(), &mut file.participants, 0..=200);
-            whole_ui(ui, text::study_form::TRIALS.get(), &mut file.trials, 0..=100);
-            whole_ui(ui, text::study_form::ATTEMPTS.get(), &mut file.attempts, 0..=10);
+            whole_ui(ui, text::study_form::PARTICIPANTS.get(), &mut file.participants, 0..=PARTICIPANTS_MAX);
+            whole_ui(ui, text::study_form::TRIALS.get(), &mut file.trials, 0..=TRIALS_MAX);
+            whole_ui(ui, text::study_form::ATTEMPTS.get(), &mut file.attempts, 0..=ATTEMPTS_MAX);
         });
         let rows = order::williams(file.conditions.len()).len();
         ui.label(small(text::study_form::balance(file.participants as usize, rows)));
@@ -164,11 +171,11 @@ fn practice_ui(ui: &mut Ui, draft: &mut Draft) {
         let criterion = &mut draft.practice.criterion;
         ui.add_enabled_ui(draft.practises, |ui| {
             Grid::new("practice").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
-                seconds_ui(ui, text::study_form::TIME.get(), &mut criterion.time_s, 0.0..=1200.0);
+                seconds_ui(ui, text::study_form::TIME.get(), &mut criterion.time_s, 0.0..=LONGEST_TRIAL_S);
                 whole_ui(ui, text::study_form::DROPS.get(), &mut criterion.drops_out_of_view, 0..=20);
                 whole_ui(ui, text::study_form::IN_A_ROW.get(), &mut criterion.consecutive, 0..=50);
                 whole_ui(ui, text::study_form::MORE.get(), &mut criterion.additional, 0..=50);
-                whole_ui(ui, text::study_form::MOST.get(), &mut criterion.max_trials, 0..=200);
+                whole_ui(ui, text::study_form::MOST.get(), &mut criterion.max_trials, 0..=PRACTICE_MAX);
                 choice_ui(ui, text::study_form::UNDER.get(), &mut draft.under, &names, text::study_form::IN_TURN.get());
             });
             ui.horizontal_wrapped(|ui| {
@@ -252,7 +259,7 @@ fn condition_ui(ui: &mut Ui, condition: &mut Condition, number: usize) {
         ui.label(weak(text::study_form::NO_GAIN.get()));
     } else {
         let mut gain = condition.gain.unwrap_or(1.0);
-        let drag = ui.add(DragValue::new(&mut gain).range(0.01..=1.0).speed(0.01).fixed_decimals(2));
+        let drag = ui.add(DragValue::new(&mut gain).range(0.01..=GAIN.max).speed(0.01).fixed_decimals(2));
         if drag.changed() {
             condition.gain = Some(gain);
         }
@@ -261,7 +268,8 @@ fn condition_ui(ui: &mut Ui, condition: &mut Condition, number: usize) {
         });
     }
     let mut delay_ms = condition.delay_ms.unwrap_or(0.0);
-    let drag = ui.add(DragValue::new(&mut delay_ms).range(0.0..=2000.0).speed(1.0).suffix(" ms"));
+    let delays_ms = DELAY_S.per(1e-3, "ms");
+    let drag = ui.add(DragValue::new(&mut delay_ms).range(delays_ms.min..=delays_ms.max).speed(1.0).suffix(" ms"));
     if drag.changed() {
         condition.delay_ms = Some(delay_ms);
     }
@@ -273,8 +281,8 @@ fn breaks_ui(ui: &mut Ui, draft: &mut Draft) {
         ui.checkbox(&mut draft.rests, text::study_form::RESTS.get());
         ui.add_enabled_ui(draft.rests, |ui| {
             Grid::new("breaks").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
-                whole_ui(ui, text::study_form::EVERY.get(), &mut draft.breaks.after_trials, 0..=1000);
-                seconds_ui(ui, text::study_form::LEAST.get(), &mut draft.breaks.least_s, 0.0..=7200.0);
+                whole_ui(ui, text::study_form::EVERY.get(), &mut draft.breaks.after_trials, 0..=BREAK_AFTER_MAX);
+                seconds_ui(ui, text::study_form::LEAST.get(), &mut draft.breaks.least_s, 0.0..=BREAK_MAX_S);
             });
         });
     });

@@ -1,6 +1,7 @@
 //! The parts of the form that say what is done and measured: scene, task, measures, and rules by which results are left out.
 
 use egui::{Button, ComboBox, DragValue, Grid, Label, Ui, vec2};
+use nima_score::LONGEST_TRIAL_S;
 use nima_user_study::{Comparison, Excludes, ExclusionRule};
 
 use super::{
@@ -35,7 +36,7 @@ pub(super) fn task_ui(ui: &mut Ui, draft: &mut Draft) {
         Grid::new("task").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
             if let Some(task) = &draft.task {
                 let mut limit_s = task.time_limit_s;
-                seconds_ui(ui, text::study_form::LIMIT.get(), &mut limit_s, 0.0..=1200.0);
+                seconds_ui(ui, text::study_form::LIMIT.get(), &mut limit_s, 0.0..=LONGEST_TRIAL_S);
                 if (limit_s - task.time_limit_s).abs() > 0.0 {
                     draft.limit(limit_s);
                 }

@@ -1,32 +1,49 @@
 //! The feedback panel: mode, gain, delay, dead band, highest stable gain.
 
+use nima_core::limits::{self, GAIN_ABOVE_ONE, Limits, SLIDER_DEAD_BAND_M_S, SLIDER_DELAY_S};
 use nima_study::stability_map::Verdict;
 
 use crate::language::{Text, told, word};
 
-pub(in crate::console) const GAIN_HOVER: Text = Text::of(
-    "Ratio of the force in the hand to the force that the mode asks for, no unit: 0 to 1, or up to 3 if \
-    allowed below. 0 is no force, 1 is natural. The gain changes by at most 2 per second. The strip \
-    below shows up to which gain a gripping hand comes to rest.",
-    "Verhältnis der Kraft in der Hand zu der vom Modus verlangten, ohne Einheit: 0 bis 1, oder bis 3, wenn unten \
-     erlaubt. 0 ist keine Kraft, 1 ist natürlich. Ändert sich um höchstens 2 je Sekunde. Der Streifen unten zeigt, bis \
-     zu welcher Verstärkung eine greifende Hand zur Ruhe kommt.",
-);
-pub(in crate::console) const DELAY_HOVER: Text = Text::of(
-    "One-way delay from the follower to the hand, 0 to 500 ms, added to the link's own. The paper uses \
-    300 ms. Every mode gets its data this late and predicts this far ahead. Applied when you release the \
-    slider.",
-    "Einfache Verzögerung vom Folgearm zur Hand, 0 bis 500 ms, zusätzlich zu der der Verbindung. Der Artikel verwendet \
-     300 ms. Jeder Modus erhält seine Daten so spät und sagt so weit voraus. Gilt ab dem Loslassen des Reglers.",
-);
-pub(in crate::console) const DEAD_BAND_HOVER: Text = Text::of(
-    "Speed of the hand, 0 to 10 mm/s, below which no force is rendered: at standstill an impedance cannot \
-    be identified. The paper uses 1 mm/s; 0 is no dead band. The force fades in and reaches its full \
-    size at twice this speed. No effect while \"Keep force at standstill\" is on.",
-    "Handgeschwindigkeit, 0 bis 10 mm/s, unter der keine Kraft dargestellt wird: im Stillstand ist eine Impedanz nicht \
-     identifizierbar. Der Artikel verwendet 1 mm/s; 0 heißt kein Totband. Die Kraft blendet ein und ist bei der \
-     doppelten Geschwindigkeit voll da. Ohne Wirkung, solange „Kraft im Stillstand halten“ ein ist.",
-);
+/// Meaning of the gain, which changes at most so fast (1/s).
+pub(in crate::console) fn gain_hover(rate_per_s: f64) -> String {
+    let Limits { min, max, .. } = limits::GAIN;
+    let most = GAIN_ABOVE_ONE.max;
+    told!(
+        "Ratio of the force in the hand to the force that the mode asks for, no unit: {min} to {max}, or up to {most} if \
+         allowed below. 0 is no force, 1 is natural. The gain changes by at most {rate_per_s} per second. The strip \
+         below shows up to which gain a gripping hand comes to rest.",
+        "Verhältnis der Kraft in der Hand zu der vom Modus verlangten, ohne Einheit: {min} bis {max}, oder bis {most}, wenn \
+         unten erlaubt. 0 ist keine Kraft, 1 ist natürlich. Ändert sich um höchstens {rate_per_s} je Sekunde. Der Streifen \
+         unten zeigt, bis zu welcher Verstärkung eine greifende Hand zur Ruhe kommt."
+    )
+}
+
+/// Meaning of the delay.
+pub(in crate::console) fn delay_hover() -> String {
+    let Limits { min, max, unit } = SLIDER_DELAY_S.per(1e-3, "ms");
+    told!(
+        "One-way delay from the follower to the hand, {min} to {max} {unit}, added to the link's own. The paper uses \
+         300 ms. Every mode gets its data this late and predicts this far ahead. Applied when you release the \
+         slider.",
+        "Einfache Verzögerung vom Folgearm zur Hand, {min} bis {max} {unit}, zusätzlich zu der der Verbindung. Der Artikel \
+         verwendet 300 ms. Jeder Modus erhält seine Daten so spät und sagt so weit voraus. Gilt ab dem Loslassen des \
+         Reglers."
+    )
+}
+
+/// Meaning of the dead band.
+pub(in crate::console) fn dead_band_hover() -> String {
+    let Limits { min, max, unit } = SLIDER_DEAD_BAND_M_S.per(1e-3, "mm/s");
+    told!(
+        "Speed of the hand, {min} to {max} {unit}, below which no force is rendered: at standstill an impedance cannot \
+         be identified. The paper uses 1 mm/s; 0 is no dead band. The force fades in and reaches its full \
+         size at twice this speed. No effect while \"Keep force at standstill\" is on.",
+        "Handgeschwindigkeit, {min} bis {max} {unit}, unter der keine Kraft dargestellt wird: im Stillstand ist eine \
+         Impedanz nicht identifizierbar. Der Artikel verwendet 1 mm/s; 0 heißt kein Totband. Die Kraft blendet ein und ist \
+         bei der doppelten Geschwindigkeit voll da. Ohne Wirkung, solange „Kraft im Stillstand halten“ ein ist."
+    )
+}
 pub(in crate::console) const HOLD_HOVER: Text = Text::of(
     "On: the force stays when the hand stops, so that you feel a steady push. Off: it fades out in the \
     dead band, as in the paper, and \"Why no force?\" shows how much is not rendered (N).",
@@ -34,12 +51,17 @@ pub(in crate::console) const HOLD_HOVER: Text = Text::of(
      im Artikel, und „Warum keine Kraft?“ zeigt, wie viel nicht dargestellt wird (N).",
 );
 pub(in crate::console) const GAIN: Text = Text::of("Gain", "Verstärkung");
-pub(in crate::console) const ALLOW_ABOVE_1_HOVER: Text = Text::of(
-    "Allows a gain up to 3, so that soft tissue feels stiffer than it is. The force ceiling still \
-    applies. Clearing the box brings the gain back to at most 1.",
-    "Erlaubt Verstärkungen bis 3, sodass sich weiches Gewebe steifer anfühlt, als es ist. Die Höchstkraft gilt weiter. \
-     Abwählen bringt die Verstärkung auf höchstens 1 zurück.",
-);
+/// What the box above the usual gain does.
+pub(in crate::console) fn allow_above_1_hover() -> String {
+    let most = GAIN_ABOVE_ONE.max;
+    let max = limits::GAIN.max;
+    told!(
+        "Allows a gain up to {most}, so that soft tissue feels stiffer than it is. The force ceiling still \
+         applies. Clearing the box brings the gain back to at most {max}.",
+        "Erlaubt Verstärkungen bis {most}, sodass sich weiches Gewebe steifer anfühlt, als es ist. Die Höchstkraft gilt \
+         weiter. Abwählen bringt die Verstärkung auf höchstens {max} zurück."
+    )
+}
 pub(in crate::console) const ALLOW_ABOVE_1: Text = Text::of("Allow above 1", "Über 1 erlauben");
 pub(in crate::console) const GAIN_IN_USE_HOVER: Text =
     Text::of("The gain in use now, after its ramp", "Die jetzt wirksame Verstärkung, nach ihrer Rampe");

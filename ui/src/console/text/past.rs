@@ -8,10 +8,11 @@ use std::{
 };
 
 use nima_devices::Standing;
+use nima_machine::rig::DeviceName;
 use nima_recording::store::utc_of;
 
 use crate::language::{Text, told, word};
-use crate::words::loss_words;
+use crate::words::{device_name, loss_words};
 
 pub(in crate::console) const SESSIONS: Text = Text::of("Sessions", "Sitzungen");
 pub(in crate::console) const SESSIONS_HOVER: Text = Text::of(
@@ -228,7 +229,8 @@ pub(in crate::console) fn unusable(name: &str, why: &str) -> String {
 }
 
 /// How a device was.
-pub(in crate::console) fn device(name: &str, standing: Standing) -> String {
+pub(in crate::console) fn device(name: DeviceName, standing: Standing) -> String {
+    let name = device_name(name);
     let how = match standing {
         Standing::Closed => word("not opened", "nicht geöffnet"),
         Standing::Opening => word("being opened", "wird geöffnet"),

@@ -17,7 +17,7 @@ use egui::Ui;
 use job::{Checked, Job, Order, Shared, judge, look, train};
 use nima_core::{
     calibration::{Verdict, correspondence::Correspondence},
-    tip_force::{Model, TrainingSettings},
+    tip_force::{Goal, GoalKind, Model, TrainingSettings},
 };
 use nima_machine::{messages::Tick, rig::Prompt};
 use take::{Clock, Take};
@@ -86,7 +86,7 @@ impl Checked {
 struct Trained {
     model: Model,
     /// A requirement that its recording did not meet, if any.
-    narrow: Option<&'static str>,
+    narrow: Option<GoalKind>,
 }
 
 /// Size of the networks.
@@ -131,7 +131,7 @@ pub struct TipForceWizard {
     /// This recording has been saved: its file need not be kept as the previous one.
     written: bool,
     size: Size,
-    training: Option<(Job<Model>, Option<&'static str>)>,
+    training: Option<(Job<Model>, Option<GoalKind>)>,
     curves: Shared,
     trained: Option<Trained>,
     proof: Option<Take>,
@@ -161,7 +161,7 @@ impl TipForceWizard {
     }
 
     /// The first requirement that the recording does not meet.
-    fn lacking(&self) -> Option<nima_core::tip_force::Goal> {
+    fn lacking(&self) -> Option<Goal> {
         self.recording.as_ref().and_then(|take| take.recorder.coverage().next())
     }
 
@@ -188,7 +188,7 @@ impl TipForceWizard {
         self.judge_when_done(binding);
     }
 
-    fn take_model(&mut self, result: Result<Model, String>, narrow: Option<&'static str>, cancelled: bool) {
+    fn take_model(&mut self, result: Result<Model, String>, narrow: Option<GoalKind>, cancelled: bool) {
         match result {
             Ok(model) => {
                 // Results of the previous network are not valid for this one.
@@ -221,7 +221,7 @@ impl TipForceWizard {
             bound: [with.sensor.clone(), with.tool.clone()],
             store: store.clone(),
         };
-        let (narrow, curves) = (self.lacking().map(|goal| goal.name), Arc::clone(&self.curves));
+        let (narrow, curves) = (self.lacking().map(|goal| goal.what), Arc::clone(&self.curves));
         match Job::start("tip-force-training", move |cancel| train(order, &curves, cancel)) {
             Ok(job) => (self.training, self.written, self.told) = (Some((job, narrow)), true, None),
             Err(error) => self.told = Some(error),

@@ -10,7 +10,7 @@ use crate::console::{
     text, theme,
     widgets::{Sign, sign, sign_ui, small},
 };
-use crate::words::{device_name, loss_words};
+use crate::words::{loss_words, role_name};
 
 const BUTTON: Vec2 = vec2(62.0, 22.0);
 /// Radius of the light.
@@ -28,7 +28,7 @@ pub(super) fn row_ui(
     let (what, colour, words) = standing_words(health);
     ui.horizontal(|ui| {
         sign_ui(ui, what, 5.0, colour);
-        ui.label(RichText::new(device_name(&entry.name)).font(theme::strong(14.0))).on_hover_text(&entry.driver);
+        ui.label(RichText::new(role_name(entry.role)).font(theme::strong(14.0))).on_hover_text(&entry.driver);
         light_ui(ui, live, entry, place);
     });
     ui.add(Label::new(small(words)).wrap());
@@ -59,7 +59,7 @@ fn light_ui(ui: &mut Ui, live: &Live, entry: &RosterEntry, place: usize) {
     let Some(part) = entry.part else { return };
     let motion = live.activity.lit(place).map(|channel| text::devices::motion(part.kind(), channel));
     let (rect, light) = ui.allocate_exact_size(Vec2::splat(LIGHT * 2.4), Sense::hover());
-    let name = text::devices::light(&device_name(&entry.name), motion.as_deref());
+    let name = text::devices::light(&role_name(entry.role), motion.as_deref());
     light.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &name));
     light.on_hover_text(text::devices::LIGHT_HOVER.get());
     let palette = theme::now();
@@ -79,11 +79,7 @@ fn trouble_ui(ui: &mut Ui, entry: &RosterEntry, trouble: &Trouble) {
     if let (Trouble::DeviceFault { .. }, Some(clear)) = (trouble, &entry.clear_faults) {
         let button = ui.add(Button::new(small(text::devices::CLEAR_FAULTS.get())).min_size(vec2(84.0, 22.0)));
         button.widget_info(|| {
-            egui::WidgetInfo::labeled(
-                egui::Role::Button,
-                true,
-                text::devices::clear_faults_of(&device_name(&entry.name)),
-            )
+            egui::WidgetInfo::labeled(egui::Role::Button, true, text::devices::clear_faults_of(&role_name(entry.role)))
         });
         if button.on_hover_text(text::devices::CLEAR_FAULTS_HOVER.get()).clicked() {
             clear.command();
@@ -95,7 +91,7 @@ fn trouble_ui(ui: &mut Ui, entry: &RosterEntry, trouble: &Trouble) {
 fn button_ui(ui: &mut Ui, entry: &RosterEntry, words: &str, hover: &str, enabled: bool) -> bool {
     let button = ui.add_enabled(enabled, Button::new(small(words)).min_size(BUTTON));
     button.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::Role::Button, enabled, text::devices::of(words, &device_name(&entry.name)))
+        egui::WidgetInfo::labeled(egui::Role::Button, enabled, text::devices::of(words, &role_name(entry.role)))
     });
     button.on_hover_text(hover).clicked()
 }

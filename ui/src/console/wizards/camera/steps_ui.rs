@@ -3,6 +3,7 @@
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
 use nima_camera::{Ask, Lack, Report};
 use nima_core::calibration::Verdict;
+use nima_endoscope::board::SQUARE_M;
 
 use super::{
     CameraWizard,
@@ -41,7 +42,8 @@ impl CameraWizard {
                 ui.add_enabled(free, edit).labelled_by(label.id).on_hover_text(texts::CORNERS_HOVER.get());
                 ui.add_space(16.0);
                 let label = ui.label(texts::SQUARE.get());
-                let drag = DragValue::new(&mut self.square_mm).range(0.5..=200.0).speed(0.1).suffix(" mm");
+                let [least_mm, most_mm] = [SQUARE_M.start(), SQUARE_M.end()].map(|side_m| side_m * 1e3);
+                let drag = DragValue::new(&mut self.square_mm).range(least_mm..=most_mm).speed(0.1).suffix(" mm");
                 ui.add_enabled(free, drag).labelled_by(label.id).on_hover_text(texts::SQUARE_HOVER.get());
             });
             match self.board() {

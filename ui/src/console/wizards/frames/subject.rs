@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, IsometryMatrix3, Point3, UnitQuaternion, Vector3};
 use nima_core::{calibration::frames::Serials, frames::from_roll_pitch_yaw_deg, kinematics::Arm};
 use nima_machine::{
     config::{RigConfig, Teleoperation},
-    rig::{ArmSet, EndoscopeSettings, Roster, Side},
+    rig::{ArmSet, EndoscopeSettings, Part, Roster, Side},
 };
 
 /// The arm pair of a side in a rig file.
@@ -42,13 +42,13 @@ impl Subject {
         let devices = rig.devices.as_ref()?;
         let set = devices.arm(side)?.clone();
         let arm = Arm::new(&set.mount).ok()?;
-        let serial = |name: &str| {
-            let entry = roster.iter().find(|entry| entry.name == name)?;
+        let serial = |part: Part| {
+            let entry = roster.iter().find(|entry| entry.part == Some(part))?;
             entry.view.report().identity.map(|identity| identity.serial).filter(|serial| !serial.is_empty())
         };
         let marker = devices.tracker.as_ref().and_then(|tracker| tracker.tools.get(side.index()));
         let marker = marker.and_then(|path| Some(path.file_stem()?.to_string_lossy().into_owned()));
-        let serials = Serials { arm: serial(&format!("{} arm", side.word())), tracker: serial("tracker"), marker };
+        let serials = Serials { arm: serial(Part::Arm(side)), tracker: serial(Part::Tracker), marker };
         let arm = Geometry {
             world_from_base: pose(arm.world_from_base()),
             flange_from_s1: pose(arm.flange_from_s1()),

@@ -3,6 +3,7 @@
 use egui::{Button, Grid, RichText, TextStyle, Ui, vec2};
 use egui_plot::{AxisHints, Bar, BarChart, Corner, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
 use nima_core::calibration::Verdict;
+use nima_core::tip_force::{FRICTION, NO_MODEL};
 use nima_recording::tip_force::ROW_EVERY_S;
 use nima_training::Part;
 
@@ -150,8 +151,8 @@ fn figures_ui(ui: &mut Ui, checked: &Checked) {
                 ui.label(small(format!("{:.2}", PAPER_MAE_N[axis])));
                 ui.label(strong(check.sd_n[axis]));
                 ui.label(small(format!("{PAPER_SD_N:.2}")));
-                ui.label(mae_of(&checked.part, "no model", axis));
-                ui.label(mae_of(&checked.part, "friction", axis));
+                ui.label(mae_of(&checked.part, NO_MODEL, axis));
+                ui.label(mae_of(&checked.part, FRICTION, axis));
                 ui.label(strong(check.free_mean_n[axis]));
                 ui.label(strong(check.free_sd_n[axis]));
                 ui.end_row();

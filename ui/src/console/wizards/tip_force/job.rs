@@ -12,7 +12,7 @@ use std::{
 
 use nima_core::{
     calibration::Verdict,
-    tip_force::{Check, Estimator, Model, TrainingSettings},
+    tip_force::{Check, Estimator, GoalKind, Model, TrainingSettings},
 };
 use nima_recording::{
     store::{Store, keep_previous},
@@ -177,7 +177,7 @@ pub(super) struct Checked {
 pub(super) fn judge(
     recorder: &Recorder,
     model: Model,
-    narrow: Option<&'static str>,
+    narrow: Option<GoalKind>,
     (store, sensor): (&Store, &str),
 ) -> Result<Checked, String> {
     let path = path_of(store, "tip-force-check", sensor)?;
@@ -188,7 +188,7 @@ pub(super) fn judge(
     if let (Some(goal), Verdict::Accepted) = (narrow, check.judgement.verdict) {
         check.judgement.verdict = Verdict::InsufficientMotion;
         // It stands in the file.
-        let reason = || text::tip_force::trained_on_too_little(&goal.to_lowercase());
+        let reason = || text::tip_force::trained_on_too_little(&goal.name().to_lowercase());
         check.judgement.reason = language::with(Language::English, reason);
     }
     let (points, bins) = (points(&data, &evaluation), bins(&data, &evaluation));

@@ -78,7 +78,7 @@ impl TipForceWizard {
             } else {
                 text::tip_force::ADVICE_NOW.get()
             };
-            let [name, advice] = goal_words(&goal);
+            let [name, advice] = goal_words(goal.what);
             let advice = text::tip_force::advice(when, advice, &within(name));
             ui.label(RichText::new(advice).font(theme::strong(16.0)));
         }
@@ -120,7 +120,7 @@ fn goals_ui(ui: &mut Ui, coverage: &Coverage) {
                 let percent = format!("{:.0} %", (100.0 * goal.share).floor());
                 progress(
                     &mut columns[i / goals.len().div_ceil(2)],
-                    goal_words(goal)[0],
+                    goal_words(goal.what)[0],
                     goal.share,
                     if goal.share < 1.0 { &percent } else { text::wizards::MET.get() },
                 );

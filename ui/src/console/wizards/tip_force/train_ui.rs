@@ -14,7 +14,6 @@ use crate::console::{
     widgets::{card, figure, next_button, small},
 };
 use crate::words::{goal_words, within};
-use nima_core::tip_force::Goal;
 
 const HEIGHT: f32 = 330.0;
 
@@ -102,7 +101,7 @@ impl TipForceWizard {
                 text::tip_force::HELD_OUT_LOSS_HOVER.get(),
             );
             if let Some(goal) = trained.narrow {
-                let [goal, _] = goal_words(&Goal { name: goal, share: 0.0, advice: "" });
+                let [goal, _] = goal_words(goal);
                 ui.label(text::tip_force::not_complete(&within(goal)));
             }
             if origin.rows < self.rows() {

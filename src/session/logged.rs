@@ -1,0 +1,82 @@
+//! What a line of the log is about, as a value.
+//!
+//! A session has it beside the English text: another text, without names or in another language, is made from the value.
+
+use nima_machine::{messages::Event, runtime::Operation};
+use nima_score::Event as Happening;
+
+use crate::codec::{Put, Sink, Source, Take, Wrong, choice, number, take_number};
+
+/// The value of a line. No name that a person gave is in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Logged {
+    /// Something that the loop told.
+    Event(Event),
+    /// Something that was done to the loop.
+    Operation(Operation),
+    /// Something that happened to the objects of a scene.
+    Happening(Happening),
+    /// A text of the screen in which no name can be.
+    Screen,
+}
+
+choice!(Logged {
+    0 => Event { 0: event: Event },
+    1 => Operation { 0: operation: Operation },
+    2 => Happening { 0: happening: Happening },
+    3 => Screen {},
+});
+
+/// First number of a value: which way of writing follows.
+const VERSION: u64 = 1;
+
+impl Logged {
+    /// Its bytes in a session.
+    pub(crate) fn encode(&self) -> Vec<u8> {
+        let mut words = vec![VERSION];
+        self.put(&mut words);
+        let mut bytes = Vec::new();
+        for word in words {
+            number(&mut bytes, word);
+        }
+        bytes
+    }
+
+    /// The value of these bytes; `None` for one that this program does not know.
+    pub(crate) fn decode(mut bytes: &[u8]) -> Option<Self> {
+        let mut words = Vec::new();
+        while !bytes.is_empty() {
+            words.push(take_number(&mut bytes).ok()?);
+        }
+        let mut words = words.into_iter();
+        let value = if words.next()? == VERSION { Self::take(&mut words).ok()? } else { return None };
+        words.next().is_none().then_some(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_core::Side;
+    use nima_machine::messages::{Command, Fault};
+
+    use super::*;
+
+    #[test]
+    fn a_value_survives_its_bytes_and_no_other_bytes_are_one() {
+        let fault = Fault::LoopStalled { periods: 3 };
+        for value in [
+            Logged::Event(Event::FaultRaised { t_s: 0.25, side: Side::Left, fault }),
+            Logged::Operation(Operation::Command { command: Command::SetGain(0.35), t_s: 1.0 }),
+            Logged::Happening(Happening::RingDropped { ring: 3, side: Side::Left, in_view: false }),
+            Logged::Happening(Happening::LumpMarked { side: Side::Right, lump: None }),
+            Logged::Screen,
+        ] {
+            let bytes = value.encode();
+            assert_eq!(Logged::decode(&bytes), Some(value));
+            assert_eq!(Logged::decode(&bytes[..bytes.len() - 1]), None, "cut off");
+            assert_eq!(Logged::decode(&[&*bytes, &[0]].concat()), None, "longer");
+        }
+        assert_eq!(Logged::decode(b"a name"), None);
+        assert_eq!(Logged::decode(b""), None);
+    }
+}

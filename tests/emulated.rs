@@ -11,7 +11,7 @@ use nima_machine::{
     config::{RigConfig, RigFile},
     rig::{SensorPlace, SensorSettings, Settings, Side},
 };
-use nima_world::{
+use nima_simulation::{
     emulated::{EmulatedRig, HandFrame, provide_handles},
     scene::Scene,
 };

@@ -2,8 +2,8 @@
 
 use nima_machine::rig::{Outputs, Rig as _, SIDES, Sensed, Side};
 use nima_score::Event;
+use nima_simulation::{Worlds, scene::Scene};
 use nima_testing::real_time::alone;
-use nima_world::{Worlds, scene::Scene};
 
 use crate::counting::calls;
 

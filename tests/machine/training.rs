@@ -8,8 +8,8 @@ use nima_machine::{
     runtime,
 };
 use nima_score::{Event, Happening};
+use nima_simulation::Plan;
 use nima_tests::plan;
-use nima_world::Plan;
 
 fn of(scene: &str, mode: Mode) -> Plan {
     let mut plan = plan(scene);

@@ -14,13 +14,13 @@ use nima_machine::{
     config::RigConfig,
     rig::{ArmSet, DeviceRig, Outputs, Rig as _, SIDES, Settings, Side, View},
 };
-use nima_testing::real_time::{alone, judged, too_busy};
-use nima_tests::emulated::{DEVICES, elsewhere, right_arm, started};
-use nima_world::{
+use nima_simulation::{
     emulated::{EmulatedRig, HandFrame},
     emulators::EmulatedFault,
     scene::Scene,
 };
+use nima_testing::real_time::{alone, judged, too_busy};
+use nima_tests::emulated::{DEVICES, elsewhere, right_arm, started};
 
 /// Polls once a millisecond until the condition is true.
 fn until<D: Device>(device: &mut D, what: &str, mut good: impl FnMut(&mut D, Option<D::Reading>) -> bool) {

@@ -12,15 +12,15 @@ use nima_machine::{
     config::Endoscope,
     rig::{DeviceRig, Rig, SIDES, Side},
 };
-use nima_testing::real_time::{alone, judged};
-use nima_tests::emulated::{elsewhere, started_in};
-use nima_world::{
+use nima_simulation::{
     emulators::{
         EmulatedFault,
         endoscope::{camera_of, usual},
     },
     scene::Scene,
 };
+use nima_testing::real_time::{alone, judged};
+use nima_tests::emulated::{elsewhere, started_in};
 
 use super::sides::hand_eye;
 

@@ -25,14 +25,14 @@ use nima_machine::{
     runtime::Handle,
     teleop::Calibrations,
 };
-use nima_testing::real_time::{alone, judged, too_busy};
-use nima_tests::emulated::{at_tip, started_in};
-use nima_world::{
+use nima_simulation::{
     Plan,
     emulated::EmulatedRig,
     emulators::{EmulatedFault, FaultSwitch},
     scene::Scene,
 };
+use nima_testing::real_time::{alone, judged, too_busy};
+use nima_tests::emulated::{at_tip, started_in};
 
 /// Time limit for the force after a sensor has begun to repeat itself, s.
 const GONE_S: f64 = 0.020;
@@ -60,7 +60,7 @@ struct Bench {
 impl Bench {
     fn new(plan: &Plan) -> Self {
         let calibrations = Some(plan.calibrations[0].clone()).filter(|known| known.gravity.is_some());
-        let handle = nima_world::start(plan).unwrap();
+        let handle = nima_simulation::start(plan).unwrap();
         Self { handle, calibrations, newest: None, ticks: Vec::new(), raised: Vec::new() }
     }
 

@@ -16,13 +16,13 @@ use nima_machine::{
     runtime::Handle,
 };
 use nima_recording::store::{CheckedDevice, ReadyRecord};
-use nima_testing::real_time::{alone, judged, too_busy};
-use nima_tests::emulated::{at_tip, started};
-use nima_world::{
+use nima_simulation::{
     Plan,
     emulated::{EmulatedRig, Truth},
     scene::Scene,
 };
+use nima_testing::real_time::{alone, judged, too_busy};
+use nima_tests::emulated::{at_tip, started};
 
 const TIMEOUT: Duration = Duration::from_secs(12);
 const DATE: &str = "2026-08-21T10:20:30Z";
@@ -249,7 +249,7 @@ impl Machine {
         rig.validate().unwrap();
         let scene = Scene::load("peg_transfer").unwrap();
         let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
-        let handle = nima_world::start(&plan).unwrap();
+        let handle = nima_simulation::start(&plan).unwrap();
         let healths = Healths::default();
         Self { handle, healths, refusals: Vec::new(), engaged: false, most_n: 0.0, tick_count: 0 }
     }

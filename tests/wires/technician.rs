@@ -11,13 +11,13 @@ use nima_machine::{
     rig::{Prompt, SIDES, Settings, Side},
     runtime::Handle,
 };
-use nima_testing::real_time::{alone, judged};
-use nima_tests::emulated::{elsewhere, started};
-use nima_world::{
+use nima_simulation::{
     Plan,
     emulated::{EmulatedRig, Screen, Task},
     scene::Scene,
 };
+use nima_testing::real_time::{alone, judged};
+use nima_tests::emulated::{elsewhere, started};
 
 /// Poses that are taken at each arm.
 const POSES: usize = 3;
@@ -38,7 +38,7 @@ impl Bench {
         let config = RigConfig { devices: Some(devices.clone()), ..RigConfig::load("emulated").unwrap() };
         let scene = Scene::load("peg_transfer").unwrap();
         let plan = Plan { rig: config, scene, calibrations: Default::default(), engage: false };
-        let handle = nima_world::start(&plan).unwrap();
+        let handle = nima_simulation::start(&plan).unwrap();
         Self { rig, handle, newest: [None; SIDES] }
     }
 

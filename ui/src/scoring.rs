@@ -3,7 +3,7 @@
 use nima_machine::messages::Tick;
 use nima_score::{Score, TaskFile};
 use nima_session::scored::LiveTrial;
-use nima_world::Watched;
+use nima_simulation::Watched;
 
 /// Scores from the first tick in which an arm is engaged.
 #[derive(Debug)]

@@ -12,10 +12,10 @@ use nima_machine::{
 use nima_recording::store::utc_now;
 use nima_score::TaskFile;
 use nima_session::outlet::Destination;
+use nima_simulation::{Plan, Watched, scene::Scene};
 use nima_user_study::{
     Condition, Ending, Mistakes, Phase, Running, Step, Study, StudyError, StudyFile, TrialId, simulated::Hand,
 };
-use nima_world::{Plan, Watched, scene::Scene};
 
 use crate::{leaving::Leave, objects::OfSimulation, recording, scoring::Scoring, words::Remedy as _};
 
@@ -117,7 +117,7 @@ pub(crate) fn plain_hand(study: &Study, participant: &str) -> anyhow::Result<Han
     // Trials and interruptions, so that a repetition is not the same.
     let of = study.state().progress(participant).map_or(0, |one| u64::from(one.interruptions));
     let seed = scene.seed.wrapping_add(u64::from(made(study, participant).0) + 1000 * of);
-    let nima_world::scene::Hand { pace, tremor_m, intended_n, .. } = scene.hand;
+    let nima_simulation::scene::Hand { pace, tremor_m, intended_n, .. } = scene.hand;
     Ok(Hand { pace, tremor_m, intended_n, seed })
 }
 

@@ -12,7 +12,7 @@ use nima_machine::{
     rig::{GRIP_MAX_RAD, SIDES},
     teleop::Calibrations,
 };
-use nima_world::{Plan, scene::Scene};
+use nima_simulation::{Plan, scene::Scene};
 use numpy::PyArray1;
 use pyo3::{prelude::*, types::PyDict};
 

@@ -12,7 +12,7 @@ use nima_machine::{
 };
 use nima_score::{Event, Score};
 use nima_session::scored::LiveTrial;
-use nima_world::{Plan, Training, Watched, Worlds};
+use nima_simulation::{Plan, Training, Watched, Worlds};
 
 use super::{
     handle::{Handled, Holder},

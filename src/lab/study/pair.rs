@@ -19,7 +19,7 @@ use nima_machine::{
     runtime::{TickTimes, VirtualClock},
     teleop::{Link as _, ProgrammedLink, Tracking},
 };
-use nima_world::{Tissue, scene::Tissue as TissueConfig};
+use nima_simulation::{Tissue, scene::Tissue as TissueConfig};
 
 /// Ticks per second.
 pub(super) const RATE_HZ: f64 = 1000.0;

@@ -24,7 +24,7 @@ use nima_machine::{
 use nima_recording::store::WristId;
 use nima_score::Score;
 use nima_session::outlet::Destination;
-use nima_world::{Plan, Watched, emulated::TipError, scene::Scene};
+use nima_simulation::{Plan, Watched, emulated::TipError, scene::Scene};
 use serde::Serialize;
 
 use self::{

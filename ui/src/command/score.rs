@@ -12,8 +12,8 @@ use nima_files::write_atomically;
 use nima_recording::session::Reader;
 use nima_score::{MEASURES, Measure, Score, TaskFile};
 use nima_session::{objects, plotted, scored};
+use nima_simulation::scene::Scene;
 use nima_study::csv_cell;
-use nima_world::scene::Scene;
 use serde::Serialize;
 
 use super::{output, stretch::Stretch};

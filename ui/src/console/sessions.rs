@@ -19,7 +19,7 @@ use nima_session::{
     recorder::{Note, NoteKind, Recorder},
     shelf::{MOST_BYTES, Shelf, keep},
 };
-use nima_world::Plan;
+use nima_simulation::Plan;
 
 use super::{
     alarms::{Alarm, Kind, Priority, Signs, judge, log::AlarmLog},
@@ -313,7 +313,7 @@ mod tests {
         runtime::{Assembly, start},
     };
     use nima_session::{file::Recorded, replay::replay, report::Figures};
-    use nima_world::scene::Scene;
+    use nima_simulation::scene::Scene;
 
     use crate::console::alarms::log::Moment;
 

@@ -9,7 +9,7 @@ use nima_bridges::{
 use nima_endoscope::Reel;
 use nima_machine::{messages::Fault, rig::Side};
 use nima_session::outlet::Audience;
-use nima_world::Plan;
+use nima_simulation::Plan;
 
 use super::{Server, Shown};
 use crate::{
@@ -89,7 +89,7 @@ fn machine() -> String {
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigConfig;
-    use nima_world::scene::Scene;
+    use nima_simulation::scene::Scene;
 
     use super::*;
 

@@ -7,7 +7,7 @@ use std::{
 
 use nima_endoscope::{Board, Lens, board::Portrait, jpeg};
 use nima_machine::config::{RigConfig, RigFile};
-use nima_world::emulators::endoscope::held;
+use nima_simulation::emulators::endoscope::held;
 use serde_json::Value;
 
 use crate::one_line;

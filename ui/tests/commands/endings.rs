@@ -14,14 +14,14 @@ use nima_machine::{
     config::RigConfig,
     rig::{Settings, Side},
 };
-use nima_testing::real_time::{alone, judged, too_busy};
-use nima_tests::{emulated, plan};
-use nima_world::{
+use nima_simulation::{
     Plan,
     emulated::{Truth, provide_handles},
     emulators::force_dimension::Mode as Motors,
     start,
 };
+use nima_testing::real_time::{alone, judged, too_busy};
+use nima_tests::{emulated, plan};
 use serde_json::Value;
 
 const TIMEOUT: Duration = Duration::from_mins(1);

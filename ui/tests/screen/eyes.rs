@@ -9,8 +9,7 @@ use nima_machine::{
     config::{Endoscope, StereoView},
     messages::LoopState,
 };
-use nima_tests::plan;
-use nima_world::{
+use nima_simulation::{
     Plan,
     emulators::{
         EmulatedFault, Serving,
@@ -18,6 +17,7 @@ use nima_world::{
     },
     scene::Scene,
 };
+use nima_tests::plan;
 
 use crate::bench::{Console, TIMEOUT, comes, press, shown, until};
 

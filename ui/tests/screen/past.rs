@@ -23,8 +23,8 @@ use nima_machine::{
 use nima_recording::session::Reader;
 use nima_score::Event;
 use nima_session::objects;
+use nima_simulation::Plan;
 use nima_tests::plan;
-use nima_world::Plan;
 
 use crate::bench::{TIMEOUT, console_of, press, shows, toured, until, wait};
 

@@ -12,12 +12,12 @@ use egui_kittest::kittest::Queryable as _;
 use nima_console::console::Options;
 use nima_machine::messages::LoopState;
 use nima_score::{Event, HandSample, Happening, Sample, Scorer, TaskFile};
+use nima_simulation::scene::Scene;
 use nima_tests::{
     plan,
     studies::{BLIND, study_file},
 };
 use nima_user_study::{Comparison, Ending, Excludes, Study, StudyFile};
-use nima_world::scene::Scene;
 
 use crate::bench::{
     Console, can_press, pick, press, read, shown_at, shows, texts, toured, until, wait, write_into, write_over,

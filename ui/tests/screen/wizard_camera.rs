@@ -9,8 +9,7 @@ use nalgebra::Isometry3;
 use nima_console::console::{Options, wizards::Which};
 use nima_endoscope::Board;
 use nima_machine::config::{RigConfig, RigFile};
-use nima_tests::plan;
-use nima_world::{
+use nima_simulation::{
     Plan,
     emulators::{
         Serving,
@@ -18,6 +17,7 @@ use nima_world::{
     },
     scene::Scene,
 };
+use nima_tests::plan;
 
 use crate::{
     bench::{Console, can_press, pick, read, shown, shows, toured, until, wait},

@@ -9,9 +9,9 @@ use nima_machine::{
     config::{RigConfig, RigFile},
     rig::{Settings, Side},
 };
+use nima_simulation::{Plan, emulated::EmulatedRig, scene::Scene, start};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{elsewhere, started};
-use nima_world::{Plan, emulated::EmulatedRig, scene::Scene, start};
 
 use crate::{
     bench::{Console, TIMEOUT, can_press, comes, console_of, pick, shows, texts, toured},

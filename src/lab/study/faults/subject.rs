@@ -13,7 +13,7 @@ use nima_machine::{
     config::RigConfig,
     rig::{Delivering, Inputs, Measured, Outputs, Rig as _, SIDES, Sensed, SensorPlace, Side},
 };
-use nima_world::{
+use nima_simulation::{
     Worlds,
     emulated::{ArmReadings, Clocked, HandFrame},
     scene::Scene,

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use anyhow::{Context as _, bail};
 use nima_machine::{config::RigConfig, rig::Side};
-use nima_world::{
+use nima_simulation::{
     emulated::{EmulatedRig, HandFrame, Screen, Witness},
     scene::Scene,
 };

@@ -92,7 +92,7 @@ pub(super) fn told(view: Option<StereoView>, endoscope: &Endoscope) -> &'static 
 mod tests {
     use egui::{Pos2, vec2};
     use nalgebra::{Vector2, Vector3};
-    use nima_world::{
+    use nima_simulation::{
         emulators::endoscope::{camera_of, usual},
         scene::Scene,
     };

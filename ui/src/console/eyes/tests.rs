@@ -7,7 +7,7 @@ use std::{
 use egui::{Pos2, pos2, vec2};
 use nalgebra::{Vector2, Vector3};
 use nima_endoscope::time_code;
-use nima_world::{
+use nima_simulation::{
     emulators::endoscope::{Emulated, Instrument, SQUARE_PX, camera_of, usual},
     scene::Scene,
 };

@@ -11,12 +11,12 @@ use nima_machine::{
     messages::ForceSource,
     rig::{DeviceEvent, Inputs, Outputs, Part, Rig, Roster, RosterEntry, Watch},
 };
-use nima_tests::gravity;
-use nima_world::{
+use nima_simulation::{
     Plan, Worlds,
     emulators::{Serving, bota as emulated},
     start_on,
 };
+use nima_tests::gravity;
 
 use super::*;
 

@@ -11,7 +11,7 @@ use nima_machine::{
     ready::{Arm, Ask, Session, Subject},
     rig::{Prompt, Roster, Side},
 };
-use nima_world::{
+use nima_simulation::{
     emulated::{Screen, Task},
     scene::Scene,
 };

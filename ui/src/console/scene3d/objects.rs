@@ -4,7 +4,7 @@ use egui::Color32;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_machine::rig::{SIDES, Side};
 use nima_session::objects::Objects;
-use nima_world::{LoopSeen, Training, scene::Scene};
+use nima_simulation::{LoopSeen, Training, scene::Scene};
 
 use super::{
     mesh::{Material, Mesh, Paint},

@@ -4,7 +4,7 @@ use egui::{Color32, Label, Rect, RichText, Ui, vec2};
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::impedance::Mode;
 use nima_machine::rig::Side;
-use nima_world::{Training, scene::Scene};
+use nima_simulation::{Training, scene::Scene};
 
 use super::{
     mesh::{Material, Mesh, Paint},
@@ -169,7 +169,7 @@ pub(super) fn line_ui(ui: &mut Ui, rect: Rect, words: Option<String>, readings: 
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigConfig;
-    use nima_world::{LoopSeen, MARKS_MAX, Mark};
+    use nima_simulation::{LoopSeen, MARKS_MAX, Mark};
 
     use super::*;
 

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use nima_core::impedance::Mode;
 use nima_score::{Criterion, Definition, MEASURES, Side, TaskFile, TaskKind};
+use nima_simulation::scene::Scene;
 use nima_user_study::{
     Breaks, Comparison, Condition, Excludes, ExclusionRule, NotReached, Practice, StudyFile, keys_of,
 };
-use nima_world::scene::Scene;
 
 use super::list::folder_of;
 use crate::{console::text, user_study};

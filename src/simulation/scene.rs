@@ -238,7 +238,7 @@ impl Scene {
     ///
     /// ```
     /// use nima_machine::config::ConfigError;
-    /// use nima_world::scene::Scene;
+    /// use nima_simulation::scene::Scene;
     ///
     /// let scene = Scene::load("peg_transfer")?;
     /// assert!(scene.tissue.is_some() && scene.wrist.is_none(), "the force is measured at the tip");

@@ -174,7 +174,7 @@ pub fn start_watched(plan: &Plan, speed: f64) -> Result<(Handle, Option<Watched>
 ///
 /// ```
 /// use nima_machine::{config::RigConfig, messages::LoopState};
-/// use nima_world::{Plan, run_virtual, scene::Scene};
+/// use nima_simulation::{Plan, run_virtual, scene::Scene};
 ///
 /// let plan = Plan {
 ///     rig: RigConfig::load("simulated")?,

@@ -68,7 +68,7 @@ impl Tissue {
     ///
     /// ```
     /// use nalgebra::Vector3;
-    /// use nima_world::{Tissue, scene::Scene};
+    /// use nima_simulation::{Tissue, scene::Scene};
     ///
     /// let config = Scene::load("peg_transfer")?.tissue.expect("this scene has tissue");
     /// let mut tissue = Tissue::new(config);

@@ -3,9 +3,9 @@
 //! With two hands each ring changes hands in the middle, as in FLS: one takes it from its peg, the other takes it over in mid-air and puts it
 //! on a peg of its own side. One hand alone carries it all the way.
 
+use crate::physics::{Setting, Start};
 use nalgebra::Vector3;
 use nima_machine::rig::{SIDES, Side};
-use nima_physics::{Setting, Start};
 
 use crate::hand::{Move, Part};
 

@@ -41,9 +41,9 @@ const PEAK: f64 = 1.875;
 /// Time in which the tip is lifted off the tissue when work ends, s.
 const LIFT_S: f64 = 0.8;
 
-/// State of the person.
+/// A person at the arm: holds it, and obeys each [`Prompt`].
 #[derive(Clone, Debug)]
-pub(super) struct Person {
+pub struct Person {
     flaw: Option<Flaw>,
     noise: Noise,
     wall_m: Option<Vector3<f64>>,
@@ -68,7 +68,7 @@ pub(super) struct Person {
 
 impl Person {
     /// A person at the arm of `scene`, holding the tip above the middle of the tissue.
-    pub(super) fn new(config: PersonConfig, scene: &Scene) -> Self {
+    pub fn new(config: PersonConfig, scene: &Scene) -> Self {
         let mut noise = Noise::new(scene.seed ^ 0x9e_12);
         let surface_z_m = scene.tissue.map_or(0.0, |tissue| tissue.surface_z_m);
         let tip_m = Vector3::new(0.0, 0.0, surface_z_m + CARRY_M[1]);
@@ -101,7 +101,8 @@ impl Person {
     }
 
     /// Begins with the tip here (m), through the body wall.
-    pub(super) fn begins_at(mut self, tip_m: Vector3<f64>) -> Self {
+    #[must_use]
+    pub fn begins_at(mut self, tip_m: Vector3<f64>) -> Self {
         self.tip_m = tip_m;
         self.lift_off();
         self.reach_on(0.0);
@@ -109,17 +110,17 @@ impl Person {
     }
 
     /// Orientation of the wrist.
-    pub(super) const fn world_from_s1(&self) -> UnitQuaternion<f64> {
+    pub const fn world_from_s1(&self) -> UnitQuaternion<f64> {
         self.world_from_s1
     }
 
     /// Position (m) and velocity (m/s) of the tip.
-    pub(super) const fn tip(&self) -> (Vector3<f64>, Vector3<f64>) {
+    pub const fn tip(&self) -> (Vector3<f64>, Vector3<f64>) {
         (self.tip_m, self.velocity_m_s)
     }
 
     /// What the person's hands do.
-    pub(super) fn touch(&self) -> Touch {
+    pub fn touch(&self) -> Touch {
         Touch { tip: self.push_n(), tool: self.touch_n(), stand: self.stand_n() }
     }
 
@@ -146,7 +147,7 @@ impl Person {
     }
 
     /// Advances by `dt_s`, following the instruction.
-    pub(super) fn advance(&mut self, prompt: &Prompt, dt_s: f64) {
+    pub fn advance(&mut self, prompt: &Prompt, dt_s: f64) {
         self.time_s += dt_s;
         if *prompt != self.prompt {
             self.begin(prompt);

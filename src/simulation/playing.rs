@@ -2,8 +2,8 @@
 
 mod lumps;
 
+use crate::physics::{Doing, Instrument, Loads, Objects, PegTransfer, Setting, Watch, Wire, WireSetting, WireTask};
 use nima_machine::rig::{Act, Acts, SIDES, Side};
-use nima_physics::{Doing, Instrument, Loads, Objects, PegTransfer, Setting, Watch, Wire, WireSetting, WireTask};
 use nima_score::{Event, Happening};
 
 use crate::{

@@ -53,9 +53,9 @@ pub struct Scene {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub walls: Vec<Wall>,
     /// Rings and pegs, and jaws that hold them. The hands then carry rings in place of pressing at the targets.
-    pub objects: Option<nima_physics::Setting>,
+    pub objects: Option<crate::physics::Setting>,
     /// A wire, and loops at the instruments. The hand then leads its loop along the wire in place of pressing at the targets.
-    pub wire: Option<nima_physics::WireSetting>,
+    pub wire: Option<crate::physics::WireSetting>,
     /// What is scored.
     pub task: Option<nima_score::TaskFile>,
     /// The leader device.

@@ -1,9 +1,9 @@
 //! What others see of objects that move: where they are, and what happens to them.
 
+use crate::physics::{Loads, RingState};
 use crossbeam_channel::{Receiver, Sender, bounded};
 use nalgebra::Vector3;
 use nima_machine::rig::SIDES;
-use nima_physics::{Loads, RingState};
 use nima_score::Happening;
 
 /// Rings of which a moment tells.

@@ -6,10 +6,10 @@
 
 mod measuring;
 
+use crate::physics::Instrument;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::noise::Noise;
 use nima_machine::rig::{Inputs, Outputs, Prompt};
-use nima_physics::Instrument;
 
 use crate::{
     Hand, Tissue, Trocar,
@@ -52,7 +52,7 @@ pub struct World {
     /// The instrument has jaws.
     jaws: bool,
     /// What acts on the instrument's jaws, or on the loop at its tip.
-    loads: nima_physics::Loads,
+    loads: crate::physics::Loads,
 }
 
 /// What a hand does among the objects of a scene.
@@ -68,13 +68,13 @@ pub(super) enum Doing {
 
 /// Forces of a person's hands, N (`world`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Touch {
+pub struct Touch {
     /// On the tip, which is pushed onto something that does not give way.
-    pub(super) tip: Vector3<f64>,
+    pub tip: Vector3<f64>,
     /// On the tool.
-    pub(super) tool: Vector3<f64>,
+    pub tool: Vector3<f64>,
     /// On the stand of the tissue; the tip does not feel it.
-    pub(super) stand: Vector3<f64>,
+    pub stand: Vector3<f64>,
 }
 
 /// Longest time simulated in one exchange, s; after a longer stall the remainder is skipped.
@@ -112,7 +112,7 @@ impl World {
             touch: Touch::default(),
             aside: false,
             jaws: false,
-            loads: nima_physics::Loads::default(),
+            loads: crate::physics::Loads::default(),
             hand,
         }
     }
@@ -149,7 +149,7 @@ impl World {
     }
 
     /// What now acts on jaws or loop.
-    pub(super) fn feel(&mut self, loads: &nima_physics::Loads) {
+    pub(super) fn feel(&mut self, loads: &crate::physics::Loads) {
         self.loads = *loads;
     }
 
@@ -182,13 +182,13 @@ impl World {
     }
 
     /// Pauses the hand's task; the hand waits here, m.
-    pub(super) fn wait_at(&mut self, at_m: Vector3<f64>) {
+    pub fn wait_at(&mut self, at_m: Vector3<f64>) {
         self.hand.wait(Some(at_m));
     }
 
     /// From now on a person outside this world touches the tool like this, and has set body wall and tissue aside, or not.
     /// A seal that comes back is undeformed.
-    pub(super) fn touched(&mut self, touch: &Touch, aside: bool) {
+    pub fn touched(&mut self, touch: &Touch, aside: bool) {
         self.touch = *touch;
         if self.aside && !aside {
             self.trocar.iter_mut().for_each(Trocar::relax);

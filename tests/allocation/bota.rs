@@ -7,7 +7,7 @@ use nima_devices::{
     Device as _, Standing,
     bota::{Driver, Settings, Transport},
 };
-use nima_simulation::emulators::{
+use nima_emulation::emulators::{
     EmulatedFault,
     bota::{Emulated, slow_motion},
 };

@@ -7,7 +7,7 @@ use nima_devices::{
     Device as _,
     dynamixel::{Settings, Taken, open},
 };
-use nima_simulation::emulators::dynamixel::Emulated;
+use nima_emulation::emulators::dynamixel::Emulated;
 use nima_testing::real_time::{alone, judged};
 
 use crate::counting::calls;

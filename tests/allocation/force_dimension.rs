@@ -7,7 +7,7 @@ use nima_devices::{
     Device as _,
     force_dimension::{Settings, open},
 };
-use nima_simulation::emulators::force_dimension::{Emulated, Held, stand_in};
+use nima_emulation::emulators::force_dimension::{Emulated, Held, stand_in};
 use nima_testing::real_time::{alone, judged};
 
 use crate::counting::calls;

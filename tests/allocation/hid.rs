@@ -7,7 +7,7 @@ use nima_devices::{
     CapReading, Device, Loss, PedalReading, Standing,
     hid::{CapDriver, CapSettings, PedalDriver, PedalSettings},
 };
-use nima_simulation::emulators::{
+use nima_emulation::emulators::{
     EmulatedFault,
     hid::{CapBody, CapModel, PedalBody, PedalModel, cap, pedal},
 };

@@ -8,7 +8,7 @@ use nima_devices::{
     Device as _,
     kinova::{Driver, Settings, ToolTwist, open},
 };
-use nima_simulation::emulators::{
+use nima_emulation::emulators::{
     EmulatedFault,
     kinova::{Emulated, StandIn},
 };

@@ -6,7 +6,7 @@ use nima_devices::{
     Device as _,
     ndi::{Driver, Settings},
 };
-use nima_simulation::emulators::ndi::{Profile, wandering};
+use nima_emulation::emulators::ndi::{Profile, wandering};
 use nima_testing::real_time::{alone, judged};
 
 use crate::counting::calls;

@@ -4,12 +4,13 @@
 use std::time::{Duration, Instant};
 
 use nima_devices::{Standing, force_dimension};
+use nima_emulation::emulators::EmulatedFault;
 use nima_machine::{
     config::{Chosen, RigConfig},
     rig::{Gauge, Gauges, Healths, Part, PartKind, Side},
     runtime::Handle,
 };
-use nima_simulation::{Plan, emulators::EmulatedFault, scene::Scene};
+use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{elsewhere, rig_file, started};
 

@@ -9,13 +9,14 @@ use std::{
 
 use nima_core::impedance::Mode;
 use nima_devices::{Health, Loss, Standing, Trouble};
+use nima_emulation::{emulated::EmulatedRig, emulators::EmulatedFault};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Tick},
     rig::Settings,
     runtime::Handle,
 };
-use nima_simulation::{Plan, emulated::EmulatedRig, emulators::EmulatedFault, scene::Scene};
+use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started_in};
 

@@ -10,15 +10,15 @@ use nima_core::{
     signal::PidGains,
 };
 use nima_devices::{Device, Standing, Trouble, bota, dynamixel, force_dimension, hid, kinova, ndi};
+use nima_emulation::{
+    emulated::{EmulatedRig, HandFrame},
+    emulators::EmulatedFault,
+};
 use nima_machine::{
     config::RigConfig,
     rig::{ArmSet, DeviceRig, Outputs, Rig as _, SIDES, Settings, Side, View},
 };
-use nima_simulation::{
-    emulated::{EmulatedRig, HandFrame},
-    emulators::EmulatedFault,
-    scene::Scene,
-};
+use nima_simulation::scene::Scene;
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{DEVICES, elsewhere, right_arm, started};
 

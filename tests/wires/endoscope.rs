@@ -7,16 +7,14 @@ use std::{
 };
 
 use nalgebra::{Isometry3, Vector2, Vector3};
+use nima_emulation::emulators::EmulatedFault;
 use nima_endoscope::{Camera, Feed, Picture};
 use nima_machine::{
     config::Endoscope,
     rig::{DeviceRig, Rig, SIDES, Side},
 };
 use nima_simulation::{
-    emulators::{
-        EmulatedFault,
-        endoscope::{camera_of, usual},
-    },
+    camera::{camera_of, usual},
     scene::Scene,
 };
 use nima_testing::real_time::{alone, judged};

@@ -8,20 +8,17 @@ use nima_devices::{
     Loss, Standing,
     haply::{Settings, codec::State},
 };
+use nima_emulation::emulators::{
+    EmulatedFault, Serving,
+    haply::{Emulated, Felt},
+};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Tick},
     rig::LeaderSettings,
     runtime::Handle,
 };
-use nima_simulation::{
-    Plan,
-    emulators::{
-        EmulatedFault, Serving,
-        haply::{Emulated, Felt},
-    },
-    scene::Scene,
-};
+use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged};
 
 /// How far the hand goes down into the tissue, m, and how fast, m/s.

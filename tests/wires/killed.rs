@@ -7,15 +7,15 @@ use std::{
 };
 
 use nima_core::impedance::Mode;
+use nima_emulation::{
+    emulated::{Truth, provide_handles},
+    emulators::force_dimension::Mode as Motors,
+};
 use nima_machine::{
     config::RigConfig,
     rig::{Settings, Side},
 };
-use nima_simulation::{
-    Plan,
-    emulated::{Truth, provide_handles},
-    emulators::force_dimension::Mode as Motors,
-};
+use nima_simulation::Plan;
 use nima_testing::real_time::{alone, judged};
 use nima_tests::{
     emulated::{right_arm, started},

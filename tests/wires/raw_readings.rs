@@ -18,6 +18,10 @@ use nima_core::{
     impedance::Mode,
 };
 use nima_devices::external::codec::{BYTES_MAX, Datagram};
+use nima_emulation::{
+    emulated::EmulatedRig,
+    emulators::{EmulatedFault, FaultSwitch},
+};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Tick},
@@ -25,12 +29,7 @@ use nima_machine::{
     runtime::Handle,
     teleop::Calibrations,
 };
-use nima_simulation::{
-    Plan,
-    emulated::EmulatedRig,
-    emulators::{EmulatedFault, FaultSwitch},
-    scene::Scene,
-};
+use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started_in};
 

@@ -9,6 +9,7 @@ use std::{
 use nalgebra::Isometry3;
 use nima_core::frames::to_roll_pitch_yaw_deg;
 use nima_devices::{Standing, Trouble, bota};
+use nima_emulation::emulated::{EmulatedRig, Truth};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Refusal},
@@ -16,11 +17,7 @@ use nima_machine::{
     runtime::Handle,
 };
 use nima_recording::store::{CheckedDevice, ReadyRecord};
-use nima_simulation::{
-    Plan,
-    emulated::{EmulatedRig, Truth},
-    scene::Scene,
-};
+use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started};
 

@@ -11,8 +11,8 @@ use nima_machine::{
 };
 use nima_simulation::{
     Plan,
-    emulated::{Screen, Task},
     scene::Scene,
+    screen::{Screen, Task},
 };
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started};

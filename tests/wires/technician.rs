@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use nima_core::calibration::gravity::{GravitySession, SessionSettings};
 use nima_devices::ARM_JOINTS;
+use nima_emulation::emulated::EmulatedRig;
 use nima_machine::{
     config::RigConfig,
     messages::Tick,
@@ -13,8 +14,8 @@ use nima_machine::{
 };
 use nima_simulation::{
     Plan,
-    emulated::{EmulatedRig, Screen, Task},
     scene::Scene,
+    screen::{Screen, Task},
 };
 use nima_testing::real_time::{alone, judged};
 use nima_tests::emulated::{elsewhere, started};

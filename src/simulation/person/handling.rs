@@ -134,7 +134,8 @@ pub(super) const fn is_handling(prompt: &Prompt) -> bool {
 
 impl Person {
     /// Holds the tool like this where he finds it comfortable, in front of a picture that is turned like this.
-    pub(crate) fn turned(mut self, world_from_s1: UnitQuaternion<f64>, world_from_view: UnitQuaternion<f64>) -> Self {
+    #[must_use]
+    pub fn turned(mut self, world_from_s1: UnitQuaternion<f64>, world_from_view: UnitQuaternion<f64>) -> Self {
         (self.world_from_s1, self.turn) = (world_from_s1, (world_from_s1, world_from_s1));
         let noise = self.handling.noise.clone();
         self.handling = Handling { world_from_view, ..Handling::new(noise, self.tip_m, world_from_s1) };
@@ -142,18 +143,18 @@ impl Person {
     }
 
     /// The pose that was chosen since the last call.
-    pub(crate) fn chosen(&mut self) -> Option<(Vector3<f64>, UnitQuaternion<f64>)> {
+    pub fn chosen(&mut self) -> Option<(Vector3<f64>, UnitQuaternion<f64>)> {
         let Held { tip_m, world_from_s1 } = self.handling.to;
         std::mem::take(&mut self.handling.is_new).then_some((tip_m, world_from_s1))
     }
 
     /// Chooses another pose: the arm does not take the one that was chosen.
-    pub(crate) fn choose_again(&mut self) {
+    pub fn choose_again(&mut self) {
         self.choose();
     }
 
     /// Where the handle is led, from where it was when the person came, m (`world`).
-    pub(crate) fn handle_m(&self) -> Vector3<f64> {
+    pub fn handle_m(&self) -> Vector3<f64> {
         self.handling.handle.at(self.handling.in_way_s).0
     }
 

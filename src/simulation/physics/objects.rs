@@ -6,7 +6,7 @@ mod tools;
 
 use nalgebra::Vector3;
 
-use crate::{
+use crate::physics::{
     contact::{Law, Memory, Pair},
     geometry::{PLACES, Segment, directions},
     instrument::{Instrument, Loads},
@@ -32,7 +32,7 @@ const SUBSTEP_OF_VIBRATION: f64 = 0.75;
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
-/// use nima_physics::{Doing, Instrument, Objects, Setting};
+/// use nima_simulation::physics::{Doing, Instrument, Objects, Setting};
 ///
 /// let setting = Setting::default();
 /// setting.validate()?;
@@ -45,7 +45,7 @@ const SUBSTEP_OF_VIBRATION: f64 = 0.75;
 /// let loads = objects.step(&[None, Some(right)]);
 /// assert!(loads[1].touching.board && (loads[1].tip_n.z - 3.6).abs() < 0.01, "both fingers, 1 kN/m each, 1.8 mm deep");
 /// assert_eq!(objects.rings()[3].doing, Doing::OnPeg(3));
-/// # Ok::<(), nima_physics::SettingError>(())
+/// # Ok::<(), nima_simulation::physics::SettingError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Objects {
@@ -212,7 +212,7 @@ impl Objects {
     #[cfg(test)]
     fn pull(&mut self) {
         if let (Some((at_m, force_n)), Some(ring)) = (self.pulled_n, self.rings.first_mut()) {
-            ring.push(&at_m, &crate::contact::Push { force_n, ..crate::contact::Push::default() });
+            ring.push(&at_m, &crate::physics::contact::Push { force_n, ..crate::physics::contact::Push::default() });
         }
     }
 

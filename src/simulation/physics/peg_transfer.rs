@@ -2,7 +2,7 @@
 
 use nima_score::{Event, Side};
 
-use crate::setting::{Setting, Start};
+use crate::physics::setting::{Setting, Start};
 
 /// How far a ring has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +19,7 @@ enum Stage {
 /// The state of peg transfer, from its events. Rings that were lost out of view are not waited for.
 ///
 /// ```
-/// use nima_physics::{PegTransfer, Setting, Start};
+/// use nima_simulation::physics::{PegTransfer, Setting, Start};
 /// use nima_score::{Event, Side};
 ///
 /// let mut task = PegTransfer::new(&Setting { rings: vec![Start::Peg(0)], ..Setting::default() });

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use crate::{
+use crate::physics::{
     contact::Push,
     geometry::{Circle, PLACES},
     setting::Shape,
@@ -177,7 +177,7 @@ impl Ring {
     pub(crate) fn throw(&mut self, centre_m: Vector3<f64>, velocity_m_s: Vector3<f64>, momentum: Vector3<f64>) {
         (self.centre_m, self.velocity_m_s, self.momentum) = (centre_m, velocity_m_s, momentum);
         self.wake();
-        self.place(&crate::geometry::directions());
+        self.place(&crate::physics::geometry::directions());
         self.turn();
     }
 }

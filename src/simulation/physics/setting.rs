@@ -9,13 +9,13 @@ use thiserror::Error;
 /// of FLS, six rings on the pegs of the left side.
 ///
 /// ```
-/// use nima_physics::{Setting, Start};
+/// use nima_simulation::physics::{Setting, Start};
 ///
 /// let mut setting = Setting { rings: vec![Start::Peg(0), Start::At([0.0, 0.0, 0.01])], ..Setting::default() };
 /// setting.validate()?;
 /// setting.ring.mass_kg = -1.0;
 /// assert!(setting.validate().is_err_and(|error| error.to_string().contains("ring.mass_kg = -1")));
-/// # Ok::<(), nima_physics::SettingError>(())
+/// # Ok::<(), nima_simulation::physics::SettingError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]

@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::{
+use crate::physics::{
     contact::Push,
     geometry::Segment,
     instrument::{Instrument, Loads, OPENING_MOST_RAD, Touching},

@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 
 use nima_score::{Event, Side};
 
-use crate::objects::Objects;
+use crate::physics::objects::Objects;
 use following::Following;
 
 /// Most events that wait to be taken; later ones are lost, and counted.
@@ -15,7 +15,7 @@ const WAITING_MOST: usize = 256;
 /// Watches the rings.
 ///
 /// ```
-/// use nima_physics::{Objects, Setting, Watch};
+/// use nima_simulation::physics::{Objects, Setting, Watch};
 ///
 /// let mut objects = Objects::new(&Setting::default(), 1e-3);
 /// let mut watch = Watch::new(&objects);

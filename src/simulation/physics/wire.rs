@@ -10,7 +10,7 @@ mod setting;
 
 use nalgebra::Vector3;
 
-use crate::{
+use crate::physics::{
     contact::{Law, Memory, Touch},
     geometry::{Circle, unit_or},
     instrument::{Instrument, Loads},
@@ -41,7 +41,7 @@ const JUMP_M: f64 = 0.03;
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
-/// use nima_physics::{Instrument, Wire, WireSetting};
+/// use nima_simulation::physics::{Instrument, Wire, WireSetting};
 ///
 /// let points_m = vec![[-0.05, 0.0, 0.03], [0.05, 0.0, 0.03]];
 /// let setting = WireSetting { points_m, goal_point: 1, ..WireSetting::default() };
@@ -62,7 +62,7 @@ const JUMP_M: f64 = 0.03;
 /// let law_n = setting.contact.stiffness_n_m * 0.0005;
 /// assert!((loads[1].tip_n.z + law_n).abs() < 0.02 * law_n, "{} N", loads[1].tip_n.z);
 /// assert!(wire.states()[1].touches);
-/// # Ok::<(), nima_physics::SettingError>(())
+/// # Ok::<(), nima_simulation::physics::SettingError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Wire {

@@ -1,7 +1,7 @@
 //! Objects that move, and the task that is scored.
 
+use crate::physics::SettingError;
 use nima_machine::config::{ConfigError, Ranges};
-use nima_physics::SettingError;
 use nima_score::TaskError;
 
 use super::Scene;

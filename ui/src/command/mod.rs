@@ -126,7 +126,7 @@ pub fn main() -> ExitCode {
         // --help and --version.
         Err(error) => error.exit(),
     };
-    nima_simulation::emulated::provide_handles();
+    nima_emulation::emulated::provide_handles();
     let result = match command {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),

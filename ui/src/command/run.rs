@@ -14,6 +14,7 @@ use std::{
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_core::{calibration::gravity::Drift, impedance::Mode};
+use nima_emulation::emulated::TipError;
 use nima_endoscope::Reel;
 use nima_machine::{
     config::{RigConfig, SchedulingClass},
@@ -24,7 +25,7 @@ use nima_machine::{
 use nima_recording::store::WristId;
 use nima_score::Score;
 use nima_session::outlet::Destination;
-use nima_simulation::{Plan, Watched, emulated::TipError, scene::Scene};
+use nima_simulation::{Plan, Watched, scene::Scene};
 use serde::Serialize;
 
 use self::{

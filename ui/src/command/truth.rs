@@ -10,11 +10,11 @@ use std::{
 };
 
 use nalgebra::Vector3;
+use nima_emulation::emulated::{DoubtShares, TipError, TipErrors};
 use nima_machine::{
     messages::Tick,
     rig::{SIDES, Side},
 };
-use nima_simulation::emulated::{DoubtShares, TipError, TipErrors};
 use serde::{Deserialize, Serialize};
 
 /// Ticks of a side that are kept for the truth about them: two seconds at 1 kHz.

@@ -28,7 +28,7 @@ use nima_machine::{
     rig::Side,
     runtime::{self, Assembly, Handle, StartError},
 };
-use nima_simulation::{Plan, Watched, emulated::Screen, scene::Scene};
+use nima_simulation::{Plan, Watched, scene::Scene, screen::Screen};
 
 use super::{
     Options,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nima_simulation::emulated::{Screen, Task};
+use nima_simulation::screen::{Screen, Task};
 
 use super::wizards::{Kind, Which};
 

@@ -5,16 +5,17 @@ use egui::{
 };
 use egui_kittest::kittest::Queryable as _;
 use nima_console::console::desk::{Layout, Panel};
+use nima_emulation::emulators::{
+    EmulatedFault, Serving,
+    endoscope::{Emulated, Instrument},
+};
 use nima_machine::{
     config::{Endoscope, StereoView},
     messages::LoopState,
 };
 use nima_simulation::{
     Plan,
-    emulators::{
-        EmulatedFault, Serving,
-        endoscope::{Emulated, Instrument, camera_of, usual},
-    },
+    camera::{camera_of, usual},
     scene::Scene,
 };
 use nima_tests::plan;

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{Objects, RingPair};
-use crate::{
+use crate::physics::{
     contact::{Law, Memory, Pair, Push, Touch},
     geometry::{PLACES, Segment, unit_or},
     ring::Ring,

@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{Note, Objects, SIDES};
-use crate::{ring::Ring, setting::View};
+use crate::physics::{ring::Ring, setting::View};
 
 /// Both fingers press at least so much on a ring that is held, N: with a friction of 0.4 just enough for 2 g.
 const HOLDS_N: f64 = 0.03;

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::Objects;
-use crate::{
+use crate::physics::{
     contact::{Law, Memory, Touch},
     geometry::{Segment, unit_or},
     tool::{PARTS, Tool},

@@ -3,7 +3,7 @@
 use nima_score::{Event, Side};
 
 use super::{LEFT, OPEN_RAD, RIGHT, Scene, at, one_ring};
-use crate::{Doing, Start};
+use crate::physics::{Doing, Start};
 
 #[test]
 fn a_ring_on_its_peg_is_grasped_lifted_and_carried() {
@@ -66,7 +66,7 @@ fn a_ring_let_go_over_a_peg_is_placed_within_some_millimetres() {
         let from_m = scene.centre_m(0);
         let tip_m = scene.hands[RIGHT].unwrap().tip_m;
         scene.glide(RIGHT, tip_m + at(0.0, 0.0, 0.045), 0.1);
-        let [peg_x_m, peg_y_m] = crate::Pegs::default().at_m[6];
+        let [peg_x_m, peg_y_m] = crate::physics::Pegs::default().at_m[6];
         let over_m = tip_m - from_m + at(peg_x_m + x_m, peg_y_m + y_m, 0.033);
         scene.glide(RIGHT, over_m, 0.1);
         scene.glide(RIGHT, over_m - at(0.0, 0.0, 0.013), 0.05);

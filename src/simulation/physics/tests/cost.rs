@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::{LEFT, RIGHT, Scene, at, instrument};
-use crate::{Setting, tests::OPEN_RAD};
+use crate::physics::{Setting, tests::OPEN_RAD};
 
 /// Times `ticks` steps; `before` is called ahead of each and not timed.
 fn told(name: &str, scene: &mut Scene, ticks: u32, mut before: impl FnMut(&mut Scene, u32)) {

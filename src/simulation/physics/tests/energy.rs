@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{Scene, at};
-use crate::Setting;
+use crate::physics::Setting;
 
 /// Six rings at rest, thrown if `thrown`, for so long. The energy at no time may be above what it was before, but for what contacts store.
 fn energy_never_grows(thrown: bool, seconds: u32) {

@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{LEFT, RIGHT, Scene, at, downwards, instrument, one_ring};
-use crate::{Instrument, Loads, Objects, Setting, Shape, Start};
+use crate::physics::{Instrument, Loads, Objects, Setting, Shape, Start};
 
 const GRAVITY_M_S2: f64 = 9.806_65;
 
@@ -109,7 +109,7 @@ fn shafts_push_each_other_apart_with_opposite_forces() {
 #[test]
 fn a_peg_pushes_back_what_is_pressed_against_it_and_holds_by_friction() {
     let mut scene = Scene::new(&Setting { rings: Vec::new(), ..Setting::default() });
-    let [x_m, y_m] = crate::Pegs::default().at_m[6];
+    let [x_m, y_m] = crate::physics::Pegs::default().at_m[6];
     // Above the peg's top for the shaft, which is thicker than the fingers.
     let touching_m = 0.00175 + 2.0 * 0.0008;
     scene.hands[RIGHT] = Some(instrument(RIGHT, at(x_m + touching_m + 0.002, y_m, 0.019), 0.0));

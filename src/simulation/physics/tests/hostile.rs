@@ -4,7 +4,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 use super::{LEFT, RIGHT, Scene, at, instrument};
-use crate::{Doing, Instrument, Setting};
+use crate::physics::{Doing, Instrument, Setting};
 
 fn all_finite(scene: &Scene) -> bool {
     let loads = scene

@@ -13,7 +13,7 @@ mod wire;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_score::Event;
 
-use crate::{Instrument, Loads, Objects, Setting, Start, Watch};
+use crate::physics::{Instrument, Loads, Objects, Setting, Start, Watch};
 
 pub(crate) const LEFT: usize = 0;
 pub(crate) const RIGHT: usize = 1;

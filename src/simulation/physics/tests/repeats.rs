@@ -1,7 +1,7 @@
 //! The same calls give the same bits.
 
 use super::{LEFT, RIGHT, Scene, at, instrument};
-use crate::{Objects, Setting};
+use crate::physics::{Objects, Setting};
 
 /// Ten seconds in which both hands grasp, shove and cross.
 fn digest(period_s: f64) -> u64 {
@@ -50,6 +50,6 @@ fn other_rates_run_too() {
         for _ in 0..200 {
             objects.step(&[None, None]);
         }
-        assert!(objects.rings().iter().enumerate().all(|(i, ring)| ring.doing == crate::Doing::OnPeg(i)));
+        assert!(objects.rings().iter().enumerate().all(|(i, ring)| ring.doing == crate::physics::Doing::OnPeg(i)));
     }
 }

@@ -1,6 +1,6 @@
 //! The section of a scene file.
 
-use crate::{Setting, Start};
+use crate::physics::{Setting, Start};
 
 #[test]
 fn an_empty_section_is_the_peg_transfer_of_fls_and_survives_a_file() {

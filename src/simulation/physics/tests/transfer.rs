@@ -3,7 +3,7 @@
 use nima_score::{Event, Side};
 
 use super::{LEFT, OPEN_RAD, RIGHT, Scene, at, one_ring};
-use crate::{Doing, PegTransfer, Pegs, Setting, Start};
+use crate::physics::{Doing, PegTransfer, Pegs, Setting, Start};
 
 impl Scene {
     /// One hand takes a ring from its peg to the middle, the other takes it over there and puts it on a peg.

@@ -5,7 +5,7 @@ use nima_score::{Event, Side};
 use proptest::prelude::*;
 
 use super::{LEFT, RIGHT, at};
-use crate::{Instrument, Loads, Wire, WireSetting, WireTask};
+use crate::physics::{Instrument, Loads, Wire, WireSetting, WireTask};
 
 const PERIOD_S: f64 = 1e-3;
 

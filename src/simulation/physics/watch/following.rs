@@ -2,7 +2,7 @@
 
 use nima_score::{Event, Side};
 
-use crate::objects::{Doing, RingState};
+use crate::physics::objects::{Doing, RingState};
 
 /// A ring is grasped when it was held for this long, s.
 const GRASPED_AFTER_S: f64 = 0.03;

@@ -5,7 +5,7 @@
 use nalgebra::Vector3;
 
 use super::PLACES;
-use crate::geometry::Circle;
+use crate::physics::geometry::Circle;
 
 /// Longest piece, m. In a bend of 5 mm it is 6 um away from the arc.
 const PIECE_M: f64 = 5e-4;
@@ -18,7 +18,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// A smooth curve through points: cubic pieces whose slopes are those of the parabola through three neighbours.
 ///
 /// ```
-/// use nima_physics::WireSetting;
+/// use nima_simulation::physics::WireSetting;
 ///
 /// let points_m = vec![[0.0, 0.0, 0.03], [0.03, 0.0, 0.03]];
 /// let curve = WireSetting { points_m, ..WireSetting::default() }.curve();

@@ -13,7 +13,7 @@ const BEGINNING_M: f64 = 0.012;
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
-/// use nima_physics::{Instrument, Wire, WireSetting, WireTask};
+/// use nima_simulation::physics::{Instrument, Wire, WireSetting, WireTask};
 /// use nima_score::Event;
 ///
 /// let setting = WireSetting { points_m: vec![[0.0, 0.0, 0.03], [0.05, 0.0, 0.03]], goal_point: 1, ..WireSetting::default() };

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::Curve;
-use crate::{
+use crate::physics::{
     geometry::{Circle, unit_or},
     instrument::Instrument,
     setting::{Board, SettingError},
@@ -20,13 +20,13 @@ const APART_M: f64 = 1e-3;
 /// right over the board.
 ///
 /// ```
-/// use nima_physics::WireSetting;
+/// use nima_simulation::physics::WireSetting;
 ///
 /// let mut setting = WireSetting::default();
 /// setting.validate()?;
 /// setting.hoop.radius_m = 0.001;
 /// assert!(setting.validate().is_err_and(|error| error.to_string().contains("wire.loop.radius_m = 0.001")));
-/// # Ok::<(), nima_physics::SettingError>(())
+/// # Ok::<(), nima_simulation::physics::SettingError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -106,7 +106,7 @@ impl Default for Hoop {
 }
 
 impl Default for WireContact {
-    /// As hard as the contacts of [`Contact`](crate::Contact); steel on steel, a little oily.
+    /// As hard as the contacts of [`Contact`](crate::physics::Contact); steel on steel, a little oily.
     fn default() -> Self {
         Self { stiffness_n_m: 1000.0, damping_n_s_m: 3.0, friction: 0.15 }
     }

@@ -19,7 +19,7 @@ use nima_machine::{
 use nima_recording::store::Store;
 use nima_simulation::{
     Plan,
-    emulated::{Screen, Task},
+    screen::{Screen, Task},
 };
 
 use crate::{

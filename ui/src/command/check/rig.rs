@@ -19,7 +19,7 @@ use nima_machine::{
     runtime::Handle,
 };
 use nima_recording::store::Store;
-use nima_simulation::{Plan, emulated::Screen, scene::Scene};
+use nima_simulation::{Plan, scene::Scene, screen::Screen};
 
 use crate::{
     command::{output, setup::Setup},

@@ -93,7 +93,7 @@ mod tests {
     use egui::{Pos2, vec2};
     use nalgebra::{Vector2, Vector3};
     use nima_simulation::{
-        emulators::endoscope::{camera_of, usual},
+        camera::{camera_of, usual},
         scene::Scene,
     };
 

@@ -12,8 +12,8 @@ use nima_machine::{
     rig::{Prompt, Roster, Side},
 };
 use nima_simulation::{
-    emulated::{Screen, Task},
     scene::Scene,
+    screen::{Screen, Task},
 };
 
 pub(crate) use page::{Wish, ready_ui};

@@ -108,7 +108,7 @@ pub(super) fn board(mesh: &mut Mesh, scene: &Scene) {
 }
 
 /// The board of a scene.
-pub(super) fn board_of(scene: &Scene) -> Option<&nima_physics::Board> {
+pub(super) fn board_of(scene: &Scene) -> Option<&nima_simulation::physics::Board> {
     let under_pegs = scene.objects.as_ref().map(|setting| &setting.board);
     under_pegs.or_else(|| scene.wire.as_ref().map(|setting| &setting.board))
 }

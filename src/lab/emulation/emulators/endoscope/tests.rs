@@ -4,6 +4,7 @@ use std::{
     time::{Duration, Instant, SystemTime, UNIX_EPOCH},
 };
 
+use nalgebra::Vector2;
 use nima_endoscope::{Damage, FROZEN, Feed, Look, Picture, Standing, Trouble, Wrong, jpeg, time_code};
 use nima_testing::real_time;
 
@@ -38,7 +39,8 @@ fn serve() -> Serving {
 
 /// Also writes into a file.
 fn serve_with(pipe: Option<std::path::PathBuf>) -> Serving {
-    let emulated = Emulated { camera: small(K1), square_px: SQUARE_PX, pipe, ..Emulated::of(&scene(), 0) };
+    let emulated =
+        Emulated { camera: small(usual(&scene()).k1), square_px: SQUARE_PX, pipe, ..Emulated::of(&scene(), 0) };
     emulated.with(&scene(), in_the_air(&scene())).serve().unwrap()
 }
 

@@ -19,12 +19,13 @@ use nima_machine::{
     rig::{ArmSet, Flaws, Prompt, SensorPlace, Side},
 };
 use nima_recording::tip_force::{Recorder, RecorderPhase};
-
-use super::{HandFrame, SideWorld, Task, of_side};
-use crate::{
-    emulators::kinova::Asked,
+use nima_simulation::{
     scene::{Flaw, Person, Scene},
+    screen::Task,
 };
+
+use super::{HandFrame, SideWorld, of_side};
+use crate::emulators::kinova::Asked;
 
 pub(super) struct Bench {
     world: SideWorld,

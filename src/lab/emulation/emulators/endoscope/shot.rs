@@ -4,9 +4,10 @@ use std::time::Duration;
 
 use nalgebra::Isometry3;
 use nima_endoscope::{Board, Camera, time_code};
+use nima_simulation::scene::Scene;
 
 use super::{Emulated, Instrument, board::Drawn, draw::Painter, push};
-use crate::{emulators::EmulatedFault, scene::Scene};
+use crate::emulators::EmulatedFault;
 
 /// What is before the lens.
 pub(super) enum Subject {

@@ -8,15 +8,13 @@ use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::kinematics::{Arm, Joints};
 use nima_machine::rig::Prompt;
 
-use super::{
-    Task,
-    guiding::{Guide, Hold, nearest_turn},
-};
-use crate::{
-    person::Person,
+use nima_simulation::{
+    Person, Touch,
     scene::{Person as PersonConfig, Scene},
-    world::Touch,
+    screen::Task,
 };
+
+use super::guiding::{Guide, Hold, nearest_turn};
 
 /// The shaft is in the trocar when its axis passes it this near, m.
 const IN_TROCAR_M: f64 = 1e-3;

@@ -5,12 +5,10 @@ use nima_machine::{
     config::Endoscope,
     rig::{Settings, Side},
 };
+use nima_simulation::{camera::camera_of, scene::Scene};
 
 use super::{EmulatedDevice, EmulatedRig, EmulatedRigError, SideWorld, places};
-use crate::{
-    emulators::endoscope::{BASELINE_M, Emulated, Instrument, camera_of},
-    scene::Scene,
-};
+use crate::emulators::endoscope::{BASELINE_M, Emulated, Instrument};
 
 const NAME: &str = "endoscope";
 

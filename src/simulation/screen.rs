@@ -50,7 +50,7 @@ impl Task {
 ///
 /// ```
 /// use nima_machine::rig::{Prompt, Side};
-/// use nima_simulation::emulated::{Screen, Task};
+/// use nima_simulation::screen::{Screen, Task};
 ///
 /// let screen = Screen { side: Side::Left, task: Task::TipForce, prompt: Prompt::Work };
 /// assert_eq!(screen.to_string(), "left tip-force work");

@@ -9,10 +9,9 @@ use nima_core::{
 use nima_machine::rig::{Flaws, Prompt};
 use nima_recording::tip_force::{DataSet, Recorder, RecorderPhase, Selection};
 
-use super::{
-    Task,
-    tests::{Bench, FLAWS, Fitted, fitted, live},
-};
+use nima_simulation::screen::Task;
+
+use super::tests::{Bench, FLAWS, Fitted, fitted, live};
 
 /// Rows that the wizard asks for, and those of its check: in contact, then without.
 const ROWS: usize = 16_000;

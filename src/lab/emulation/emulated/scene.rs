@@ -6,9 +6,9 @@
 
 use nalgebra::Vector3;
 use nima_machine::rig::{ArmSet, SensorPlace, Side};
+use nima_simulation::scene::{Imu, Scene, Wrist};
 
 use super::EmulatedRigError;
-use crate::scene::{Imu, Scene, Wrist};
 
 /// The scene that describes the paper's rig.
 const PAPER: &str = "isolation";

@@ -6,12 +6,10 @@
 use nima_core::kinematics::{Inverse, Joints};
 use nima_devices::{ARM_JOINTS, ArmReading, ForceReading, HandleReading, Stamped};
 use nima_machine::rig::{Flaws, Measured, Outputs, Settings, Side};
+use nima_simulation::scene::Scene;
 
 use super::{EmulatedRigError, HandFrame, SideWorld, of_side};
-use crate::{
-    emulators::{force_dimension::Applied, kinova::Asked},
-    scene::Scene,
-};
+use crate::emulators::{force_dimension::Applied, kinova::Asked};
 
 /// What the devices are, which decides how their readings look.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,15 +12,12 @@ use nima_core::{
 use nima_devices::{ARM_JOINTS, ForceReading, ForceStatus, Tracked};
 use nima_machine::rig::{ArmSet, EndoscopeSettings, Flaws, Identified, Outputs, Prompt, Sensed};
 
-use super::{HandFrame, Task, flawed::Flawed, seen::Camera, technician::Technician};
-use crate::{
-    World,
-    emulators::{
-        force_dimension::{Applied, HandState},
-        kinova::{Asked, Body as _, BodyState, StandIn},
-    },
-    scene::Scene,
-    world::Touch,
+use nima_simulation::{Touch, World, scene::Scene, screen::Task};
+
+use super::{HandFrame, flawed::Flawed, seen::Camera, technician::Technician};
+use crate::emulators::{
+    force_dimension::{Applied, HandState},
+    kinova::{Asked, Body as _, BodyState, StandIn},
 };
 
 /// One step of the world, s.

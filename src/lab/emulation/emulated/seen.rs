@@ -4,8 +4,9 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{frames::from_roll_pitch_yaw_deg, noise::Noise};
 use nima_devices::Tracked;
 use nima_machine::rig::{ArmSet, EndoscopeSettings};
+use nima_simulation::scene::Scene;
 
-use crate::{emulators::endoscope::push, scene::Scene};
+use crate::emulators::endoscope::push;
 
 /// Distance of the camera from the workspace's middle, m.
 const CAMERA_M: f64 = 1.5;

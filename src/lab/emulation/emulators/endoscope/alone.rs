@@ -8,13 +8,14 @@ use std::io::{Error, ErrorKind, Result};
 
 use nima_endoscope::{Board, board::Corners};
 use nima_machine::rig::Side;
-
-use super::{Body, Emulated, Instrument, camera_of, held, usual};
-use crate::{
+use nima_simulation::{
     Hand,
-    emulators::{Emulator, Settings, alone::unusable},
+    camera::{camera_of, usual},
     scene::Scene,
 };
+
+use super::{Body, Emulated, Instrument, held};
+use crate::emulators::{Emulator, Settings, alone::unusable};
 
 /// Where clients find it if nobody says another port.
 const PORT: u16 = 47_150;

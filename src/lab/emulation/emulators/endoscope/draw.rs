@@ -2,9 +2,9 @@
 
 use nalgebra::{Vector2, Vector3};
 use nima_endoscope::Camera;
+use nima_simulation::scene::Scene;
 
 use super::Instrument;
-use crate::scene::Scene;
 
 type Colour = [f64; 3];
 

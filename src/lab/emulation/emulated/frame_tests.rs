@@ -14,12 +14,13 @@ use nima_machine::{
     config::RigConfig,
     rig::{ArmSet, Flaws, Prompt, Side},
 };
-
-use super::{HandFrame, SideWorld, Task, of_side};
-use crate::{
-    emulators::{force_dimension::Applied, kinova::Asked},
+use nima_simulation::{
     scene::{Flaw, Person, Scene},
+    screen::Task,
 };
+
+use super::{HandFrame, SideWorld, of_side};
+use crate::emulators::{force_dimension::Applied, kinova::Asked};
 
 struct Bench {
     world: SideWorld,

@@ -18,7 +18,6 @@ mod network_tests;
 mod picture;
 mod places;
 mod scene;
-mod screen;
 mod seen;
 mod serving;
 mod side;
@@ -46,14 +45,14 @@ use side::SideWorld;
 
 pub use clocked::{ArmReadings, Clocked, Wiring};
 pub use errors::{DoubtShares, FreeError, TipError, TipErrors};
-pub use screen::{NoScreen, Screen, Task};
 pub use side::Truth;
 pub use stand_in::provide_handles;
 
-use crate::{
+use crate::emulators::{EmulatedFault, FaultSwitch, Serving};
+use nima_simulation::{
     Hand,
-    emulators::{EmulatedFault, FaultSwitch, Serving},
     scene::Scene,
+    screen::{Screen, Task},
 };
 
 /// How a side's handle stands to the workspace: the inverse of the rig's mapping from hand to tip.

@@ -12,6 +12,9 @@ pub mod impedance;
 pub mod kinematics;
 pub mod noise;
 pub mod safety;
+mod side;
 pub mod signal;
 pub mod statistics;
 pub mod tip_force;
+
+pub use side::{SIDES, Side};

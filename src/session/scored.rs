@@ -113,7 +113,7 @@ impl Trial {
             while let Some((_, opening_rad)) = self.openings[side.index()].pop_front_if(|(t_s, _)| *t_s <= sample.t_s) {
                 *open_rad = Some(opening_rad);
             }
-            if let Some(hand) = &mut sample.hands[side_of(side).index()] {
+            if let Some(hand) = &mut sample.hands[side.index()] {
                 hand.jaw_rad = *open_rad;
             }
         }
@@ -162,14 +162,6 @@ pub fn score(
     Ok(trial.end(!objects::are_told(reader)))
 }
 
-/// A side as the score has it.
-const fn side_of(arm: Side) -> nima_score::Side {
-    match arm {
-        Side::Left => nima_score::Side::Left,
-        Side::Right => nima_score::Side::Right,
-    }
-}
-
 /// A hand in a tick. No endoscope tells yet whether it is in view.
 const fn hand_of(tip_m: Vector3<f64>, force_n: Vector3<f64>, rendered_n: Vector3<f64>, engaged: bool) -> HandSample {
     HandSample { tip_m, jaw_rad: None, force_n, rendered_n, engaged, in_view: true }
@@ -179,13 +171,12 @@ const fn hand_of(tip_m: Vector3<f64>, force_n: Vector3<f64>, rendered_n: Vector3
 fn samples(reader: &Reader, path: &Path, times_ns: Range<u64>, arms: &[Side]) -> Result<Vec<Sample>, PlottedError> {
     let mut samples: BTreeMap<u64, Sample> = BTreeMap::new();
     for arm in arms {
-        let place = side_of(*arm);
         plotted::each_tick(reader, path, *arm, times_ns.clone(), |tick| {
             let PlottedTick { time_ns, t_s, tip_m, measured_n, rendered_n, state, .. } = tick;
             let engaged = state == LoopState::Engaged.word();
             let hand = hand_of(tip_m, measured_n, rendered_n, engaged);
             let none = || Sample { t_s, ..Sample::default() };
-            samples.entry(time_ns).or_insert_with(none).hands[place.index()] = Some(hand);
+            samples.entry(time_ns).or_insert_with(none).hands[arm.index()] = Some(hand);
             Ok::<_, PlottedError>(())
         })?;
     }
@@ -206,15 +197,15 @@ mod tests {
 
     fn sample(trial: &mut Trial, millis: u32, engaged: bool) {
         let hand = HandSample { engaged, in_view: true, ..HandSample::default() };
-        trial.sample(&Sample { t_s: f64::from(millis) * 1e-3, hands: [None, Some(hand)] });
+        trial.sample(&Sample { t_s: f64::from(millis) * 1e-3, hands: Side::Right.alone(hand) });
     }
 
     fn event(trial: &mut Trial, millis: u32, event: Event) {
         trial.happening(&Happening { t_s: f64::from(millis) * 1e-3, event });
     }
 
-    const GRASPED: Event = Event::RingGrasped { ring: 0, side: nima_score::Side::Right };
-    const LIFTED: Event = Event::RingLifted { ring: 0, side: nima_score::Side::Right };
+    const GRASPED: Event = Event::RingGrasped { ring: 0, side: Side::Right };
+    const LIFTED: Event = Event::RingLifted { ring: 0, side: Side::Right };
 
     #[test]
     fn a_trial_lasts_from_the_first_engaged_tick_to_the_last_one() {
@@ -257,7 +248,7 @@ mod tests {
             sample(&mut trial, millis, true);
         }
         let score = trial.end(false).unwrap();
-        assert_eq!(score.of("jaw_openings", nima_score::Side::Right), Some(2.0));
+        assert_eq!(score.of("jaw_openings", Side::Right), Some(2.0));
     }
 
     #[test]

@@ -3,11 +3,13 @@
 //! With two hands each ring changes hands in the middle, as in FLS: one takes it from its peg, the other takes it over in mid-air and puts it
 //! on a peg of its own side. One hand alone carries it all the way.
 
-use crate::physics::{Setting, Start};
 use nalgebra::Vector3;
 use nima_machine::rig::{SIDES, Side};
 
-use crate::hand::{Move, Part};
+use crate::{
+    hand::{Move, Part},
+    physics::{Setting, Start},
+};
 
 /// How far jaws open around a ring, rad, and how fast.
 const OPEN_RAD: f64 = 0.6;

@@ -2,11 +2,11 @@
 
 mod lumps;
 
-use crate::physics::{Doing, Instrument, Loads, Objects, PegTransfer, Setting, Watch, Wire, WireSetting, WireTask};
 use nima_machine::rig::{Act, Acts, SIDES, Side};
 use nima_score::{Event, Happening};
 
 use crate::{
+    physics::{Doing, Instrument, Loads, Objects, PegTransfer, Setting, Watch, Wire, WireSetting, WireState, WireTask},
     scene::Scene,
     watched::{LoopSeen, Moment, RINGS_MAX, Teller, Training},
 };
@@ -44,22 +44,6 @@ struct Rings {
     counted: Training,
 }
 
-/// The place of a side among the objects.
-const fn place(side: Side) -> usize {
-    match side {
-        Side::Left => 0,
-        Side::Right => 1,
-    }
-}
-
-/// A side as the score has it.
-const fn scored(side: Side) -> nima_score::Side {
-    match side {
-        Side::Left => nima_score::Side::Left,
-        Side::Right => nima_score::Side::Right,
-    }
-}
-
 impl Game {
     fn of(scene: &Scene, period_s: f64) -> Option<Self> {
         let rings = |setting: &Setting| {
@@ -74,31 +58,22 @@ impl Game {
 
     /// One period; what happened goes to `tell`, with how long ago it did, s.
     fn step(&mut self, instruments: &[Option<Instrument>; SIDES], tell: &mut dyn FnMut(f64, Event)) -> [Loads; SIDES] {
-        let mut placed = [None; SIDES];
-        for side in Side::ALL {
-            placed[place(side)] = instruments[side.index()];
-        }
-        let felt = match self {
-            Self::Rings(rings) => rings.step(&placed, tell),
+        match self {
+            Self::Rings(rings) => rings.step(instruments, tell),
             Self::Wire(both) => {
                 let (wire, task) = both.as_mut();
-                let loads = wire.step(&placed);
+                let loads = wire.step(instruments);
                 task.look(wire, tell);
                 loads
             }
             Self::Lumps(_) => [Loads::default(); SIDES],
-        };
-        let mut loads = [Loads::default(); SIDES];
-        for side in Side::ALL {
-            loads[side.index()] = felt[place(side)];
         }
-        loads
     }
 
     /// Whether this can be done in it; then it is.
     fn act(&mut self, act: Act, side: Side, at: &Instrument, tell: &mut dyn FnMut(f64, Event)) {
         match (self, act) {
-            (Self::Lumps(palpation), Act::Mark) => palpation.mark(scored(side), &at.tip_m, tell),
+            (Self::Lumps(palpation), Act::Mark) => palpation.mark(side, &at.tip_m, tell),
             (Self::Lumps(palpation), Act::Begin) => {
                 palpation.begin();
                 tell(0.0, Event::Begun);
@@ -122,21 +97,17 @@ impl Game {
             Self::Lumps(palpation) => palpation.training(),
             Self::Wire(both) => {
                 let (wire, task) = both.as_ref();
-                let mut training = Training { touches: task.touches(), share: task.share(), ..Training::default() };
-                for side in Side::ALL {
-                    let state = &wire.states()[place(side)];
-                    training.loops[side.index()] =
-                        LoopSeen { touches: state.touches, on_wire: state.along_m.is_some() };
-                }
-                training
+                let seen = |state: &WireState| LoopSeen { touches: state.touches, on_wire: state.along_m.is_some() };
+                let loops = wire.states().each_ref().map(seen);
+                Training { touches: task.touches(), share: task.share(), loops, ..Training::default() }
             }
         }
     }
 }
 
 impl Rings {
-    fn step(&mut self, placed: &[Option<Instrument>; SIDES], tell: &mut dyn FnMut(f64, Event)) -> [Loads; SIDES] {
-        let loads = self.objects.step(placed);
+    fn step(&mut self, instruments: &[Option<Instrument>; SIDES], tell: &mut dyn FnMut(f64, Event)) -> [Loads; SIDES] {
+        let loads = self.objects.step(instruments);
         self.watch.look(&self.objects);
         let mut done = false;
         while let Some(event) = self.watch.next_event() {
@@ -203,14 +174,13 @@ impl Playing {
     }
 
     fn moment(&self, t_s: f64, loads: [Loads; SIDES]) -> Moment {
-        let (mut rings, mut opening_rad) = ([None; RINGS_MAX], [0.0; SIDES]);
+        let mut rings = [None; RINGS_MAX];
+        let mut opening_rad = [0.0; SIDES];
         if let Game::Rings(game) = &self.game {
             for (place, ring) in rings.iter_mut().zip(game.objects.rings()) {
                 *place = (ring.doing != Doing::OutOfView).then_some(*ring);
             }
-            for side in Side::ALL {
-                opening_rad[side.index()] = game.objects.openings_rad()[place(side)].unwrap_or(0.0);
-            }
+            opening_rad = game.objects.openings_rad().map(Option::unwrap_or_default);
         }
         let training = Training { ended: self.is_done, ..self.game.training() };
         Moment { t_s, rings, opening_rad, loads, training }

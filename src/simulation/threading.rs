@@ -1,11 +1,11 @@
 //! The task of a hand that leads its loop along a wire: in short movements from place to place, each a little beside the wire, as aimed.
 
-use crate::physics::{Curve, WireSetting};
 use nalgebra::Vector3;
 use nima_core::noise::Noise;
 
 use crate::{
     hand::{Move, Part},
+    physics::{Curve, WireSetting},
     scene::Hand,
 };
 

@@ -1,10 +1,11 @@
 //! What others see of objects that move: where they are, and what happens to them.
 
-use crate::physics::{Loads, RingState};
 use crossbeam_channel::{Receiver, Sender, bounded};
 use nalgebra::Vector3;
 use nima_machine::rig::SIDES;
 use nima_score::Happening;
+
+use crate::physics::{Loads, RingState};
 
 /// Rings of which a moment tells.
 pub const RINGS_MAX: usize = 12;

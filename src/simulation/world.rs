@@ -6,7 +6,6 @@
 
 mod measuring;
 
-use crate::physics::Instrument;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::noise::Noise;
 use nima_machine::rig::{Inputs, Outputs, Prompt};
@@ -15,6 +14,7 @@ use crate::{
     Hand, Tissue, Trocar,
     hand::Part,
     person::Person,
+    physics::Instrument,
     scene::{Follower, Leader, Scene, Wall},
     searching::Searching,
     wrist::Wrist,

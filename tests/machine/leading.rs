@@ -127,7 +127,7 @@ fn a_ring_goes_over_and_back_and_the_hand_that_is_not_led_stays_and_holds() {
             Event::RingPlaced { ring, side: taker, peg },
         ]
     };
-    let [left, right] = [nima_score::Side::Left, nima_score::Side::Right];
+    let [left, right] = Side::LEFT_TO_RIGHT;
     let wanted: Vec<Event> = of(3, left, right, 9).into_iter().chain(of(3, right, left, 3)).collect();
     assert_eq!(events, wanted);
     assert!(went_m < 0.002, "while the other one takes the ring: {went_m} m");

@@ -96,7 +96,7 @@ fn a_person_marks_begins_anew_and_ends_from_the_screen() {
         task(5.1, Act::End),
     ];
     let (happenings, _) = played(&plan, 6.0, &commands);
-    let side = nima_score::Side::Right;
+    let side = Side::Right;
     let found = Event::LumpMarked { side, lump: Some(2) };
     let wrong = Event::LumpMarked { side, lump: None };
     let events: Vec<Event> = happenings.iter().map(|happening| happening.event).collect();

@@ -8,7 +8,7 @@ use nima_machine::{
     runtime::{self, Assembly, tap},
 };
 use nima_recording::session::Reader;
-use nima_score::{Event, Happening, Side as Hand};
+use nima_score::{Event, Happening};
 use nima_session::{
     anonymous, cut,
     file::{LineKind, Recorded},
@@ -59,7 +59,7 @@ fn moment(number: u32) -> Objects {
 
 /// Of every scene that there may be.
 fn events() -> Vec<Happening> {
-    let side = Hand::Left;
+    let side = Side::Left;
     let events = [
         (0.5, Event::RingGrasped { ring: 1, side }),
         (1.0, Event::RingDropped { ring: 1, side, in_view: false }),

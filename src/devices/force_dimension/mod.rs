@@ -30,5 +30,5 @@ pub use driver::{Counters, Driver, ForceAnswer, HandleEvent, SILENCE_S, open};
 pub use library::{installed_library, provide_stand_in};
 pub use opening::attached;
 pub use sdk::{EmulateHandle, Sdk, SdkFunctions, prepare_thread};
-pub use settings::{FORCE_MAX_N, GRIPPER_MAX_N, Hand, IdleMode, Settings};
+pub use settings::{FORCE_MAX_N, GRIPPER_MAX_N, IdleMode, Settings};
 pub use status::{ForceOffCause, Kind, SdkError, Status};

@@ -1,8 +1,10 @@
 //! From a loaded library to a configured device; every failure has its cause.
 
+use nima_core::Side;
+
 use super::{
     sdk::{OpenDevice, Sdk},
-    settings::{Hand, Settings},
+    settings::Settings,
     status::{Kind, SdkError, Status, fault_words},
 };
 use crate::{Identity, Loss, Trouble};
@@ -44,7 +46,7 @@ pub(super) fn open(sdk: &'static Sdk, settings: &Settings) -> Result<Opened, Tro
         let found = format!("omega.7 with serial number {serial}");
         return Err(Trouble::WrongProduct { expected: place.clone(), place, found });
     }
-    let hand = if left_handed { Hand::Left } else { Hand::Right };
+    let hand = if left_handed { Side::Left } else { Side::Right };
     if settings.hand.is_some_and(|wanted| wanted != hand) {
         return Err(Trouble::OtherHand { place, hand: hand.word().to_owned() });
     }

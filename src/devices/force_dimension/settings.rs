@@ -2,6 +2,7 @@
 
 use std::{net::SocketAddr, path::PathBuf};
 
+use nima_core::Side;
 use serde::{Deserialize, Serialize};
 
 use crate::Trouble;
@@ -22,25 +23,6 @@ pub enum IdleMode {
     Free,
 }
 
-/// The hand for which a handle is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the names say it")]
-pub enum Hand {
-    Right,
-    Left,
-}
-
-impl Hand {
-    /// Its name.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Right => "right",
-            Self::Left => "left",
-        }
-    }
-}
-
 /// Settings of one omega.7.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -53,7 +35,7 @@ pub struct Settings {
     /// The hand that it must be made for, by its own word. If omitted: that of its side on a rig with two handles, any on a
     /// rig with one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub hand: Option<Hand>,
+    pub hand: Option<Side>,
     /// Rate of the readings, Hz: 100 to 2000.
     pub rate_hz: f64,
     /// Time without a force command after which the device switches its force off by itself, ms: 1 to 31.

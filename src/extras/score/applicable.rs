@@ -40,8 +40,10 @@ impl Definition {
 
 #[cfg(test)]
 mod tests {
+    use nima_core::Side;
+
     use super::*;
-    use crate::{Event, HandSample, Happening, MEASURES, Sample, Scorer, Side, TaskFile};
+    use crate::{Event, HandSample, Happening, MEASURES, Sample, Scorer, TaskFile};
 
     /// The measures that a trial has in which everything happens.
     fn measured(kind: TaskKind) -> Vec<&'static str> {

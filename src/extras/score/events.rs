@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::{Event, Side};
+use nima_core::{SIDES, Side};
+
+use crate::Event;
 
 /// Moments that are kept for the ways between them, and lumps that are told apart; more is a fault of the input.
 const MOST: usize = 10_000;
@@ -21,10 +23,10 @@ pub(crate) struct Events {
     pub touches: u32,
     found: BTreeSet<usize>,
     /// When each hand took or let go a ring.
-    handled_s: [Vec<f64>; 2],
+    handled_s: [Vec<f64>; SIDES],
     /// When each hand marked a lump that is one.
-    marked_s: [Vec<f64>; 2],
-    touching_since_s: [Option<f64>; 2],
+    marked_s: [Vec<f64>; SIDES],
+    touching_since_s: [Option<f64>; SIDES],
     touched_s: f64,
 }
 

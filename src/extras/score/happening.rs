@@ -1,8 +1,7 @@
 //! What happens in a trial besides motion and force.
 
+use nima_core::Side;
 use serde::{Deserialize, Serialize};
-
-use crate::Side;
 
 /// An event of a trial and its time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

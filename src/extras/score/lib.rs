@@ -6,7 +6,8 @@
 //!
 //! ```
 //! use nalgebra::Vector3;
-//! use nima_score::{Event, HandSample, Happening, Sample, Scorer, Side, TaskFile};
+//! use nima_core::Side;
+//! use nima_score::{Event, HandSample, Happening, Sample, Scorer, TaskFile};
 //!
 //! let task = TaskFile::from_toml("name = 'Six rings'\nkind = 'peg_transfer'")?;
 //! let mut scorer = Scorer::new(&task);
@@ -14,7 +15,7 @@
 //! for tick in 0..=2000 {
 //!     let t_s = f64::from(tick) * 1e-3;
 //!     let right = HandSample { tip_m: Vector3::new(0.05 * t_s, 0.0, 0.0), engaged: true, ..HandSample::default() };
-//!     scorer.sample(&Sample { t_s, hands: [None, Some(right)] });
+//!     scorer.sample(&Sample { t_s, hands: Side::Right.alone(right) });
 //! }
 //! scorer.happening(&Happening { t_s: 2.0, event: Event::Ended });
 //! let score = scorer.finish();
@@ -54,7 +55,7 @@ pub use guidance::{Feedback, Guidance};
 pub use happening::{Event, Happening};
 pub use learning::{LEAST_TRIALS, LearningCurve, Shape};
 pub use proficiency::{Proficiency, Standing};
-pub use sample::{HandSample, Sample, Side};
+pub use sample::{HandSample, Sample};
 pub use score::{Measure, Outcome, Score};
 pub use scorer::Scorer;
 pub use task::{Criterion, TaskError, TaskFile, TaskKind};

@@ -1,50 +1,20 @@
 //! What the scorer is fed with: both hands at one moment.
 
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
+use nima_core::SIDES;
 
 /// Largest position that is taken for one, m, and largest force, N. What is beyond is a fault of the input, and its squares would
 /// spoil every mean.
 const LARGEST_M: f64 = 1e3;
 const LARGEST_N: f64 = 1e5;
 
-/// A hand of the operator, and with it the instrument that it moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the names say it")]
-pub enum Side {
-    Left,
-    Right,
-}
-
-impl Side {
-    /// Both, in the order of [`Sample::hands`].
-    pub const ALL: [Self; 2] = [Self::Left, Self::Right];
-
-    /// Place in [`Sample::hands`].
-    pub fn index(self) -> usize {
-        match self {
-            Self::Left => 0,
-            Self::Right => 1,
-        }
-    }
-
-    /// `left` or `right`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Left => "left",
-            Self::Right => "right",
-        }
-    }
-}
-
 /// Both hands at one moment. Steps may be uneven; a step back in time is skipped and counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
     /// Time, s, on any clock that runs forward; that of the happenings.
     pub t_s: f64,
-    /// Left and right; `None` while that side is not known.
-    pub hands: [Option<HandSample>; 2],
+    /// Both, in the order of [`nima_core::Side::ALL`]; `None` while that side is not known.
+    pub hands: [Option<HandSample>; SIDES],
 }
 
 /// One hand at one moment, in the frame `world` (z up).

@@ -1,8 +1,9 @@
 //! The measures of one trial.
 
+use nima_core::{SIDES, Side};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
-use crate::{Definition, MEASURES, Side};
+use crate::{Definition, MEASURES};
 
 /// How a trial went out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -33,7 +34,7 @@ impl Measure {
     /// Its key in JSON: the id, and the hand if it has one (`path_length_m_right`).
     pub fn key(&self) -> String {
         match self.side {
-            Some(side) => format!("{}_{}", self.definition.id, side.name()),
+            Some(side) => format!("{}_{}", self.definition.id, side.word()),
             None => self.definition.id.to_owned(),
         }
     }
@@ -43,13 +44,13 @@ impl Measure {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Score {
     outcome: Outcome,
-    /// For each of [`MEASURES`]: left and right, or the whole trial at the first place.
-    values: Vec<[Option<f64>; 2]>,
+    /// For each of [`MEASURES`]: both sides, or the whole trial at the first place.
+    values: Vec<[Option<f64>; SIDES]>,
 }
 
 impl Score {
     pub(crate) fn new(outcome: Outcome) -> Self {
-        Self { outcome, values: vec![[None; 2]; MEASURES.len()] }
+        Self { outcome, values: vec![[None; SIDES]; MEASURES.len()] }
     }
 
     /// How the trial went out.
@@ -69,11 +70,12 @@ impl Score {
         self.values.get(place)?[side.index()]
     }
 
-    /// Every measure, in the order of [`MEASURES`]; one for each hand where they are measured apart.
+    /// Every measure, in the order of [`MEASURES`]; left and right where the hands are measured apart.
     pub fn measures(&self) -> impl Iterator<Item = Measure> {
         MEASURES.iter().zip(&self.values).flat_map(|(definition, values)| {
-            let sides = if definition.per_hand { Side::ALL.map(Some).to_vec() } else { vec![None] };
-            sides.into_iter().zip(*values).map(move |(side, value)| Measure { definition, side, value })
+            let of = |side: Side| Measure { definition, side: Some(side), value: values[side.index()] };
+            let whole = Measure { definition, side: None, value: values[0] };
+            if definition.per_hand { Side::LEFT_TO_RIGHT.map(of).to_vec() } else { vec![whole] }
         })
     }
 
@@ -81,11 +83,11 @@ impl Score {
         self.put(id, [value, None]);
     }
 
-    pub(crate) fn set_hands(&mut self, id: &str, values: [Option<f64>; 2]) {
+    pub(crate) fn set_hands(&mut self, id: &str, values: [Option<f64>; SIDES]) {
         self.put(id, values);
     }
 
-    fn put(&mut self, id: &str, values: [Option<f64>; 2]) {
+    fn put(&mut self, id: &str, values: [Option<f64>; SIDES]) {
         let place = MEASURES.iter().position(|definition| definition.id == id);
         if let Some(slot) = place.and_then(|place| self.values.get_mut(place)) {
             *slot = values.map(|value| value.filter(|value| value.is_finite()));

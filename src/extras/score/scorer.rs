@@ -1,7 +1,9 @@
 //! From the samples and events of a trial to its score.
 
+use nima_core::{SIDES, Side};
+
 use crate::{
-    Event, Happening, Outcome, Sample, Score, Side, TaskFile, TaskKind,
+    Event, Happening, Outcome, Sample, Score, TaskFile, TaskKind,
     economy::path_economy,
     events::Events,
     hand::Hand,
@@ -22,7 +24,7 @@ const BEFORE_MARK_S: f64 = 2.0;
 #[derive(Clone, Debug)]
 pub struct Scorer {
     task: TaskFile,
-    hands: [Hand; 2],
+    hands: [Hand; SIDES],
     events: Events,
     begin_s: Option<f64>,
     /// Newest sample and newest event, s from the beginning.
@@ -112,10 +114,10 @@ impl Scorer {
         self.score_task(&mut score, end_s);
         self.score_force(&mut score);
         let handled_s = Side::ALL.map(|side| self.events.handled_s(side));
-        let [left, right] = self.hands;
-        let tips = [left.tip.finish(), right.tip.finish()];
+        let [right, left] = self.hands;
+        let tips = [right.tip.finish(), left.tip.finish()];
         score_motion(&mut score, &tips, &handled_s, end_s);
-        score_force_rate(&mut score, &[left.force.finish(), right.force.finish()]);
+        score_force_rate(&mut score, &[right.force.finish(), left.force.finish()]);
         score
     }
 
@@ -215,15 +217,15 @@ impl Scorer {
         let known_s = self.each(|hand| hand.times.known_s());
         let per_min = |side: usize| Some(openings[side]? * 60.0 / known_s[side]?);
         score.set_hands("jaw_openings", openings);
-        score.set_hands("jaw_openings_per_min", [per_min(0), per_min(1)]);
+        score.set_hands("jaw_openings_per_min", Side::ALL.map(|side| per_min(side.index())));
     }
 
-    fn each(&self, of: impl Fn(&Hand) -> Option<f64>) -> [Option<f64>; 2] {
-        [of(&self.hands[0]), of(&self.hands[1])]
+    fn each(&self, of: impl Fn(&Hand) -> Option<f64>) -> [Option<f64>; SIDES] {
+        self.hands.each_ref().map(of)
     }
 }
 
-fn score_motion(score: &mut Score, tips: &[Track; 2], handled_s: &[Vec<f64>; 2], end_s: f64) {
+fn score_motion(score: &mut Score, tips: &[Track; SIDES], handled_s: &[Vec<f64>; SIDES], end_s: f64) {
     let motions = tips.each_ref().map(Motion::of);
     let each = motions.each_ref();
     let (paths_m, depths_m) = (each.map(Motion::path_m), each.map(Motion::depth_m));
@@ -254,8 +256,8 @@ fn score_motion(score: &mut Score, tips: &[Track; 2], handled_s: &[Vec<f64>; 2],
     score.set("bimanual_dexterity", hands.correlation());
 }
 
-fn score_force_rate(score: &mut Score, forces: &[Track; 2]) {
-    let rates: [Vec<Vec<f64>>; 2] =
+fn score_force_rate(score: &mut Score, forces: &[Track; SIDES]) {
+    let rates: [Vec<Vec<f64>>; SIDES] =
         [0, 1].map(|side| forces[side].runs().map(|(_, points)| magnitudes(points, Order::First)).collect());
     score.set_hands("peak_force_rate_n_per_s", [0, 1].map(|side| peak(rates[side].iter().map(Vec::as_slice))));
     score.set_hands("mean_force_rate_n_per_s", [0, 1].map(|side| mean(rates[side].iter().map(Vec::as_slice))));

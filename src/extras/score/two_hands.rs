@@ -1,5 +1,7 @@
 //! How the two hands work together.
 
+use nima_core::SIDES;
+
 use crate::{
     motion::{IDLE_M_PER_S, Motion},
     signal::STEP_S,
@@ -12,14 +14,14 @@ const LEAST_SD_M_PER_S: f64 = 1e-4;
 
 /// Speeds of both hands on the grid of the trial.
 pub(crate) struct TwoHands {
-    speeds: Vec<[Option<f64>; 2]>,
+    speeds: Vec<[Option<f64>; SIDES]>,
 }
 
 impl TwoHands {
-    pub(crate) fn of(motions: &[Motion<'_>; 2]) -> Self {
+    pub(crate) fn of(motions: &[Motion<'_>; SIDES]) -> Self {
         let ends =
             motions.iter().flat_map(|motion| &motion.stretches).map(|stretch| stretch.grid + stretch.speed.len());
-        let mut speeds = vec![[None; 2]; ends.max().unwrap_or(0)];
+        let mut speeds = vec![[None; SIDES]; ends.max().unwrap_or(0)];
         for (side, motion) in motions.iter().enumerate() {
             for stretch in &motion.stretches {
                 for (both, speed) in speeds.iter_mut().skip(stretch.grid).zip(&stretch.speed) {
@@ -60,7 +62,7 @@ impl TwoHands {
         varies.then(|| (moment(0, 1) / (sds[0] * sds[1])).clamp(-1.0, 1.0))
     }
 
-    fn pairs(&self) -> impl Iterator<Item = [f64; 2]> {
-        self.speeds.iter().filter_map(|[left, right]| Some([(*left)?, (*right)?]))
+    fn pairs(&self) -> impl Iterator<Item = [f64; SIDES]> {
+        self.speeds.iter().filter_map(|[one, other]| Some([(*one)?, (*other)?]))
     }
 }

@@ -2,7 +2,8 @@
 
 use std::{collections::BTreeSet, fmt};
 
-use nima_score::{Criterion, Definition, Feedback, MEASURES, Side, TaskFile};
+use nima_core::Side;
+use nima_score::{Criterion, Definition, Feedback, MEASURES, TaskFile};
 use serde::{Deserialize, Serialize};
 
 use crate::{Condition, ExclusionRule, Label, Questionnaire, telling};
@@ -169,12 +170,12 @@ pub(crate) fn is_measure(key: &str) -> bool {
 
 /// The keys of all measures, in the order in which they are shown.
 pub(crate) fn measure_keys() -> impl Iterator<Item = String> {
-    MEASURES.iter().flat_map(|definition| keys_of(definition, &Side::ALL))
+    MEASURES.iter().flat_map(|definition| keys_of(definition, &Side::LEFT_TO_RIGHT))
 }
 
 /// The keys of a measure: one for each of these hands, if it is measured for each.
 pub fn keys_of(definition: &Definition, hands: &[Side]) -> Vec<String> {
-    let of = |side: &Side| format!("{}_{}", definition.id, side.name());
+    let of = |side: &Side| format!("{}_{}", definition.id, side.word());
     if definition.per_hand { hands.iter().map(of).collect() } else { vec![definition.id.to_owned()] }
 }
 

@@ -8,7 +8,7 @@ use nima_core::{
 
 use super::{
     leader_message::{modes, number_of},
-    packing::{PER_M, PER_N, Packer, Unpacker},
+    packing::{PER_M, PER_N, Packer, Unpacker, number_of_side, side_of_number},
 };
 use crate::{
     messages::{FarStop, ForceSource},
@@ -99,8 +99,10 @@ impl FollowerMessage {
         let mut from = Unpacker::new(message);
         let mut told = Self { t_s: from.time()?, sides: [None; SIDES] };
         while !from.is_empty() {
-            let side = from.byte()?;
-            let place = told.sides.get_mut(usize::from(side)).filter(|place| place.is_none())?;
+            let place = &mut told.sides[side_of_number(from.byte()?)?.index()];
+            if place.is_some() {
+                return None;
+            }
             *place = Some(FollowerSide::unpack(&mut from)?);
         }
         Some(told)
@@ -119,7 +121,7 @@ impl FollowerSide {
             self.packed.is_some(),
             self.errors_n.is_some(),
         ];
-        to.byte(side.index() as u8);
+        to.byte(number_of_side(side));
         to.byte(flags.iter().rev().fold(0, |bits, flag| bits << 1 | u8::from(*flag)));
         let stop = self.stop.and_then(|stop| FarStop::ALL.iter().position(|other| *other == stop));
         to.byte(stop.map_or(0, |place| place as u8 + 1) << 4 | number_of_source(self.source));

@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::impedance::Mode;
 
-use super::packing::{PER_M, PER_RAD, Packer, Unpacker};
+use super::packing::{PER_M, PER_RAD, Packer, Unpacker, number_of_side, side_of_number};
 use crate::rig::{SIDES, Side};
 
 /// What the operator's pair wants of the follower.
@@ -69,7 +69,7 @@ impl LeaderMessage {
             let intent = Intent::ALL.iter().position(|intent| *intent == told.intent).unwrap_or(0) as u8;
             let turned = u8::from(told.world_from_jaws.is_some()) << 4;
             let gripped = u8::from(told.gripper_rad.is_some()) << 5;
-            to.byte(side.index() as u8 | intent << 2 | turned | gripped);
+            to.byte(number_of_side(side) | intent << 2 | turned | gripped);
             to.byte(told.engagements);
             to.byte(told.releases);
             to.vector(&told.tip_m, PER_M);
@@ -86,7 +86,10 @@ impl LeaderMessage {
         let mut told = Self { t_s, delay_ticks, mode, compares: first >> 7 == 1, sides: [None; SIDES] };
         while !from.is_empty() {
             let first = from.byte()?;
-            let place = told.sides.get_mut(usize::from(first & 3)).filter(|place| place.is_none())?;
+            let place = &mut told.sides[side_of_number(first & 3)?.index()];
+            if place.is_some() {
+                return None;
+            }
             *place = Some(LeaderSide {
                 intent: Intent::ALL[usize::from(first >> 2 & 3)],
                 engagements: from.byte()?,

@@ -6,6 +6,8 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
+use crate::rig::Side;
+
 /// Unit of a time, s: 48 bits reach for 325 days.
 const TIME_PER_S: f64 = 1e7;
 /// Units of what is written in 24 bits: of a length, up to 4.2 m; of a force, up to 168 N; of an angle, up to 4.2 rad.
@@ -14,6 +16,19 @@ pub(super) const PER_N: f64 = 5e4;
 pub(super) const PER_RAD: f64 = 2e6;
 /// Steps of a component of a quaternion that is not its largest, from 0 to 1 / sqrt(2): 20 bits with its sign.
 const TURN_STEPS: f64 = 524_287.0;
+
+/// The number of a side in a message.
+pub(super) const fn number_of_side(side: Side) -> u8 {
+    match side {
+        Side::Right => 0,
+        Side::Left => 1,
+    }
+}
+
+/// The side with this number in a message.
+pub(super) fn side_of_number(number: u8) -> Option<Side> {
+    Side::ALL.into_iter().find(|side| number_of_side(*side) == number)
+}
 
 /// Writes a message. What does not fit is left out, and the message is then no message ([`Packer::done`]).
 pub(super) struct Packer<'a> {

@@ -232,7 +232,7 @@ mod tests {
         }
         assert!(!rig.requires_check());
         let left = rig.devices.as_mut().unwrap().left.as_mut().unwrap();
-        left.handle.force_dimension_mut().unwrap().hand = Some(nima_devices::force_dimension::Hand::Right);
+        left.handle.force_dimension_mut().unwrap().hand = Some(Side::Right);
         assert!(rig.requires_check(), "two handles for the same hand");
         assert!(
             !RigConfig::load("emulated").unwrap().requires_check()

@@ -24,11 +24,11 @@ mod probes;
 mod prompt;
 mod seeking;
 mod settings;
-mod side;
 mod starting;
 mod watch;
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+pub use nima_core::{SIDES, Side};
 use nima_core::{calibration::frames::FrameSample, frames::WristSample, kinematics::Hand, safety::RawReadings};
 use nima_devices::{ClearFaults, Health, Lever, SlotView, Standing};
 
@@ -51,7 +51,6 @@ pub use probes::rig_probes;
 pub use prompt::Prompt;
 pub use seeking::{Offer, Sought, seek};
 pub use settings::{ArmSet, DeskSettings, EndoscopeSettings, Ends, SensorPlace, Settings};
-pub use side::{SIDES, Side};
 pub use watch::Watch;
 
 /// The force measurement, by the place of the sensor.

@@ -64,7 +64,7 @@ fn parts(event: &Event) -> (String, Map<String, Value>) {
 
 #[cfg(test)]
 mod tests {
-    use nima_score::Side;
+    use nima_machine::rig::Side;
 
     use super::*;
 

@@ -6,7 +6,7 @@ use nima_machine::{
 };
 use nima_score::{Event, HandSample, Happening, Sample, Score, TaskFile, TaskKind};
 
-use super::{Trial, hand_of, side_of};
+use super::{Trial, hand_of};
 
 /// Scores from the first tick in which an arm is engaged. What happens to the objects is told before the next tick.
 #[derive(Debug)]
@@ -66,7 +66,7 @@ impl LiveTrial {
         }
         self.newest_s = t_s;
         let sample = self.sample.get_or_insert(Sample { t_s, ..Sample::default() });
-        sample.hands[side_of(side).index()] = Some(hand);
+        sample.hands[side.index()] = Some(hand);
     }
 
     /// Whether the task is done, or its time is over: what follows does not count.
@@ -115,7 +115,7 @@ mod tests {
         ticks(&mut live, 100..301);
         let score = live.end(false).unwrap();
         assert_eq!(score.value("samples"), Some(201.0));
-        let moved_m = score.of("path_length_m", nima_score::Side::Right).unwrap();
+        let moved_m = score.of("path_length_m", Side::Right).unwrap();
         assert!((moved_m - 0.02).abs() < 1e-3, "{moved_m}");
     }
 
@@ -144,7 +144,7 @@ mod tests {
             }
             ticks(&mut live, 0..400);
             let score = live.end(false).unwrap();
-            assert_eq!(score.of("jaw_openings", nima_score::Side::Right), openings, "{kind}");
+            assert_eq!(score.of("jaw_openings", Side::Right), openings, "{kind}");
         }
     }
 }

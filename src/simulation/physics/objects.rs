@@ -5,6 +5,7 @@ mod state;
 mod tools;
 
 use nalgebra::Vector3;
+use nima_core::SIDES;
 
 use crate::physics::{
     contact::{Law, Memory, Pair},
@@ -16,8 +17,6 @@ use crate::physics::{
 };
 pub use state::{Doing, RingState};
 
-/// Instruments: left and right.
-pub(crate) const SIDES: usize = 2;
 /// Longest sub-step, s.
 const SUBSTEP_MOST_S: f64 = 1e-3;
 /// Longest period of a step, s.
@@ -32,6 +31,7 @@ const SUBSTEP_OF_VIBRATION: f64 = 0.75;
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
+/// use nima_core::Side;
 /// use nima_simulation::physics::{Doing, Instrument, Objects, Setting};
 ///
 /// let setting = Setting::default();
@@ -42,8 +42,8 @@ const SUBSTEP_OF_VIBRATION: f64 = 0.75;
 /// let trocar_m = Vector3::new(0.0, 0.0, 0.15);
 /// let tip_m = Vector3::new(0.0, 0.0, -0.001);
 /// let right = Instrument { tip_m, world_from_jaws: down, trocar_m, opening_rad: 0.0 };
-/// let loads = objects.step(&[None, Some(right)]);
-/// assert!(loads[1].touching.board && (loads[1].tip_n.z - 3.6).abs() < 0.01, "both fingers, 1 kN/m each, 1.8 mm deep");
+/// let loads = objects.step(&Side::Right.alone(right))[Side::Right.index()];
+/// assert!(loads.touching.board && (loads.tip_n.z - 3.6).abs() < 0.01, "both fingers, 1 kN/m each, 1.8 mm deep");
 /// assert_eq!(objects.rings()[3].doing, Doing::OnPeg(3));
 /// # Ok::<(), nima_simulation::physics::SettingError>(())
 /// ```
@@ -156,7 +156,7 @@ impl Objects {
         objects
     }
 
-    /// Moves on by one period, at whose end the instruments (left, right) are here. An instrument with anything that is not a number counts as
+    /// Moves on by one period, at whose end the instruments are here. An instrument with anything that is not a number counts as
     /// absent. Returns what acts on each.
     pub fn step(&mut self, instruments: &[Option<Instrument>; SIDES]) -> [Loads; SIDES] {
         for (tool, at) in self.tools.iter_mut().zip(instruments) {
@@ -191,7 +191,7 @@ impl Objects {
         }
         self.tell();
         let substeps = f64::from(self.substeps);
-        [0, 1].map(|side| self.tools[side].as_ref().map_or_else(Loads::default, |tool| tool.loads(substeps)))
+        self.tools.each_ref().map(|tool| tool.as_ref().map_or_else(Loads::default, |tool| tool.loads(substeps)))
     }
 
     /// The rings.
@@ -201,7 +201,7 @@ impl Objects {
 
     /// Actual angle between the fingers of each instrument, rad; `None` if there is none.
     pub fn openings_rad(&self) -> [Option<f64>; SIDES] {
-        [0, 1].map(|side| self.tools[side].as_ref().map(|tool| tool.opening_rad))
+        self.tools.each_ref().map(|tool| tool.as_ref().map(|tool| tool.opening_rad))
     }
 
     /// Time from step to step, s.

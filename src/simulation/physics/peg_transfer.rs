@@ -1,6 +1,7 @@
 //! When peg transfer is done: every ring was on a peg of the other side, and is home again.
 
-use nima_score::{Event, Side};
+use nima_core::Side;
+use nima_score::Event;
 
 use crate::physics::setting::{Setting, Start};
 
@@ -19,8 +20,9 @@ enum Stage {
 /// The state of peg transfer, from its events. Rings that were lost out of view are not waited for.
 ///
 /// ```
+/// use nima_core::Side;
 /// use nima_simulation::physics::{PegTransfer, Setting, Start};
-/// use nima_score::{Event, Side};
+/// use nima_score::Event;
 ///
 /// let mut task = PegTransfer::new(&Setting { rings: vec![Start::Peg(0)], ..Setting::default() });
 /// assert_eq!(task.goal(0), Some(Side::Right), "peg 0 is on the left");
@@ -37,13 +39,6 @@ pub struct PegTransfer {
 
 fn side_of(x_m: f64) -> Side {
     if x_m < 0.0 { Side::Left } else { Side::Right }
-}
-
-fn opposite(side: Side) -> Side {
-    match side {
-        Side::Left => Side::Right,
-        Side::Right => Side::Left,
-    }
 }
 
 impl PegTransfer {
@@ -86,7 +81,7 @@ impl PegTransfer {
     /// The side to whose pegs a ring has to go; `None` if it is home again, lost or no ring.
     pub fn goal(&self, ring: usize) -> Option<Side> {
         match self.rings.get(ring)? {
-            (home, Stage::Outward) => Some(opposite(*home)),
+            (home, Stage::Outward) => Some(home.other()),
             (home, Stage::Homeward) => Some(*home),
             (_, Stage::Home | Stage::Lost) => None,
         }

@@ -4,7 +4,8 @@ mod following;
 
 use std::collections::VecDeque;
 
-use nima_score::{Event, Side};
+use nima_core::Side;
+use nima_score::Event;
 
 use crate::physics::objects::Objects;
 use following::Following;
@@ -46,7 +47,8 @@ impl Watch {
     /// Looks at the rings after a step; once for each step.
     pub fn look(&mut self, objects: &Objects) {
         for (ring, (following, state)) in self.rings.iter_mut().zip(objects.rings()).enumerate() {
-            for side in Side::ALL {
+            // The right one counts as the last if both touch.
+            for side in Side::LEFT_TO_RIGHT {
                 if state.touched_by[side.index()] {
                     self.last = Some(side);
                 }

@@ -9,6 +9,7 @@ mod following;
 mod setting;
 
 use nalgebra::Vector3;
+use nima_core::SIDES;
 
 use crate::physics::{
     contact::{Law, Memory, Touch},
@@ -20,8 +21,6 @@ use curve::{Place, Reach};
 pub use following::WireTask;
 pub use setting::{Hoop, WireContact, WireSetting};
 
-/// Instruments: left and right.
-const SIDES: usize = 2;
 /// Places at which a loop can touch the wire at once.
 const PLACES: usize = 3;
 /// A place that is farther than this along the wire from where it was is another one, m.
@@ -41,6 +40,7 @@ const JUMP_M: f64 = 0.03;
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
+/// use nima_core::Side;
 /// use nima_simulation::physics::{Instrument, Wire, WireSetting};
 ///
 /// let points_m = vec![[-0.05, 0.0, 0.03], [0.05, 0.0, 0.03]];
@@ -55,13 +55,13 @@ const JUMP_M: f64 = 0.03;
 ///     trocar_m: Vector3::new(0.0, -0.06, 0.14),
 ///     opening_rad: 0.0,
 /// };
-/// wire.step(&[None, Some(right)]);
+/// wire.step(&Side::Right.alone(right));
 /// right.tip_m.z += room_m + 0.0005;
-/// wire.step(&[None, Some(right)]);
-/// let loads = wire.step(&[None, Some(right)]);
+/// wire.step(&Side::Right.alone(right));
+/// let loads = wire.step(&Side::Right.alone(right))[Side::Right.index()];
 /// let law_n = setting.contact.stiffness_n_m * 0.0005;
-/// assert!((loads[1].tip_n.z + law_n).abs() < 0.02 * law_n, "{} N", loads[1].tip_n.z);
-/// assert!(wire.states()[1].touches);
+/// assert!((loads.tip_n.z + law_n).abs() < 0.02 * law_n, "{} N", loads.tip_n.z);
+/// assert!(wire.states()[Side::Right.index()].touches);
 /// # Ok::<(), nima_simulation::physics::SettingError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -117,7 +117,7 @@ impl Wire {
         &self.curve
     }
 
-    /// What each loop is doing, left and right.
+    /// What the loop of each side is doing.
     pub const fn states(&self) -> &[WireState; SIDES] {
         &self.states
     }
@@ -127,7 +127,7 @@ impl Wire {
         self.period_s
     }
 
-    /// Moves on by one period, at whose end the instruments (left, right) are here. An instrument with anything that is not a number counts as
+    /// Moves on by one period, at whose end the instruments are here. An instrument with anything that is not a number counts as
     /// absent. Returns what acts on each.
     pub fn step(&mut self, instruments: &[Option<Instrument>; SIDES]) -> [Loads; SIDES] {
         let mut loads = [Loads::default(); SIDES];

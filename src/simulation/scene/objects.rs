@@ -1,11 +1,10 @@
 //! Objects that move, and the task that is scored.
 
-use crate::physics::SettingError;
 use nima_machine::config::{ConfigError, Ranges};
 use nima_score::TaskError;
 
 use super::Scene;
-use crate::RINGS_MAX;
+use crate::{RINGS_MAX, physics::SettingError};
 
 impl Scene {
     /// Checks the objects and the task.

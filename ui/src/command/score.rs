@@ -126,7 +126,7 @@ impl Scored {
         for definition in MEASURES {
             let known: Vec<Measure> = score.measures().filter(|one| one.definition.id == definition.id).collect();
             let values = known.iter().filter_map(|one| {
-                let side = one.side.map_or_else(String::new, |side| format!("{} ", side.name()));
+                let side = one.side.map_or_else(String::new, |side| format!("{} ", side.word()));
                 Some(format!("{side}{}", four_digits(one.value?)))
             });
             let values: Vec<String> = values.collect();

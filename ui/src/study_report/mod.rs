@@ -13,7 +13,8 @@ use std::{
 };
 
 use anyhow::Context as _;
-use nima_score::{Definition, MEASURES, Side};
+use nima_core::Side;
+use nima_score::{Definition, MEASURES};
 use nima_study::{
     Experiment as _, Findings as _,
     trials::{Report, Table, Trials},
@@ -185,7 +186,7 @@ fn conditions(study: &Study) -> String {
 /// What a measure is.
 fn definition(key: &str) -> Option<&'static Definition> {
     let is = |definition: &&Definition| {
-        let of = |side: Side| format!("{}_{}", definition.id, side.name()) == key;
+        let of = |side: Side| format!("{}_{}", definition.id, side.word()) == key;
         if definition.per_hand { Side::ALL.into_iter().any(of) } else { definition.id == key }
     };
     MEASURES.iter().find(is)

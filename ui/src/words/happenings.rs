@@ -1,7 +1,8 @@
 //! What happens to the objects of a scene, in words. People count rings and pegs from 1, data from 0.
 
-use nima_score::{Event, Side};
+use nima_score::Event;
 
+use super::names::side_word;
 use crate::language::{told, word};
 
 /// What happened. An event without a sentence of its own is told by its name and its values.
@@ -16,7 +17,7 @@ pub(crate) fn happening(event: &Event) -> String {
                 "ring {} grasped by the {} instrument",
                 "Ring {} mit Instrument {} gegriffen",
                 number(ring),
-                instrument(side)
+                side_word(side)
             )
         }
         Event::RingLifted { ring, side } => {
@@ -24,7 +25,7 @@ pub(crate) fn happening(event: &Event) -> String {
                 "ring {} lifted off its peg by the {} instrument",
                 "Ring {} mit Instrument {} vom Stift gehoben",
                 number(ring),
-                instrument(side)
+                side_word(side)
             )
         }
         Event::RingTransferred { ring, to } => {
@@ -32,7 +33,7 @@ pub(crate) fn happening(event: &Event) -> String {
                 "ring {} passed to the {} instrument",
                 "Ring {} an Instrument {} übergeben",
                 number(ring),
-                instrument(to)
+                side_word(to)
             )
         }
         Event::RingPlaced { ring, side, peg } => {
@@ -41,7 +42,7 @@ pub(crate) fn happening(event: &Event) -> String {
                 "Ring {} auf Stift {} gesetzt, Instrument {}",
                 number(ring),
                 number(peg),
-                instrument(side)
+                side_word(side)
             )
         }
         Event::RingDropped { ring, side, in_view } => {
@@ -50,22 +51,15 @@ pub(crate) fn happening(event: &Event) -> String {
                 "ring {} dropped by the {} instrument{out}",
                 "Ring {} von Instrument {} fallen gelassen{out}",
                 number(ring),
-                instrument(side)
+                side_word(side)
             )
         }
         Event::RingKnockedOff { ring, side } => {
             let by = side
-                .map_or_else(String::new, |side| told!(" by the {} instrument", ", Instrument {}", instrument(side)));
+                .map_or_else(String::new, |side| told!(" by the {} instrument", ", Instrument {}", side_word(side)));
             told!("ring {} knocked off its peg{by}", "Ring {} vom Stift gestoßen{by}", number(ring))
         }
         other => plain(&other),
-    }
-}
-
-fn instrument(side: Side) -> &'static str {
-    match side {
-        Side::Left => word("left", "links"),
-        Side::Right => word("right", "rechts"),
     }
 }
 
@@ -86,6 +80,8 @@ fn plain(event: &Event) -> String {
 
 #[cfg(test)]
 mod tests {
+    use nima_core::Side;
+
     use super::*;
 
     #[test]

@@ -200,7 +200,7 @@ fn happenings() -> impl Iterator<Item = Happens> {
         ]
     };
     let of_none = [Happens::Begun, Happens::Ended, Happens::Aborted, Happens::RingKnockedOff { ring, side: None }];
-    nima_score::Side::ALL.into_iter().flat_map(of_side).chain(of_none)
+    Side::ALL.into_iter().flat_map(of_side).chain(of_none)
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use eframe::App as _;
 use egui::{Key, Pos2, Shape, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
 use nima_console::console::Options;
+use nima_core::Side;
 use nima_machine::messages::LoopState;
 use nima_score::{Event, HandSample, Happening, Sample, Scorer, TaskFile};
 use nima_simulation::scene::Scene;
@@ -389,7 +390,7 @@ fn complete(study: &mut Study, participant: &str, seconds: u32) {
     scorer.happening(&Happening { t_s: 0.0, event: Event::Begun });
     for tick in 0..=seconds * 10 {
         let right = HandSample { engaged: true, ..HandSample::default() };
-        scorer.sample(&Sample { t_s: f64::from(tick) * 0.1, hands: [None, Some(right)] });
+        scorer.sample(&Sample { t_s: f64::from(tick) * 0.1, hands: Side::Right.alone(right) });
     }
     scorer.happening(&Happening { t_s: f64::from(seconds), event: Event::Ended });
     let running = study.begin_trial(participant, false, AT).unwrap();

@@ -65,9 +65,9 @@ pub(super) struct Shared {
     pub(super) sent: AtomicU64,
 }
 
-/// Which side of the handshake it takes.
+/// This end of the handshake.
 #[derive(Debug)]
-pub(super) enum Side {
+pub(super) enum Handshake {
     Follower(Box<Reception>),
     Console(Box<Approach>, SocketAddr),
 }
@@ -83,13 +83,13 @@ pub(super) struct Clerk {
 }
 
 impl Clerk {
-    pub(super) fn start(side: Side, socket: Socket, settings: StreamSettings) -> io::Result<Self> {
+    pub(super) fn start(handshake: Handshake, socket: Socket, settings: StreamSettings) -> io::Result<Self> {
         let (letters, inbox) = bounded(LETTERS);
         let (outbox, news) = bounded(SESSIONS);
         let (ended, rest) = bounded(SESSIONS);
         let shared = Arc::new(Shared::default());
         let mut desk = Desk {
-            side,
+            handshake,
             socket,
             settings,
             inbox,
@@ -123,7 +123,7 @@ impl Clerk {
 
 /// The thread's end.
 struct Desk {
-    side: Side,
+    handshake: Handshake,
     socket: Socket,
     settings: StreamSettings,
     inbox: Receiver<Letter>,
@@ -144,7 +144,7 @@ impl Desk {
         }
         while self.ended.try_recv().is_ok() {}
         let is_wanted = self.shared.is_wanted.load(Relaxed);
-        if let Side::Console(approach, to) = &mut self.side
+        if let Handshake::Console(approach, to) = &mut self.handshake
             && is_wanted
         {
             let len = approach.due(now_s, &mut self.out);
@@ -162,12 +162,12 @@ impl Desk {
 
     fn answer(&mut self, letter: &Letter, now_s: f64) {
         let datagram = &letter.bytes[..letter.len];
-        let heard = match &mut self.side {
-            Side::Follower(reception) => {
+        let heard = match &mut self.handshake {
+            Handshake::Follower(reception) => {
                 reception.is_full = self.shared.is_full.load(Relaxed);
                 reception.hear(datagram, letter.from, now_s, &mut self.out)
             }
-            Side::Console(approach, _) => approach.hear(datagram, now_s, &mut self.out),
+            Handshake::Console(approach, _) => approach.hear(datagram, now_s, &mut self.out),
         };
         let Heard { answer, trouble, agreed } = heard;
         if let Some(agreed) = agreed {

@@ -23,7 +23,7 @@ use std::{
 
 pub use self::config::{Config, Control, LinkState, OpenError, Outcome, Role};
 use self::{
-    clerk::{Clerk, Side},
+    clerk::{Clerk, Handshake},
     config::Wish,
     holding::Holding,
     session::Session,
@@ -105,16 +105,16 @@ impl Endpoint {
         let socket = Socket::open(at, to).map_err(address)?;
         let theirs = socket.try_clone().map_err(address)?;
         let is_follower = to.is_none();
-        let side = match role {
-            Role::Follower { consoles, .. } => Side::Follower(Box::new(Reception::new(keys, consoles, 0.0)?)),
-            Role::Console { follower, key } => Side::Console(Box::new(Approach::new(keys, key)?), follower),
+        let handshake = match role {
+            Role::Follower { consoles, .. } => Handshake::Follower(Box::new(Reception::new(keys, consoles, 0.0)?)),
+            Role::Console { follower, key } => Handshake::Console(Box::new(Approach::new(keys, key)?), follower),
         };
         Ok(Self {
             is_follower,
             silent_after_s,
             forget_after_s,
             socket,
-            clerk: Clerk::start(side, theirs, stream).map_err(OpenError::Thread)?,
+            clerk: Clerk::start(handshake, theirs, stream).map_err(OpenError::Thread)?,
             sessions: [const { None }; SESSIONS],
             active: None,
             holding: Holding::default(),

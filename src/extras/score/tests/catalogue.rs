@@ -1,9 +1,10 @@
 use std::{collections::BTreeSet, f64::consts::PI};
 
 use nalgebra::Vector3;
+use nima_core::Side;
 
 use super::{task, trial};
-use crate::{Event, HandSample, MEASURES, Score, Side, TaskFile};
+use crate::{Event, HandSample, MEASURES, Score, TaskFile};
 
 #[test]
 fn there_are_at_least_thirty_measures_with_names_of_their_own() {
@@ -49,7 +50,8 @@ fn the_task_file_of_the_page_holds_the_defaults() {
 /// A trial in which everything happens.
 fn full(more: &str) -> Score {
     let hands = |t_s: f64| {
-        [0.0, 1.0].map(|phase| {
+        Side::ALL.map(|side| {
+            let phase = if side == Side::Right { 1.0 } else { 0.0 };
             let angle = 2.0 * PI * 0.5 * t_s + phase;
             Some(HandSample {
                 tip_m: Vector3::new(angle.sin(), (2.0 * angle).sin(), (3.0 * angle).sin()) * 0.05,

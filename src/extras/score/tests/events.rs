@@ -1,7 +1,8 @@
 use nalgebra::Vector3;
+use nima_core::Side;
 
 use super::{near, of, right, task, trial, value};
-use crate::{Criterion, Event, HandSample, Happening, Outcome, Proficiency, Sample, Scorer, Side, Standing};
+use crate::{Criterion, Event, HandSample, Happening, Outcome, Proficiency, Sample, Scorer, Standing};
 
 const LEFT: Side = Side::Left;
 const RIGHT: Side = Side::Right;
@@ -95,7 +96,7 @@ fn lumps_are_found_missed_and_falsely_marked_with_their_force() {
         let size_n = if (4.0..4.5).contains(&t_s) { 2.5 } else { 0.5 };
         // Much more, but long before the first mark.
         let size_n = if t_s < 1.0 { 9.0 } else { size_n };
-        [None, Some(HandSample { force_n: Vector3::z() * size_n, ..HandSample::default() })]
+        Side::Right.alone(HandSample { force_n: Vector3::z() * size_n, ..HandSample::default() })
     };
     let mark = |lump| Event::LumpMarked { side: RIGHT, lump };
     let events = [(5.0, mark(Some(2))), (6.0, mark(None)), (7.0, mark(Some(2))), (8.0, mark(Some(4)))];

@@ -1,14 +1,15 @@
 use std::f64::consts::PI;
 
 use nalgebra::Vector3;
+use nima_core::Side;
 
 use super::{near, of, task, trial};
-use crate::{HandSample, Score, Side, ellipsoid::CHI_SQUARE_95};
+use crate::{HandSample, Score, ellipsoid::CHI_SQUARE_95};
 
 fn pressed(force_n: impl Fn(f64) -> Vector3<f64>, end_s: f64, more: &str) -> Score {
     let hands = |t_s: f64| {
         let rendered_n = force_n(t_s) * 0.5;
-        [None, Some(HandSample { force_n: force_n(t_s), rendered_n, ..HandSample::default() })]
+        Side::Right.alone(HandSample { force_n: force_n(t_s), rendered_n, ..HandSample::default() })
     };
     trial(&task(more), end_s, hands, &[])
 }
@@ -71,8 +72,12 @@ fn forces_in_all_directions_have_the_known_volume() {
 
 #[test]
 fn each_hand_has_its_share_of_the_force() {
-    let hands =
-        |_: f64| [1.0, 3.0].map(|size_n| Some(HandSample { force_n: Vector3::z() * size_n, ..HandSample::default() }));
+    let hands = |_: f64| {
+        Side::ALL.map(|side| {
+            let size_n = if side == Side::Right { 3.0 } else { 1.0 };
+            Some(HandSample { force_n: Vector3::z() * size_n, ..HandSample::default() })
+        })
+    };
     let score = trial(&task(""), 5.0, hands, &[]);
     near("share: force_share", of(&score, "force_share"), 0.75, 1e-12);
     near("share: force_share", score.of("force_share", Side::Left).unwrap(), 0.25, 1e-12);
@@ -82,7 +87,7 @@ fn each_hand_has_its_share_of_the_force() {
 fn a_force_that_is_not_known_leaves_the_motion() {
     let hands = |t_s: f64| {
         let force_n = if t_s < 2.0 { Vector3::x() } else { Vector3::repeat(f64::NAN) };
-        [None, Some(HandSample { tip_m: Vector3::x() * 0.1 * t_s, force_n, ..HandSample::default() })]
+        Side::Right.alone(HandSample { tip_m: Vector3::x() * 0.1 * t_s, force_n, ..HandSample::default() })
     };
     let score = trial(&task(""), 4.0, hands, &[]);
     near("NaN: path_length_m", of(&score, "path_length_m"), 0.4, 1e-9);

@@ -1,8 +1,9 @@
 use nalgebra::Vector3;
+use nima_core::Side;
 use proptest::prelude::*;
 
 use super::task;
-use crate::{Event, HandSample, Happening, Sample, Score, Scorer, Side};
+use crate::{Event, HandSample, Happening, Sample, Score, Scorer};
 
 /// Any number, and often one that is likely to do harm.
 fn number() -> impl Strategy<Value = f64> {
@@ -78,12 +79,12 @@ proptest! {
         let task = task(["kind = 'peg_transfer'", "kind = 'palpation'\nlumps = 3", "kind = 'wire_loop'"][kind]);
         let mut scorer = Scorer::new(&task);
         let mut now_s = 100.0;
-        for (step_s, event, left, right) in steps {
+        for (step_s, event, right, left) in steps {
             let t_s = now_s + step_s;
             now_s = if t_s.is_finite() && (0.0..1.0).contains(&step_s) { t_s } else { now_s };
             match event {
                 Some(event) => scorer.happening(&Happening { t_s, event }),
-                None => scorer.sample(&Sample { t_s, hands: [left, right] }),
+                None => scorer.sample(&Sample { t_s, hands: [right, left] }),
             }
         }
         judged(&scorer.finish())?;

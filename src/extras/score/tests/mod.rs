@@ -8,10 +8,11 @@ mod motion;
 mod two_hands;
 
 use nalgebra::Vector3;
+use nima_core::{SIDES, Side};
 
-use crate::{Event, HandSample, Happening, Sample, Score, Scorer, Side, TaskFile};
+use crate::{Event, HandSample, Happening, Sample, Score, Scorer, TaskFile};
 
-type Hands = [Option<HandSample>; 2];
+type Hands = [Option<HandSample>; SIDES];
 
 fn task(more: &str) -> TaskFile {
     let kind = if more.contains("kind") { "" } else { "kind = 'peg_transfer'\n" };
@@ -55,7 +56,7 @@ fn tip(tip_m: Vector3<f64>) -> HandSample {
 }
 
 fn right(tip_m: Vector3<f64>) -> Hands {
-    [None, Some(tip(tip_m))]
+    Side::Right.alone(tip(tip_m))
 }
 
 /// Way, from 0 to 1, of a minimum-jerk reach that takes 1 s (Flash and Hogan 1985).

@@ -1,9 +1,10 @@
 use std::f64::consts::PI;
 
 use nalgebra::Vector3;
+use nima_core::Side;
 
 use super::{minimum_jerk, near, of, right, task, tip, trial, trial_at, value};
-use crate::{Event, HandSample, Score, Side, ellipsoid::CHI_SQUARE_95};
+use crate::{Event, HandSample, Score, ellipsoid::CHI_SQUARE_95};
 
 const DIRECTION: Vector3<f64> = Vector3::new(0.6, 0.0, 0.8);
 
@@ -164,7 +165,7 @@ fn a_gap_is_neither_path_nor_time() {
 fn shares_of_time_and_openings_of_the_jaw_are_counted() {
     let hands = |t_s: f64| {
         let jaw_rad = Some(0.3 - 0.3 * (2.0 * PI * t_s).cos());
-        [None, Some(HandSample { engaged: t_s < 7.5, in_view: t_s < 9.0, jaw_rad, ..tip(Vector3::zeros()) })]
+        Side::Right.alone(HandSample { engaged: t_s < 7.5, in_view: t_s < 9.0, jaw_rad, ..tip(Vector3::zeros()) })
     };
     let score = trial(&task(""), 10.0, hands, &[]);
     near("engaged_share", of(&score, "engaged_share"), 0.75, 1e-3);

@@ -1,11 +1,12 @@
 use std::f64::consts::PI;
 
 use nalgebra::Vector3;
+use nima_core::Side;
 
 use super::{near, task, tip, trial, value};
 use crate::Score;
 
-/// Both hands move along x; speed 50 mm/s and a sine of 30 mm/s on it, the right one turned by `phase`.
+/// Both hands move along x; speed 50 mm/s and a sine of 30 mm/s on it, the left one turned by `phase`.
 fn both(phase: f64) -> Score {
     let way = |t_s: f64, phase: f64| 0.05 * t_s - 0.03 / PI * (PI * t_s + phase).cos();
     let hands = |t_s: f64| [0.0, phase].map(|phase| Some(tip(Vector3::new(way(t_s, phase), 0.0, 0.0))));
@@ -27,7 +28,7 @@ fn hands_that_take_turns_never_both_move() {
     let hands = |t_s: f64| {
         let left_m = 0.05 * t_s.min(5.0);
         let right_m = 0.05 * (t_s - 6.0).max(0.0);
-        [left_m, right_m].map(|x_m| Some(tip(Vector3::new(x_m, 0.0, 0.0))))
+        [right_m, left_m].map(|x_m| Some(tip(Vector3::new(x_m, 0.0, 0.0))))
     };
     let score = trial(&task(""), 12.0, hands, &[]);
     assert!(value(&score, "both_move_share").abs() < 1e-12);
@@ -44,7 +45,7 @@ fn hands_that_take_turns_never_both_move() {
 
 #[test]
 fn one_hand_has_no_correlation() {
-    let score = trial(&task(""), 5.0, |t_s| [Some(tip(Vector3::x() * 0.05 * t_s)), None], &[]);
+    let score = trial(&task(""), 5.0, |t_s| Side::Left.alone(tip(Vector3::x() * 0.05 * t_s)), &[]);
     assert_eq!([score.value("bimanual_dexterity"), score.value("both_move_share")], [None; 2]);
     let still = trial(&task(""), 5.0, |_| [Some(tip(Vector3::x())); 2], &[]);
     assert_eq!(still.value("bimanual_dexterity"), None, "rest correlates with nothing");

@@ -9,6 +9,7 @@ mod sealing;
 
 use std::path::Path;
 
+use nima_core::Side;
 use nima_score::{Event, HandSample, Happening, Sample, Score, Scorer, TaskFile};
 
 use crate::{Ending, Step, Study, StudyFile};
@@ -57,7 +58,7 @@ pub(super) fn score(seconds: u32) -> Score {
             engaged: true,
             ..HandSample::default()
         };
-        scorer.sample(&Sample { t_s, hands: [None, Some(right)] });
+        scorer.sample(&Sample { t_s, hands: Side::Right.alone(right) });
     }
     scorer.happening(&Happening { t_s: f64::from(seconds), event: Event::Ended });
     scorer.finish()

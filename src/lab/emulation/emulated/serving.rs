@@ -78,7 +78,7 @@ fn handle(side: Side, set: &ArmSet, shared: &Shared) -> Served {
         return Err(EmulatedRigError::Place { device: name, place: "no address".to_owned(), wanted });
     };
     places::local(&name, &address.ip().to_string())?;
-    let left_handed = chosen.hand.map_or(side == Side::Left, |hand| hand == force_dimension::Hand::Left);
+    let left_handed = chosen.hand.unwrap_or(side) == Side::Left;
     let usual = emulators::force_dimension::Emulated::default();
     let emulated = emulators::force_dimension::Emulated {
         serial: chosen.serial.unwrap_or(usual.serial + side.index() as u16),

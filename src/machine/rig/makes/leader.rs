@@ -135,16 +135,13 @@ impl LeaderSettings {
     pub(in crate::rig) fn for_hand_of(&self, side: Side) -> Self {
         let mut of_side = self.clone();
         if let Self::ForceDimension(settings) = &mut of_side {
-            settings.hand = settings.hand.or(Some(match side {
-                Side::Right => force_dimension::Hand::Right,
-                Side::Left => force_dimension::Hand::Left,
-            }));
+            settings.hand = settings.hand.or(Some(side));
         }
         of_side
     }
 
     /// The hand that it must be made for, if the settings say so.
-    pub(in crate::rig) fn hand(&self) -> Option<force_dimension::Hand> {
+    pub(in crate::rig) fn hand(&self) -> Option<Side> {
         self.force_dimension().and_then(|settings| settings.hand)
     }
 

@@ -1,6 +1,7 @@
 //! What touches the rings.
 
 use nalgebra::Vector3;
+use nima_core::Side;
 
 use super::{Objects, RingPair};
 use crate::physics::{
@@ -35,10 +36,10 @@ impl Objects {
 
     fn tools_on_ring(&mut self, i: usize, step_s: f64) {
         let (ring, note) = (&mut self.rings[i], &mut self.notes[i]);
-        note.fingers_n = [[Vector3::zeros(); 2]; 2];
-        for (side, tool) in self.tools.iter_mut().enumerate() {
+        note.fingers_n = Default::default();
+        for side in Side::LEFT_TO_RIGHT.map(Side::index) {
             let pairs = &mut self.memories.ring_tools[i][side];
-            let Some(tool) = tool else {
+            let Some(tool) = &mut self.tools[side] else {
                 pairs.iter_mut().for_each(Pair::forget);
                 continue;
             };

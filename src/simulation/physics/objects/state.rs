@@ -1,8 +1,9 @@
 //! What each ring is doing.
 
 use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::SIDES;
 
-use super::{Note, Objects, SIDES};
+use super::{Note, Objects};
 use crate::physics::{ring::Ring, setting::View};
 
 /// Both fingers press at least so much on a ring that is held, N: with a friction of 0.4 just enough for 2 g.
@@ -19,9 +20,9 @@ const UPRIGHT: f64 = 0.2;
 pub enum Doing {
     /// A peg, counted from 0, is through it, and no jaws hold it.
     OnPeg(usize),
-    /// Both fingers of an instrument, or of both (left, right), press it from opposite sides.
+    /// Both fingers of an instrument, or of both, press it from opposite sides.
     Held {
-        /// Whether the left and the right instrument hold it.
+        /// Which instruments hold it.
         by: [bool; SIDES],
     },
     /// On the board, against a peg or on another ring.
@@ -45,7 +46,7 @@ pub struct RingState {
     pub around: Option<usize>,
     /// Board, a peg or another ring touches it.
     pub supported: bool,
-    /// The left, the right instrument touches it.
+    /// Which instruments touch it.
     pub touched_by: [bool; SIDES],
     /// It hardly moves, or not at all.
     pub slow: bool,

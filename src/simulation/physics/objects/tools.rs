@@ -37,24 +37,24 @@ impl Objects {
 
     fn tool_on_tool(&mut self, step_s: f64) {
         let law = self.laws.instrument;
-        let [Some(one), Some(other)] = &mut self.tools else {
+        let [Some(right), Some(left)] = &mut self.tools else {
             self.memories.tool_tool = [[Memory::default(); PARTS]; PARTS];
             return;
         };
         for (ours, memories) in self.memories.tool_tool.iter_mut().enumerate() {
             for (theirs, memory) in memories.iter_mut().enumerate() {
-                let [ours_m, theirs_m] = one.parts[ours].closest_pair(&other.parts[theirs]);
+                let [ours_m, theirs_m] = left.parts[ours].closest_pair(&right.parts[theirs]);
                 let Some((at_m, touch)) =
-                    between(&ours_m, one.radii_m[ours], &theirs_m, other.radii_m[theirs], &Vector3::x())
+                    between(&ours_m, left.radii_m[ours], &theirs_m, right.radii_m[theirs], &Vector3::x())
                 else {
                     *memory = Memory::default();
                     continue;
                 };
-                let velocity_m_s = one.velocity_at(ours, &at_m) - other.velocity_at(theirs, &at_m);
+                let velocity_m_s = left.velocity_at(ours, &at_m) - right.velocity_at(theirs, &at_m);
                 let push = law.push(memory, &Touch { velocity_m_s, ..touch }, step_s);
-                one.push(ours, &at_m, &push);
-                other.push(theirs, &at_m, &push.reverse());
-                (one.touching.other_instrument, other.touching.other_instrument) = (true, true);
+                left.push(ours, &at_m, &push);
+                right.push(theirs, &at_m, &push.reverse());
+                (left.touching.other_instrument, right.touching.other_instrument) = (true, true);
             }
         }
     }

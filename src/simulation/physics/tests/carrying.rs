@@ -1,6 +1,7 @@
 //! Grasping, carrying, dropping.
 
-use nima_score::{Event, Side};
+use nima_core::Side;
+use nima_score::Event;
 
 use super::{LEFT, OPEN_RAD, RIGHT, Scene, at, one_ring};
 use crate::physics::{Doing, Start};
@@ -9,7 +10,7 @@ use crate::physics::{Doing, Start};
 fn a_ring_on_its_peg_is_grasped_lifted_and_carried() {
     let mut scene = Scene::new(&one_ring(Start::Peg(0)));
     scene.grasp(LEFT, 0, -1.0);
-    assert_eq!(scene.objects.rings()[0].doing, Doing::Held { by: [true, false] });
+    assert_eq!(scene.objects.rings()[0].doing, Doing::Held { by: [false, true] });
     assert!(scene.loads[LEFT].opening_n > 1.0, "{:?}", scene.loads[LEFT]);
     let tip_m = scene.hands[LEFT].unwrap().tip_m;
     scene.glide(LEFT, tip_m + at(0.0, 0.0, 0.04), 0.08);

@@ -96,9 +96,10 @@ fn shafts_push_each_other_apart_with_opposite_forces() {
         let turn = UnitQuaternion::rotation_between(&Vector3::z(), &(tip_m - trocar_m)).unwrap();
         Instrument { tip_m, world_from_jaws: turn, trocar_m, opening_rad: 0.0 }
     };
-    scene.hands = [Some(crossing(LEFT, 0.0)), Some(crossing(RIGHT, 0.0045))];
+    scene.hands[LEFT] = Some(crossing(LEFT, 0.0));
+    scene.hands[RIGHT] = Some(crossing(RIGHT, 0.0045));
     scene.run(0.01);
-    let [left_n, right_n] = scene.loads.map(|loads| loads.tip_n);
+    let [left_n, right_n] = [LEFT, RIGHT].map(|side| scene.loads[side].tip_n);
     assert!(left_n.y < -0.4 && (left_n + right_n).norm() < 1e-9, "{left_n} {right_n}");
     assert!(scene.loads.iter().all(|loads| loads.touching.other_instrument && !loads.touching.peg));
     scene.hands[RIGHT] = Some(crossing(RIGHT, 0.006));

@@ -11,12 +11,13 @@ mod transfer;
 mod wire;
 
 use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::{SIDES, Side};
 use nima_score::Event;
 
 use crate::physics::{Instrument, Loads, Objects, Setting, Start, Watch};
 
-pub(crate) const LEFT: usize = 0;
-pub(crate) const RIGHT: usize = 1;
+pub(crate) const LEFT: usize = Side::Left.index();
+pub(crate) const RIGHT: usize = Side::Right.index();
 /// Wide enough to reach around a tube, rad.
 pub(crate) const OPEN_RAD: f64 = 0.6;
 
@@ -42,8 +43,8 @@ pub(crate) fn one_ring(start: Start) -> Setting {
 /// Objects, and two hands that do what a test says.
 pub(crate) struct Scene {
     pub objects: Objects,
-    pub hands: [Option<Instrument>; 2],
-    pub loads: [Loads; 2],
+    pub hands: [Option<Instrument>; SIDES],
+    pub loads: [Loads; SIDES],
     pub events: Vec<Event>,
     /// Hands like those of a person: tremor, aim that is off by this, m, and jaws in line with the shaft.
     pub unsure_m: f64,
@@ -58,8 +59,8 @@ impl Scene {
         let watch = Watch::new(&objects);
         Self {
             objects,
-            hands: [None; 2],
-            loads: [Loads::default(); 2],
+            hands: [None; SIDES],
+            loads: [Loads::default(); SIDES],
             events: Vec::new(),
             unsure_m: 0.0,
             ticks: 0,
@@ -76,7 +77,7 @@ impl Scene {
     }
 
     /// The hands with 0.1 mm of tremor at 8 to 11 Hz (Elble and Koller 1990), and jaws along the shaft: no wrist.
-    fn trembling(&self) -> [Option<Instrument>; 2] {
+    fn trembling(&self) -> [Option<Instrument>; SIDES] {
         let t_s = f64::from(self.ticks) * 1e-3;
         let shakes_m = at(libm::sin(50.0 * t_s), libm::sin(61.0 * t_s), libm::sin(69.0 * t_s)) * 1e-4;
         self.hands.map(|hand| {

@@ -24,7 +24,7 @@ fn digest(period_s: f64) -> u64 {
         scene.hands[LEFT] = Some(instrument(LEFT, tip_m(-1.0), opening_rad(-1.0)));
         scene.hands[RIGHT] = (tick % 4000 > 20).then(|| instrument(RIGHT, tip_m(1.0), opening_rad(1.0)));
         scene.tick();
-        for loads in scene.loads {
+        for loads in [LEFT, RIGHT].map(|side| scene.loads[side]) {
             loads.tip_n.iter().chain(loads.torque_nm.iter()).for_each(|x| mix(*x));
             mix(loads.opening_n);
         }

@@ -1,6 +1,7 @@
 //! The task as two hands do it.
 
-use nima_score::{Event, Side};
+use nima_core::Side;
+use nima_score::Event;
 
 use super::{LEFT, OPEN_RAD, RIGHT, Scene, at, one_ring};
 use crate::physics::{Doing, PegTransfer, Pegs, Setting, Start};

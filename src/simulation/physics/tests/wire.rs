@@ -1,7 +1,8 @@
 //! A loop on a wire.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_score::{Event, Side};
+use nima_core::{SIDES, Side};
+use nima_score::Event;
 use proptest::prelude::*;
 
 use super::{LEFT, RIGHT, at};
@@ -9,10 +10,9 @@ use crate::physics::{Instrument, Loads, Wire, WireSetting, WireTask};
 
 const PERIOD_S: f64 = 1e-3;
 
-#[expect(clippy::unnecessary_wraps, reason = "as a step takes its instruments")]
-fn holding(tip_m: Vector3<f64>) -> Option<Instrument> {
+fn holding(tip_m: Vector3<f64>) -> Instrument {
     let trocar_m = at(0.0, -0.06, 0.14);
-    Some(Instrument { tip_m, world_from_jaws: UnitQuaternion::identity(), trocar_m, opening_rad: 0.0 })
+    Instrument { tip_m, world_from_jaws: UnitQuaternion::identity(), trocar_m, opening_rad: 0.0 }
 }
 
 /// A straight wire along x, as high as the workspace's middle.
@@ -33,7 +33,7 @@ fn at_rest(setting: &WireSetting, off_m: Vector3<f64>) -> (Wire, Loads) {
     let mut loads = Loads::default();
     for step in 0..=steps + 1 {
         let share = f64::from(step.min(steps)) / f64::from(steps);
-        loads = wire.step(&[None, holding(middle_m + off_m * share)])[RIGHT];
+        loads = wire.step(&Side::Right.alone(holding(middle_m + off_m * share)))[RIGHT];
     }
     (wire, loads)
 }
@@ -80,7 +80,7 @@ fn sliding_along_the_wire_is_held_back_by_the_law_of_coulomb() {
     let mut loads = Loads::default();
     for tick in 0..400 {
         let tip_m = at(f64::from(tick) * 2e-5, 0.0, 0.03 + room_m(&setting) + 1e-3);
-        loads = wire.step(&[None, holding(tip_m)])[RIGHT];
+        loads = wire.step(&Side::Right.alone(holding(tip_m)))[RIGHT];
     }
     let ratio = -loads.tip_n.x / loads.tip_n.z.abs();
     assert!((ratio - setting.contact.friction).abs() < 0.01, "{}", loads.tip_n);
@@ -109,7 +109,7 @@ proptest! {
         let near_m = wire.curve().points_m().iter().copied()
             .min_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs())).unwrap();
         let centre_m = at(x, near_m.y + off[0], near_m.z + off[1]);
-        wire.step(&[None, holding(centre_m)]);
+        wire.step(&Side::Right.alone(holding(centre_m)));
         let fine_m = setting.radius_m + setting.hoop.tube_radius_m - tried_m(&wire, &setting, &centre_m);
         let found_m = wire.states()[RIGHT].deepest_m;
         prop_assert!((found_m - fine_m.max(0.0)).abs() < 2e-6, "{} m instead of {} m", found_m, fine_m);
@@ -149,7 +149,7 @@ fn energy_of_a_loop_that_bounces_around_the_wire_does_not_grow() {
         // In free flight all of the energy is motion.
         let (mut most_j, mut bounces) = (0.0_f64, 0);
         for tick in 0..600_000 {
-            let loads = wire.step(&[None, holding(tip_m)])[RIGHT];
+            let loads = wire.step(&Side::Right.alone(holding(tip_m)))[RIGHT];
             speed_m_s += loads.tip_n * (PERIOD_S / MASS_KG);
             // It flies along the wire to the board's end otherwise.
             speed_m_s.x *= if tick % 2000 == 1999 { -1.0 } else { 1.0 };
@@ -179,9 +179,12 @@ fn digest() -> u64 {
         let along_m = wire.curve().at(0.013 * t_s);
         let beside_m = at(0.0, 5.5e-3 * libm::sin(9.0 * t_s), 5.5e-3 * libm::sin(7.0 * t_s));
         let other_m = at(0.05 * libm::sin(t_s), 0.02 * libm::sin(3.0 * t_s), 0.02 + 0.02 * libm::sin(2.0 * t_s));
-        let loads = wire.step(&[holding(other_m), holding(along_m + beside_m)]);
+        let mut hands = [None; SIDES];
+        hands[LEFT] = Some(holding(other_m));
+        hands[RIGHT] = Some(holding(along_m + beside_m));
+        let loads = wire.step(&hands);
         task.look(&wire, &mut |age_s, _| mix(age_s));
-        for loads in loads {
+        for loads in [LEFT, RIGHT].map(|side| loads[side]) {
             loads.tip_n.iter().chain(loads.torque_nm.iter()).for_each(|x| mix(*x));
         }
     }
@@ -200,13 +203,13 @@ fn ten_seconds_on_a_wire_repeat_to_the_last_bit_in_every_build() {
 fn what_is_not_a_number_counts_as_absent_and_what_is_far_away_feels_nothing() {
     let setting = straight();
     let (mut wire, _) = at_rest(&setting, at(0.0, 0.0, room_m(&setting) + 1e-3));
-    let poisoned = holding(at(0.0, f64::NAN, 0.03));
+    let poisoned = Some(holding(at(0.0, f64::NAN, 0.03)));
     assert_eq!(wire.step(&[poisoned, poisoned]), [Loads::default(); 2]);
     assert_eq!(wire.states()[RIGHT].along_m, None);
-    let far = holding(at(0.0, 0.04, 0.06));
+    let far = Some(holding(at(0.0, 0.04, 0.06)));
     assert_eq!(wire.step(&[far, far]), [Loads::default(); 2]);
     for x_m in [0.0, 1e3, -1e300, f64::INFINITY] {
-        let loads = wire.step(&[holding(at(x_m, 0.0, 0.03)), holding(at(0.0, x_m, 0.03))]);
+        let loads = wire.step(&[at(0.0, x_m, 0.03), at(x_m, 0.0, 0.03)].map(|tip_m| Some(holding(tip_m))));
         assert!(loads.iter().all(|loads| loads.tip_n.iter().all(|x| x.is_finite() && x.abs() < 100.0)));
     }
 }
@@ -217,15 +220,15 @@ fn a_loop_is_held_back_by_the_board_and_turns_with_its_shaft_if_told_so() {
     let reach_m = setting.hoop.radius_m + setting.hoop.tube_radius_m;
     let mut wire = Wire::new(&setting, PERIOD_S);
     let low = holding(at(0.0, 0.02, reach_m - 1e-3));
-    wire.step(&[None, low]);
-    let loads = wire.step(&[None, low])[RIGHT];
+    wire.step(&Side::Right.alone(low));
+    let loads = wire.step(&Side::Right.alone(low))[RIGHT];
     assert!(loads.touching.board && (loads.tip_n.z - 1.0).abs() < 1e-9, "1 kN/m at 1 mm: {}", loads.tip_n);
     setting.hoop.axis = None;
     // The shaft stands upright, so the loop lies flat and the wire crosses none of its plane.
     let mut wire = Wire::new(&setting, PERIOD_S);
-    let mut flat = holding(at(0.0, 0.02, 0.03)).unwrap();
+    let mut flat = holding(at(0.0, 0.02, 0.03));
     flat.trocar_m = at(0.0, 0.02, 0.15);
-    wire.step(&[None, Some(flat)]);
+    wire.step(&Side::Right.alone(flat));
     assert_eq!(wire.states()[RIGHT].along_m, None);
 }
 
@@ -245,8 +248,8 @@ impl Told {
     fn glide(&mut self, side: usize, from_m: Vector3<f64>, to_m: Vector3<f64>, seconds: f64) {
         let ticks = (seconds / PERIOD_S).round() as u32;
         for tick in 1..=ticks {
-            let mut hands = [None; 2];
-            hands[side] = holding(from_m + (to_m - from_m) * (f64::from(tick) / f64::from(ticks)));
+            let mut hands = [None; SIDES];
+            hands[side] = Some(holding(from_m + (to_m - from_m) * (f64::from(tick) / f64::from(ticks))));
             self.wire.step(&hands);
             self.t_s += PERIOD_S;
             let t_s = self.t_s;

@@ -1,6 +1,7 @@
 //! One ring, followed from event to event.
 
-use nima_score::{Event, Side};
+use nima_core::{SIDES, Side};
+use nima_score::Event;
 
 use crate::physics::objects::{Doing, RingState};
 
@@ -43,8 +44,8 @@ enum Stage {
 pub(super) struct Following {
     stage: Stage,
     /// For how long each side has held it, and has not, s.
-    held_s: [f64; 2],
-    loose_s: [f64; 2],
+    held_s: [f64; SIDES],
+    loose_s: [f64; SIDES],
     /// For how long it has been around the peg of the moment, off the peg of its stage, and at rest, s.
     on_s: f64,
     on: Option<usize>,
@@ -61,8 +62,8 @@ impl Following {
     pub(super) fn new(state: &RingState) -> Self {
         Self {
             stage: Stage::Free { peg: state.around },
-            held_s: [0.0; 2],
-            loose_s: [f64::INFINITY; 2],
+            held_s: [0.0; SIDES],
+            loose_s: [f64::INFINITY; SIDES],
             on_s: 0.0,
             on: state.around,
             off_s: 0.0,
@@ -103,8 +104,8 @@ impl Following {
     }
 
     fn measure(&mut self, state: &RingState, period_s: f64) {
-        let by = if let Doing::Held { by } = state.doing { by } else { [false; 2] };
-        for side in Side::ALL {
+        let by = if let Doing::Held { by } = state.doing { by } else { [false; SIDES] };
+        for side in Side::LEFT_TO_RIGHT {
             let i = side.index();
             self.loose_s[i] = for_s(self.loose_s[i], !by[i], period_s);
             self.held_s[i] = for_s(self.held_s[i], self.loose_s[i] < LET_GO_AFTER_S, period_s);
@@ -122,9 +123,9 @@ impl Following {
         self.rest_s = for_s(self.rest_s, state.supported && state.slow && !by.contains(&true), period_s);
     }
 
-    /// The side that holds it firmly, other than `than`.
+    /// The side that holds it firmly, other than `than`; the left one if both do.
     fn firm(&self, than: Option<Side>) -> Option<Side> {
-        Side::ALL.into_iter().find(|side| Some(*side) != than && self.held_s[side.index()] >= GRASPED_AFTER_S)
+        Side::LEFT_TO_RIGHT.into_iter().find(|side| Some(*side) != than && self.held_s[side.index()] >= GRASPED_AFTER_S)
     }
 
     fn free(&self, ring: usize, peg: Option<usize>, tell: &mut dyn FnMut(Event)) -> Stage {

@@ -1,8 +1,9 @@
 //! Tells from the loops what happens on a wire, and when the task is done.
 
-use nima_score::{Event, Side};
+use nima_core::{SIDES, Side};
+use nima_score::Event;
 
-use super::{SIDES, Wire, WireSetting, WireState};
+use super::{Wire, WireSetting, WireState};
 
 /// A touch is over when the loop has been clear of the wire for this long, s: a loop that slides along the wire jumps a little.
 const CLEAR_AFTER_S: f64 = 0.05;
@@ -13,6 +14,7 @@ const BEGINNING_M: f64 = 0.012;
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
+/// use nima_core::Side;
 /// use nima_simulation::physics::{Instrument, Wire, WireSetting, WireTask};
 /// use nima_score::Event;
 ///
@@ -22,7 +24,7 @@ const BEGINNING_M: f64 = 0.012;
 ///     let tip_m = Vector3::new(f64::from(tick) * 1e-4, 0.0, 0.03);
 ///     let trocar_m = Vector3::new(0.0, -0.06, 0.14);
 ///     let right = Instrument { tip_m, world_from_jaws: UnitQuaternion::identity(), trocar_m, opening_rad: 0.0 };
-///     wire.step(&[None, Some(right)]);
+///     wire.step(&Side::Right.alone(right));
 ///     task.look(&wire, &mut |_, event| ended |= event == Event::Ended);
 /// }
 /// assert!(ended && task.is_done() && task.touches() == 0);
@@ -64,7 +66,8 @@ impl WireTask {
         if self.is_done {
             return;
         }
-        for (side, state) in Side::ALL.into_iter().zip(wire.states()) {
+        for side in Side::LEFT_TO_RIGHT {
+            let state = &wire.states()[side.index()];
             let following = &mut self.loops[side.index()];
             self.touches += u32::from(following.touch(side, state, wire.period_s(), tell));
             self.is_done |= following.goes(state) >= self.goal_m;

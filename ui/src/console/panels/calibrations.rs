@@ -144,7 +144,7 @@ fn next_page(live: &Live) -> Option<Page> {
 fn side_ui(ui: &mut Ui, now: Side) -> Option<CalibrationWish> {
     let mut wish = None;
     ui.horizontal(|ui| {
-        for side in [Side::Left, Side::Right] {
+        for side in Side::LEFT_TO_RIGHT {
             let name = text::calibrations::arm(side_name(side));
             let button = Button::selectable(now == side, name).frame_when_inactive(true).min_size(vec2(104.0, 26.0));
             let chosen = ui.add(button).on_hover_text(text::calibrations::ARM_TO_CALIBRATE.get()).clicked();

@@ -163,7 +163,7 @@ fn switches_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
     }
     if live.is_bimanual() {
         ui.add_space(6.0);
-        for side in [Side::Left, Side::Right] {
+        for side in Side::LEFT_TO_RIGHT {
             let button = Button::selectable(state.side == side, side_name(side)).frame_when_inactive(true);
             let meaning = text::forces::forces_of(side_word(side));
             if ui.add(button.min_size(vec2(52.0, 26.0))).on_hover_text(meaning).clicked() {

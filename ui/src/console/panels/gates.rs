@@ -37,7 +37,7 @@ impl Default for GatesState {
 pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
     if live.is_bimanual() {
         ui.horizontal(|ui| {
-            for side in [Side::Left, Side::Right] {
+            for side in Side::LEFT_TO_RIGHT {
                 let name = text::common::hand(side_name(side));
                 let button = Button::selectable(state.side == side, name).frame_when_inactive(true);
                 let meaning = text::gates::gates_of(side_word(side));

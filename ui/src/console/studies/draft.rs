@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use nima_core::Side;
 use nima_core::impedance::Mode;
-use nima_score::{Criterion, Definition, MEASURES, Side, TaskFile, TaskKind};
+use nima_score::{Criterion, Definition, MEASURES, TaskFile, TaskKind};
 use nima_simulation::scene::Scene;
 use nima_user_study::{
     Breaks, Comparison, Condition, Excludes, ExclusionRule, NotReached, Practice, StudyFile, keys_of,
@@ -72,7 +73,7 @@ impl Place {
 
     /// The measures that a trial here can have.
     fn measures(&self) -> Vec<Known> {
-        let hands: &[Side] = if self.two_hands { &Side::ALL } else { &[Side::Right] };
+        let hands: &[Side] = if self.two_hands { &Side::LEFT_TO_RIGHT } else { &[Side::Right] };
         // A simulated scene does not tell what leaves the picture.
         let fits = |one: &&Definition| one.is_of(self.kind, self.two_hands) && one.id != "out_of_view_share";
         let known = |definition: &'static Definition| {

@@ -2,8 +2,8 @@
 
 mod lumps;
 
+use nima_core::task::{Event, Happening};
 use nima_machine::rig::{Act, Acts, SIDES, Side};
-use nima_score::{Event, Happening};
 
 use crate::{
     physics::{Doing, Instrument, Loads, Objects, PegTransfer, Setting, Watch, Wire, WireSetting, WireState, WireTask},

@@ -3,11 +3,13 @@
 mod ground;
 mod mounted;
 mod objects;
+mod task;
 mod wrist;
 
 use std::path::Path;
 
 use nalgebra::Vector3;
+use nima_core::task::TaskKind;
 use nima_machine::{
     config::{ANONYMOUS, ConfigError, Ranges, parse, text},
     rig::Side,
@@ -15,6 +17,7 @@ use nima_machine::{
 use serde::{Deserialize, Serialize};
 
 pub use ground::{Drawn, Layer, Lump, Lumps, Membrane, Relaxation, Tissue, Wall};
+pub use task::{ReadTask, Task, score_tasks_by};
 pub use wrist::{Flaw, Imu, Person, TissueSensor, Trocar, Wrist};
 
 /// A simulated world. Parts that are not listed cost nothing.
@@ -56,8 +59,8 @@ pub struct Scene {
     pub objects: Option<crate::physics::Setting>,
     /// A wire, and loops at the instruments. The hand then leads its loop along the wire in place of pressing at the targets.
     pub wire: Option<crate::physics::WireSetting>,
-    /// What is scored.
-    pub task: Option<nima_score::TaskFile>,
+    /// What is done, and scored.
+    pub task: Option<Task>,
     /// The leader device.
     pub leader: Option<Leader>,
     /// Tracking lag of the follower; without it the tip is at its commanded position.
@@ -215,7 +218,7 @@ impl Scene {
 
     /// Whether the task is to find the lumps.
     pub fn is_searched(&self) -> bool {
-        let palpation = |task: &nima_score::TaskFile| task.kind == nima_score::TaskKind::Palpation;
+        let palpation = |task: &Task| task.kind == TaskKind::Palpation;
         self.tissue.is_some() && self.lumps.is_some() && self.task.as_ref().is_some_and(palpation)
     }
 
@@ -258,6 +261,13 @@ impl Scene {
         let mut scene: Self = parse("scene", path, text).map_err(mounted::moved_to_the_rig)?;
         scene.validate()?;
         scene.count_lumps();
+        if let Some(Err(message)) = scene.task.as_mut().map(Task::read) {
+            return Err(ConfigError::Parse {
+                kind: "scene",
+                path: path.to_owned(),
+                message: format!("task: {message}"),
+            });
+        }
         Ok(scene)
     }
 
@@ -294,7 +304,7 @@ impl Scene {
         ANONYMOUS.clone_into(name);
         description.clear();
         if let Some(task) = task {
-            ANONYMOUS.clone_into(&mut task.name);
+            task.anonymous(ANONYMOUS);
         }
         self
     }

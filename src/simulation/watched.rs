@@ -2,8 +2,8 @@
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 use nalgebra::Vector3;
+use nima_core::task::Happening;
 use nima_machine::rig::SIDES;
-use nima_score::Happening;
 
 use crate::physics::{Loads, RingState};
 
@@ -145,7 +145,7 @@ impl Teller {
 
 #[cfg(test)]
 mod tests {
-    use nima_score::Event;
+    use nima_core::task::Event;
 
     use super::*;
 

@@ -1,7 +1,7 @@
 //! A tick of a hand that looks for lumps, and of one that leads a loop along a wire.
 
+use nima_core::task::Event;
 use nima_machine::rig::{Outputs, Rig as _, SIDES, Sensed, Side};
-use nima_score::Event;
 use nima_simulation::{Worlds, scene::Scene};
 use nima_testing::real_time::alone;
 

@@ -1,8 +1,7 @@
 //! A simulated person who feels: forces and pace depend on what the loop renders.
 
-use nima_core::impedance::Mode;
+use nima_core::{impedance::Mode, task::Event};
 use nima_machine::{messages::LoopState, rig::Side, runtime};
-use nima_score::Event;
 use nima_tests::plan;
 
 /// Force at the tip while it presses on the tissue, N: its peak, its mean; and how often it pressed in half a minute.

@@ -1,12 +1,11 @@
 //! Peg transfer in the closed loop: two hands carry six rings over and back.
 
-use nima_core::impedance::Mode;
+use nima_core::{impedance::Mode, task::Event};
 use nima_machine::{
     messages::LoopState,
     rig::{Rig as _, SIDES, Side},
     runtime,
 };
-use nima_score::Event;
 use nima_simulation::{Plan, Worlds, scene::Scene};
 use nima_tests::plan;
 

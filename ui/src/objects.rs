@@ -1,8 +1,8 @@
 //! The objects of a simulated scene, as a session and the screen have them.
 
 use nalgebra::{Isometry3, Translation3};
+use nima_core::task::Happening;
 use nima_machine::rig::{SIDES, Side};
-use nima_score::Happening;
 use nima_session::objects::{Jaws, Mark, ObjectSource, Objects, Standing, WireLoop};
 use nima_simulation::{LoopSeen, MARKS_MAX, Moment, Plan, Training, Watched};
 

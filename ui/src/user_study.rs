@@ -81,8 +81,8 @@ pub(crate) fn create(folder: &Path, file: &StudyFile) -> anyhow::Result<Study> {
 /// The scene of a study: with its task, and with so many rings as it asks for.
 pub(crate) fn scene_of(file: &StudyFile) -> anyhow::Result<Scene> {
     let mut scene = Scene::load(&file.scene)?;
-    if file.task.is_some() {
-        scene.task.clone_from(&file.task);
+    if let Some(task) = &file.task {
+        scene.task = Some(task.to_scene()?);
     }
     if let Some(rings) = file.rings {
         let Some(objects) = &mut scene.objects else { bail!("rings = {rings}: scene \"{}\" has none", scene.name) };
@@ -141,7 +141,7 @@ pub(crate) fn scene_for(study: &Study, rig: &RigConfig, hand: &Hand) -> anyhow::
     let mut scene = scene_in(study)?;
     (scene.hand.pace, scene.hand.tremor_m, scene.seed) = (hand.pace, hand.tremor_m, hand.seed);
     scene.hand.intended_n = hand.intended_n;
-    let task = scene.task.clone().context("the scene of the study has no task")?;
+    let task = TaskFile::of(scene.task.as_ref().context("the scene of the study has no task")?)?;
     Ok((scene.mounted_at(rig)?, task))
 }
 

@@ -9,6 +9,7 @@ use std::{
 };
 
 use nalgebra::Vector3;
+use nima_core::task::Event;
 use nima_devices::{
     CapReading, PedalReading, Standing,
     hid::{CapSettings, PedalSettings},
@@ -17,7 +18,6 @@ use nima_machine::{
     config::RigConfig,
     rig::{DeskSettings, Inputs, Outputs, Rig as _, SIDES, Side},
 };
-use nima_score::Event;
 use nima_simulation::{Desk, Watched, Worlds, scene::Scene};
 use nima_testing::real_time::judged;
 

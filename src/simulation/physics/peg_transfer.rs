@@ -1,7 +1,6 @@
 //! When peg transfer is done: every ring was on a peg of the other side, and is home again.
 
-use nima_core::Side;
-use nima_score::Event;
+use nima_core::{Side, task::Event};
 
 use crate::physics::setting::{Setting, Start};
 
@@ -22,7 +21,7 @@ enum Stage {
 /// ```
 /// use nima_core::Side;
 /// use nima_simulation::physics::{PegTransfer, Setting, Start};
-/// use nima_score::Event;
+/// use nima_core::task::Event;
 ///
 /// let mut task = PegTransfer::new(&Setting { rings: vec![Start::Peg(0)], ..Setting::default() });
 /// assert_eq!(task.goal(0), Some(Side::Right), "peg 0 is on the left");

@@ -4,8 +4,7 @@ mod following;
 
 use std::collections::VecDeque;
 
-use nima_core::Side;
-use nima_score::Event;
+use nima_core::{Side, task::Event};
 
 use crate::physics::objects::Objects;
 use following::Following;

@@ -1,8 +1,8 @@
 //! Palpation: places on the tissue are marked, and each mark is over a lump or over none.
 
 use nalgebra::Vector3;
+use nima_core::task::Event;
 use nima_machine::rig::Side;
-use nima_score::Event;
 
 use crate::{
     scene::{Lump, Scene},

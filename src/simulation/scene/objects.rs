@@ -1,9 +1,8 @@
 //! Objects that move, and the task that is scored.
 
 use nima_machine::config::{ConfigError, Ranges};
-use nima_score::TaskError;
 
-use super::Scene;
+use super::{Scene, Task};
 use crate::{RINGS_MAX, physics::SettingError};
 
 impl Scene {
@@ -28,10 +27,11 @@ impl Scene {
                 ranges.check(key, value, false, allowed)?;
             }
         }
-        match self.task.as_ref().map(nima_score::TaskFile::check) {
-            Some(Err(TaskError::Setting { key, value, allowed })) => ranges.check(key, value, false, allowed),
-            _ => self.validate_lumps_of_the_task(ranges),
+        if let Some(Task { mark_tolerance_m, .. }) = self.task {
+            let is_good = Task::MARK_TOLERANCES_M.contains(&mark_tolerance_m);
+            ranges.check("task.mark_tolerance_m", mark_tolerance_m, is_good, "from 0 m to 0.05 m")?;
         }
+        self.validate_lumps_of_the_task(ranges)
     }
 
     fn validate_lumps_of_the_task(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {

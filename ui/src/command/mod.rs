@@ -127,6 +127,7 @@ pub fn main() -> ExitCode {
         Err(error) => error.exit(),
     };
     nima_emulation::emulated::provide_handles();
+    nima_score::provide_tasks();
     let result = match command {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),

@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 use nima_core::{
     impedance::Mode,
     safety::{Implausible, Why},
+    task::Event as Happens,
 };
 use nima_devices::{Loss, Standing};
 use nima_machine::{
@@ -16,7 +17,6 @@ use nima_machine::{
     rig::{Act, Awaited, DeviceEvent, Exchange, Obstacle, Part, Prompt, SIDES, Side},
     runtime::Operation,
 };
-use nima_score::Event as Happens;
 use nima_session::STATES;
 
 use super::{commands::operation, events::event, happenings::happening, refusals::REFUSALS};

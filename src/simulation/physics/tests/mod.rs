@@ -11,8 +11,7 @@ mod transfer;
 mod wire;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::{SIDES, Side};
-use nima_score::Event;
+use nima_core::{SIDES, Side, task::Event};
 
 use crate::physics::{Instrument, Loads, Objects, Setting, Start, Watch};
 

@@ -1,7 +1,6 @@
 //! The task as two hands do it.
 
-use nima_core::Side;
-use nima_score::Event;
+use nima_core::{Side, task::Event};
 
 use super::{LEFT, OPEN_RAD, RIGHT, Scene, at, one_ring};
 use crate::physics::{Doing, PegTransfer, Pegs, Setting, Start};

@@ -1,8 +1,7 @@
 //! A loop on a wire.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::{SIDES, Side};
-use nima_score::Event;
+use nima_core::{SIDES, Side, task::Event};
 use proptest::prelude::*;
 
 use super::{LEFT, RIGHT, at};

@@ -1,7 +1,6 @@
 //! One ring, followed from event to event.
 
-use nima_core::{SIDES, Side};
-use nima_score::Event;
+use nima_core::{SIDES, Side, task::Event};
 
 use crate::physics::objects::{Doing, RingState};
 

@@ -1,7 +1,6 @@
 //! Tells from the loops what happens on a wire, and when the task is done.
 
-use nima_core::{SIDES, Side};
-use nima_score::Event;
+use nima_core::{SIDES, Side, task::Event};
 
 use super::{Wire, WireSetting, WireState};
 
@@ -16,7 +15,7 @@ const BEGINNING_M: f64 = 0.012;
 /// use nalgebra::{UnitQuaternion, Vector3};
 /// use nima_core::Side;
 /// use nima_simulation::physics::{Instrument, Wire, WireSetting, WireTask};
-/// use nima_score::Event;
+/// use nima_core::task::Event;
 ///
 /// let setting = WireSetting { points_m: vec![[0.0, 0.0, 0.03], [0.05, 0.0, 0.03]], goal_point: 1, ..WireSetting::default() };
 /// let (mut wire, mut task, mut ended) = (Wire::new(&setting, 1e-3), WireTask::new(&setting), false);

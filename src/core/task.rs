@@ -1,7 +1,20 @@
-//! What happens in a trial besides motion and force.
+//! The words for training tasks: which there are, and what happens in a trial besides motion and force.
 
-use nima_core::Side;
 use serde::{Deserialize, Serialize};
+
+use crate::Side;
+
+/// What is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum TaskKind {
+    /// Motion and force alone: no objects are known, and no picture.
+    Free,
+    PegTransfer,
+    Palpation,
+    WireLoop,
+}
 
 /// An event of a trial and its time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

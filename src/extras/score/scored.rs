@@ -11,18 +11,19 @@ use std::{
 };
 
 use nalgebra::Vector3;
+use nima_core::task::{Event, Happening};
 use nima_machine::{
     messages::LoopState,
     rig::{SIDES, Side},
 };
 use nima_recording::session::Reader;
-use nima_score::{Event, HandSample, Happening, Sample, Score, Scorer, TaskFile};
-
-pub use self::live::LiveTrial;
-use crate::{
+use nima_session::{
     objects,
     plotted::{self, PlottedError, PlottedTick},
 };
+
+pub use self::live::LiveTrial;
+use crate::{HandSample, Sample, Score, Scorer, TaskFile};
 
 /// A session is read in stretches of this length, ns.
 const STRETCH_NS: u64 = 2_000_000_000;
@@ -185,7 +186,7 @@ fn samples(reader: &Reader, path: &Path, times_ns: Range<u64>, arms: &[Side]) ->
 
 #[cfg(test)]
 mod tests {
-    use nima_score::Outcome;
+    use crate::Outcome;
 
     use super::*;
 

@@ -1,10 +1,12 @@
 //! A trial that is going on, scored from the ticks of its loop.
 
+use nima_core::task::{Event, Happening, TaskKind};
 use nima_machine::{
     messages::{LoopState, Tick},
     rig::{SIDES, Side},
 };
-use nima_score::{Event, HandSample, Happening, Sample, Score, TaskFile, TaskKind};
+
+use crate::{HandSample, Sample, Score, TaskFile};
 
 use super::{Trial, hand_of};
 

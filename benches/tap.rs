@@ -20,7 +20,7 @@ use nima_machine::{
     teleop::{Calibrations, Loop, Origin, Timing},
 };
 use nima_session::{journal::Start, scribe::Scribe};
-use nima_world::{Worlds, scene::Scene};
+use nima_simulation::{Worlds, scene::Scene};
 
 /// Writes the journal into memory; returns its bytes, ticks and lost entries.
 fn read(start: &Start, end: &TapEnd) -> (usize, u64, u64) {

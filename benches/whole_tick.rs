@@ -16,7 +16,7 @@ use nima_machine::{
     rig::{Inputs, Rig as _, SIDES},
     teleop::{Calibrations, Loop, Timing},
 };
-use nima_world::{Worlds, scene::Scene};
+use nima_simulation::{Worlds, scene::Scene};
 
 const TICKS: usize = 60_000;
 

@@ -7,14 +7,12 @@ use std::{
 };
 
 use nima_devices::bota;
+use nima_emulation::emulated::{EmulatedRig, HandFrame, provide_handles};
 use nima_machine::{
     config::{RigConfig, RigFile},
     rig::{SensorPlace, SensorSettings, Settings, Side},
 };
-use nima_world::{
-    emulated::{EmulatedRig, HandFrame, provide_handles},
-    scene::Scene,
-};
+use nima_simulation::scene::Scene;
 
 /// The devices of that rig, in its order. The paper's rig has no servos on the left.
 pub const DEVICES: [&str; 11] = [

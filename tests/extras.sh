@@ -66,7 +66,7 @@ h264() {
   ffmpeg=$(command -v ffmpeg || python3 -c 'import imageio_ffmpeg; print(imageio_ffmpeg.get_ffmpeg_exe())' 2>/dev/null) || true
   [ -z "$ffmpeg" ] || export NIMA_FFMPEG=$ffmpeg
   timed cargo test --locked -p nima-endoscope --features h264
-  timed cargo test --locked -p nima-world --features h264 --lib endoscope -- --include-ignored --skip figures_of
+  timed cargo test --locked -p nima-emulation --features h264 --lib endoscope -- --include-ignored --skip figures_of
   timed cargo test --locked -p nima-console --features h264 --lib a_recorded_stream
 }
 

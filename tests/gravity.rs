@@ -6,7 +6,7 @@ use nima_machine::{
     rig::{Outputs, Prompt, Sensed, Side},
 };
 use nima_recording::store::utc_now;
-use nima_world::{World, scene::Scene};
+use nima_simulation::{World, scene::Scene};
 
 /// A gravity calibration recorded sample by sample in its own scene.
 pub fn gravity() -> GravityRecord {

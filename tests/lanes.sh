@@ -2,7 +2,7 @@
 # shellcheck shell=bash
 
 # The product itself, which knows none of the other crates.
-ring1=(nima-testing nima-files nima-core nima-devices nima-recording nima-machine nima-session nima-training nima-endoscope nima-physics nima-world)
+ring1=(nima-testing nima-files nima-core nima-devices nima-recording nima-machine nima-session nima-training nima-endoscope nima-simulation)
 told=${CARGO_TARGET_DIR:-target}/lanes
 
 # The product alone, for daily work.

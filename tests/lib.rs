@@ -10,7 +10,7 @@ pub mod gravity;
 pub mod studies;
 
 use nima_machine::config::RigConfig;
-use nima_world::{Plan, scene::Scene};
+use nima_simulation::{Plan, scene::Scene};
 
 /// The simulated rig in this scene, without calibrations; it engages by itself.
 pub fn plan(scene: &str) -> Plan {

@@ -16,6 +16,7 @@ pub mod safety;
 mod side;
 pub mod signal;
 pub mod statistics;
+pub mod task;
 pub mod tip_force;
 
 pub use side::{SIDES, Side};

@@ -20,7 +20,6 @@
 //! | `report` | the figures of a session, from what is plotted of it |
 //! | `watched` | what a screen elsewhere is told of a loop while it runs |
 //! | `copied` | the file of a session, written elsewhere while it happens |
-//! | `scored` | the score of a session: how the hands moved and pressed |
 //! | `replay` | the same loop, fed from them; and with one thing changed |
 #![warn(missing_docs)]
 
@@ -42,7 +41,6 @@ pub mod plotted;
 pub mod recorder;
 pub mod replay;
 pub mod report;
-pub mod scored;
 pub mod scribe;
 pub mod shelf;
 mod topics;

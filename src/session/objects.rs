@@ -8,9 +8,9 @@ mod happening;
 use std::{fmt::Debug, ops::Range};
 
 use nalgebra::{Isometry3, Vector3};
+use nima_core::task::Happening;
 use nima_machine::rig::{SIDES, Side};
 use nima_recording::session::{Message, ReadError, Reader};
-use nima_score::Happening;
 
 pub use happening::kind;
 pub(crate) use happening::{SCHEMA, SCHEMA_NAME, decode, encode};

@@ -52,7 +52,7 @@ pub struct Words {
     /// For what is done to the loop, with the same names.
     pub operation: fn(&Operation, &[DeviceName]) -> String,
     /// For what happens to the objects of a scene.
-    pub happening: fn(&nima_score::Event) -> String,
+    pub happening: fn(&nima_core::task::Event) -> String,
 }
 
 impl Words {

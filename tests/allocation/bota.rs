@@ -7,11 +7,11 @@ use nima_devices::{
     Device as _, Standing,
     bota::{Driver, Settings, Transport},
 };
-use nima_testing::real_time::{alone, judged};
-use nima_world::emulators::{
+use nima_emulation::emulators::{
     EmulatedFault,
     bota::{Emulated, slow_motion},
 };
+use nima_testing::real_time::{alone, judged};
 
 use crate::counting::calls;
 

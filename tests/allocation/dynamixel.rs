@@ -7,8 +7,8 @@ use nima_devices::{
     Device as _,
     dynamixel::{Settings, Taken, open},
 };
+use nima_emulation::emulators::dynamixel::Emulated;
 use nima_testing::real_time::{alone, judged};
-use nima_world::emulators::dynamixel::Emulated;
 
 use crate::counting::calls;
 

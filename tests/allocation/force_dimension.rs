@@ -7,8 +7,8 @@ use nima_devices::{
     Device as _,
     force_dimension::{Settings, open},
 };
+use nima_emulation::emulators::force_dimension::{Emulated, Held, stand_in};
 use nima_testing::real_time::{alone, judged};
-use nima_world::emulators::force_dimension::{Emulated, Held, stand_in};
 
 use crate::counting::calls;
 

@@ -7,11 +7,11 @@ use nima_devices::{
     CapReading, Device, Loss, PedalReading, Standing,
     hid::{CapDriver, CapSettings, PedalDriver, PedalSettings},
 };
-use nima_testing::real_time::{alone, judged};
-use nima_world::emulators::{
+use nima_emulation::emulators::{
     EmulatedFault,
     hid::{CapBody, CapModel, PedalBody, PedalModel, cap, pedal},
 };
+use nima_testing::real_time::{alone, judged};
 
 use crate::counting::calls;
 

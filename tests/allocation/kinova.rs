@@ -8,11 +8,11 @@ use nima_devices::{
     Device as _,
     kinova::{Driver, Settings, ToolTwist, open},
 };
-use nima_testing::real_time::{alone, judged};
-use nima_world::emulators::{
+use nima_emulation::emulators::{
     EmulatedFault,
     kinova::{Emulated, StandIn},
 };
+use nima_testing::real_time::{alone, judged};
 
 use crate::counting::calls;
 

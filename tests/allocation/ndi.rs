@@ -6,8 +6,8 @@ use nima_devices::{
     Device as _,
     ndi::{Driver, Settings},
 };
+use nima_emulation::emulators::ndi::{Profile, wandering};
 use nima_testing::real_time::{alone, judged};
-use nima_world::emulators::ndi::{Profile, wandering};
 
 use crate::counting::calls;
 

@@ -10,8 +10,8 @@ use nima_machine::{
     runtime::tick,
     teleop::{Calibrations, Loop},
 };
+use nima_simulation::{Worlds, scene::Scene};
 use nima_testing::real_time::alone;
-use nima_world::{Worlds, scene::Scene};
 
 use crate::counting::calls;
 

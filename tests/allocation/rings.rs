@@ -1,8 +1,8 @@
 //! A tick of two arms among rings.
 
 use nima_machine::rig::{Outputs, Rig as _, SIDES, Side};
+use nima_simulation::{Worlds, scene::Scene};
 use nima_testing::real_time::alone;
-use nima_world::{Worlds, scene::Scene};
 
 use crate::counting::calls;
 

@@ -10,13 +10,13 @@ use nima_machine::{
     teleop::{Calibrations, Pair, Timing},
 };
 use nima_recording::tip_force::{DataSet, Selection};
+use nima_simulation::{World, scene::Scene};
 use nima_study::validation::{
     experiment::Experiment,
     isolation::{Known, record},
 };
 use nima_testing::real_time::alone;
 use nima_training::train_model;
-use nima_world::{World, scene::Scene};
 
 use crate::counting::calls;
 

@@ -1,9 +1,9 @@
 //! A tick of a hand that looks for lumps, and of one that leads a loop along a wire.
 
+use nima_core::task::Event;
 use nima_machine::rig::{Outputs, Rig as _, SIDES, Sensed, Side};
-use nima_score::Event;
+use nima_simulation::{Worlds, scene::Scene};
 use nima_testing::real_time::alone;
-use nima_world::{Worlds, scene::Scene};
 
 use crate::counting::calls;
 

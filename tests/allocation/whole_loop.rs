@@ -12,8 +12,8 @@ use nima_machine::{
     runtime::{Passed, TICKS_TAPPED_MAX, tap},
     teleop::{Calibrations, Loop, Timing},
 };
+use nima_simulation::{Worlds, scene::Scene};
 use nima_testing::real_time::alone;
-use nima_world::{Worlds, scene::Scene};
 
 use crate::counting::calls;
 

@@ -11,8 +11,8 @@ use nima_machine::{
     rig::{DeviceEvent, Inputs, Obstacle, Outputs, Rig as _, SIDES, Side, Switches, View},
     teleop::{Calibrations, Loop, Timing},
 };
+use nima_simulation::{Worlds, run_virtual, scene::Scene};
 use nima_tests::plan;
-use nima_world::{Worlds, run_virtual, scene::Scene};
 
 struct Bench {
     worlds: Worlds,

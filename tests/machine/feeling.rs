@@ -1,8 +1,7 @@
 //! A simulated person who feels: forces and pace depend on what the loop renders.
 
-use nima_core::impedance::Mode;
+use nima_core::{impedance::Mode, task::Event};
 use nima_machine::{messages::LoopState, rig::Side, runtime};
-use nima_score::Event;
 use nima_tests::plan;
 
 /// Force at the tip while it presses on the tissue, N: its peak, its mean; and how often it pressed in half a minute.
@@ -11,7 +10,7 @@ fn pressed(gain: f64, intended_n: Option<f64>) -> (f64, f64, u32) {
     (plan.rig.mode, plan.rig.delay_s, plan.rig.gates.gain) = (Mode::Matched, 0.02, gain);
     plan.scene.hand.intended_n = intended_n;
     let (mut peak_n, mut sum_n, mut ticks, mut presses, mut touches) = (0.0_f64, 0.0, 0_u32, 0, false);
-    nima_world::run_virtual(&plan, 30.0, |tick| {
+    nima_simulation::run_virtual(&plan, 30.0, |tick| {
         let force_n = tick.measured_n.norm();
         presses += u32::from(!touches && force_n > 0.5);
         touches = force_n > if touches { 0.2 } else { 0.5 };

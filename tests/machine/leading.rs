@@ -1,13 +1,12 @@
 //! One person leads two instruments from the screen, one at a time: a ring goes from hand to hand, over to the other side and back.
 
 use nalgebra::Vector3;
-use nima_core::impedance::Mode;
+use nima_core::{impedance::Mode, task::Event};
 use nima_machine::{
     messages::{Command, LoopState},
     rig::{SIDES, Side},
     runtime,
 };
-use nima_score::Event;
 use nima_tests::plan;
 
 /// As far as a led hand goes in a second, m, and how long it is waited for then, s.

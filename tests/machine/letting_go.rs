@@ -7,8 +7,8 @@ use nima_machine::{
     rig::{Act, Acts, Inputs, Side},
     teleop::{Calibrations, Pair, Timing},
 };
+use nima_simulation::run_virtual;
 use nima_tests::plan;
-use nima_world::run_virtual;
 
 /// Direct reflection at 300 ms, let go while pressing; the farthest place of the handle while engaged (m), and the states that
 /// followed. The hand takes the handle again after 2.5 s, and the loop is asked to engage.

@@ -15,8 +15,8 @@ use nima_machine::{
     runtime::tick,
     teleop::{Calibrations, Loop},
 };
+use nima_simulation::{Worlds, run_virtual, scene::Scene};
 use nima_tests::plan;
-use nima_world::{Worlds, run_virtual, scene::Scene};
 
 /// Messages under way in one direction, with the time at which they arrive, s.
 type Way = Arc<Mutex<VecDeque<(f64, Vec<u8>)>>>;

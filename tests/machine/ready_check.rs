@@ -5,7 +5,7 @@ use nima_machine::{
     rig::{Outputs, Rig as _, Side},
     teleop::{Calibrations, Pair, Timing},
 };
-use nima_world::{Worlds, scene::Scene};
+use nima_simulation::{Worlds, scene::Scene};
 
 fn pair(ready_check: ReadyCheck) -> Pair {
     let rig = RigConfig { ready_check, ..RigConfig::load("simulated").unwrap() };

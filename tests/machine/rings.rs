@@ -1,14 +1,13 @@
 //! Peg transfer in the closed loop: two hands carry six rings over and back.
 
-use nima_core::impedance::Mode;
+use nima_core::{impedance::Mode, task::Event};
 use nima_machine::{
     messages::LoopState,
     rig::{Rig as _, SIDES, Side},
     runtime,
 };
-use nima_score::Event;
+use nima_simulation::{Plan, Worlds, scene::Scene};
 use nima_tests::plan;
-use nima_world::{Plan, Worlds, scene::Scene};
 
 fn matched() -> Plan {
     let mut plan = plan("rings");
@@ -44,7 +43,7 @@ fn the_same_scene_gives_the_same_forces_to_the_last_bit() {
     let forces = || {
         let mut bits = Vec::new();
         let plan = matched();
-        nima_world::run_virtual(&plan, 8.0, |tick| {
+        nima_simulation::run_virtual(&plan, 8.0, |tick| {
             bits.extend(tick.measured_n.iter().chain(&tick.tip_m).map(|x| x.to_bits()));
             None
         })

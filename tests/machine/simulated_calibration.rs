@@ -12,7 +12,7 @@ use nima_core::{
     frames::{WristSample, from_roll_pitch_yaw_deg},
 };
 use nima_machine::rig::{Outputs, Prompt, Sensed};
-use nima_world::{
+use nima_simulation::{
     World,
     scene::{Flaw, Scene},
 };

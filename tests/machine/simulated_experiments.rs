@@ -5,11 +5,11 @@ use nima_machine::{
     messages::{Command, ForceSource, LoopState},
     rig::{Outputs, Prompt, Sensed, Side},
 };
-use nima_tests::plan;
-use nima_world::{
+use nima_simulation::{
     Plan, World, run_virtual,
     scene::{Flaw, Scene},
 };
+use nima_tests::plan;
 
 /// Samples of `scene` with this instruction for some seconds at 1 kHz, with the true force on the tip.
 fn samples(world: &mut World, from_s: f64, seconds: f64, prompt: Prompt) -> Vec<(WristSample, Vector3<f64>)> {

@@ -8,12 +8,12 @@ use nima_machine::{
     rig::{Outputs, Prompt, Side},
     teleop::{Calibrations, ForcePath},
 };
+use nima_simulation::{World, scene::Scene};
 use nima_study::validation::{
     experiment::Experiment,
     isolation::{Known, record},
 };
 use nima_training::train_model;
-use nima_world::{World, scene::Scene};
 
 /// Calibrated and trained once for all tests in this file.
 fn trained() -> &'static (Known, Model) {

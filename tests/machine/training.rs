@@ -1,15 +1,17 @@
 //! Palpation and the wire in the closed loop: simulated hands, and what a person does from the screen.
 
 use nalgebra::Vector3;
-use nima_core::impedance::Mode;
+use nima_core::{
+    impedance::Mode,
+    task::{Event, Happening},
+};
 use nima_machine::{
     messages::{Command, LoopState},
     rig::{Act, Side},
     runtime,
 };
-use nima_score::{Event, Happening};
+use nima_simulation::Plan;
 use nima_tests::plan;
-use nima_world::Plan;
 
 fn of(scene: &str, mode: Mode) -> Plan {
     let mut plan = plan(scene);

@@ -13,8 +13,8 @@ use nima_machine::{
     runtime::Summary,
     teleop::{Calibrations, Link, Pair, ProgrammedLink, Timing},
 };
+use nima_simulation::{Plan, World, run_virtual};
 use nima_tests::plan;
-use nima_world::{Plan, World, run_virtual};
 
 fn error_of(summary: &Summary, mode: Mode) -> f64 {
     summary.error.iter().find(|error| error.mode == mode).unwrap().mae_n

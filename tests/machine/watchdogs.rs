@@ -13,7 +13,7 @@ use nima_machine::{
     rig::{Inputs, Outputs, Rig, Roster, SIDES, Side},
     teleop::{Calibrations, Loop, Timing},
 };
-use nima_world::{Plan, Worlds, run_virtual, start_on};
+use nima_simulation::{Plan, Worlds, run_virtual, start_on};
 
 fn plan(engage: bool) -> Plan {
     let plan = nima_tests::plan("peg_transfer");

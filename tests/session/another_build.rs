@@ -7,8 +7,8 @@ use std::path::PathBuf;
 
 use nima_core::impedance::Mode;
 use nima_machine::messages::{Command, Tick};
+use nima_simulation::scene::Scene;
 use nima_tests::plan;
-use nima_world::scene::Scene;
 
 use crate::file::{recorded, replayed};
 

@@ -11,7 +11,7 @@ use nima_session::{
     replay::{Journal, Outcome, ReplayError, decoded, replay, verify},
     scribe::{Scribe, Written},
 };
-use nima_world::Plan;
+use nima_simulation::Plan;
 
 /// The messages of a journal.
 #[derive(Clone, Debug, Default)]

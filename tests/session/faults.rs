@@ -24,8 +24,8 @@ use nima_session::{
     journal::{Block, BlockWriter, Encoder, Message, Noted, Start, decode},
     replay::{Differs, Hole, ReplayError},
 };
+use nima_simulation::Worlds;
 use nima_tests::plan;
-use nima_world::Worlds;
 
 use crate::bench::{Kept, record, record_on, start_of};
 

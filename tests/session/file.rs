@@ -20,8 +20,8 @@ use nima_session::{
     recorder::{About, Attached, JOURNAL_TOPIC, Progress, RecordError, Recorder},
     replay::{Change, Outcome, ReplayError, compare, replay, verify},
 };
+use nima_simulation::Plan;
 use nima_tests::plan;
-use nima_world::Plan;
 
 pub(crate) fn about() -> About {
     let seed = BTreeMap::from([("seed".to_owned(), "1".to_owned())]);

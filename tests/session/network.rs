@@ -12,12 +12,12 @@ use nima_machine::{
     rig::{Prompt, Side},
     teleop::Calibrations,
 };
+use nima_simulation::Plan;
 use nima_study::validation::{
     experiment::Experiment,
     isolation::{Known, record as recorded},
 };
 use nima_training::train_model;
-use nima_world::Plan;
 
 use crate::bench::record;
 

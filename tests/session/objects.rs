@@ -3,12 +3,12 @@
 use std::{collections::VecDeque, path::Path, sync::atomic::AtomicBool};
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use nima_core::task::{Event, Happening};
 use nima_machine::{
     rig::Side,
     runtime::{self, Assembly, tap},
 };
 use nima_recording::session::Reader;
-use nima_score::{Event, Happening};
 use nima_session::{
     anonymous, cut,
     file::{LineKind, Recorded},

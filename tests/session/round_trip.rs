@@ -6,8 +6,8 @@ use nima_machine::{
     messages::{Command, Tick},
     rig::{Act, Side},
 };
+use nima_simulation::scene::Scene;
 use nima_tests::plan;
-use nima_world::scene::Scene;
 
 use crate::bench::record;
 

@@ -5,8 +5,8 @@ use std::path::Path;
 use nima_machine::rig::Side;
 use nima_recording::{csv::RecordingError, session::Reader};
 use nima_session::plotted::{PlottedError, PlottedTick, each_tick, recording};
+use nima_simulation::Plan;
 use nima_tests::plan;
-use nima_world::Plan;
 
 use crate::file::{recorded, replayed};
 

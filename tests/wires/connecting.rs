@@ -4,14 +4,15 @@
 use std::time::{Duration, Instant};
 
 use nima_devices::{Standing, force_dimension};
+use nima_emulation::emulators::EmulatedFault;
 use nima_machine::{
     config::{Chosen, RigConfig},
     rig::{Gauge, Gauges, Healths, Part, PartKind, Side},
     runtime::Handle,
 };
+use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{elsewhere, rig_file, started};
-use nima_world::{Plan, emulators::EmulatedFault, scene::Scene};
 
 const TIMEOUT: Duration = Duration::from_secs(20);
 
@@ -26,7 +27,7 @@ impl Machine {
     fn start(rig: RigConfig) -> Self {
         let scene = Scene::load("peg_transfer").unwrap();
         let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
-        Self { handle: nima_world::start(&plan).unwrap(), healths: Healths::default(), gauges: None }
+        Self { handle: nima_simulation::start(&plan).unwrap(), healths: Healths::default(), gauges: None }
     }
 
     fn until(&mut self, what: &str, good: impl Fn(&Self) -> bool) {

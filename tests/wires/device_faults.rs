@@ -9,15 +9,16 @@ use std::{
 
 use nima_core::impedance::Mode;
 use nima_devices::{Health, Loss, Standing, Trouble};
+use nima_emulation::{emulated::EmulatedRig, emulators::EmulatedFault};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Tick},
     rig::Settings,
     runtime::Handle,
 };
+use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started_in};
-use nima_world::{Plan, emulated::EmulatedRig, emulators::EmulatedFault, scene::Scene};
 
 /// Time limit for the event of a device; a tracker sends 60 frames a second.
 const TOLD_MS: f64 = 20.0;
@@ -59,7 +60,7 @@ impl Bench {
         config.mode = Mode::Dfr;
         config.gates.static_hold = true;
         let plan = Plan { rig: config, scene, calibrations: Default::default(), engage: true };
-        let handle = nima_world::start(&plan).unwrap();
+        let handle = nima_simulation::start(&plan).unwrap();
         let healths = [Health::default(); 16];
         Self { rig, handle, newest: None, healths, lost: Vec::new() }
     }

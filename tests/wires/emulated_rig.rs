@@ -10,17 +10,17 @@ use nima_core::{
     signal::PidGains,
 };
 use nima_devices::{Device, Standing, Trouble, bota, dynamixel, force_dimension, hid, kinova, ndi};
+use nima_emulation::{
+    emulated::{EmulatedRig, HandFrame},
+    emulators::EmulatedFault,
+};
 use nima_machine::{
     config::RigConfig,
     rig::{ArmSet, DeviceRig, Outputs, Rig as _, SIDES, Settings, Side, View},
 };
+use nima_simulation::scene::Scene;
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{DEVICES, elsewhere, right_arm, started};
-use nima_world::{
-    emulated::{EmulatedRig, HandFrame},
-    emulators::EmulatedFault,
-    scene::Scene,
-};
 
 /// Polls once a millisecond until the condition is true.
 fn until<D: Device>(device: &mut D, what: &str, mut good: impl FnMut(&mut D, Option<D::Reading>) -> bool) {

@@ -7,20 +7,18 @@ use std::{
 };
 
 use nalgebra::{Isometry3, Vector2, Vector3};
+use nima_emulation::emulators::EmulatedFault;
 use nima_endoscope::{Camera, Feed, Picture};
 use nima_machine::{
     config::Endoscope,
     rig::{DeviceRig, Rig, SIDES, Side},
 };
-use nima_testing::real_time::{alone, judged};
-use nima_tests::emulated::{elsewhere, started_in};
-use nima_world::{
-    emulators::{
-        EmulatedFault,
-        endoscope::{camera_of, usual},
-    },
+use nima_simulation::{
+    camera::{camera_of, usual},
     scene::Scene,
 };
+use nima_testing::real_time::{alone, judged};
+use nima_tests::emulated::{elsewhere, started_in};
 
 use super::sides::hand_eye;
 

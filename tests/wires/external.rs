@@ -21,7 +21,7 @@ use nima_testing::{
     real_time::{alone, judged, too_busy},
     unjudged,
 };
-use nima_world::{Plan, scene::Scene};
+use nima_simulation::{Plan, scene::Scene};
 
 /// Time limit for the force after a program has died, s.
 const GONE_S: f64 = 0.020;
@@ -134,7 +134,7 @@ impl Bench {
     fn new(rig: RigConfig) -> Self {
         let scene = Scene::load("peg_transfer").unwrap();
         let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
-        let handle = nima_world::start(&plan).unwrap();
+        let handle = nima_simulation::start(&plan).unwrap();
         Self { handle, newest: None, ticks: Vec::new(), healths: [Health::default(); 3], lost: Vec::new() }
     }
 

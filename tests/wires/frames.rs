@@ -10,9 +10,9 @@ use nima_core::{
     kinematics::Arm,
 };
 use nima_machine::rig::{Prompt, Side};
+use nima_simulation::screen::Task;
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{elsewhere, started};
-use nima_world::emulated::Task;
 
 use super::technician::Bench;
 

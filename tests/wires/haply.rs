@@ -8,21 +8,18 @@ use nima_devices::{
     Loss, Standing,
     haply::{Settings, codec::State},
 };
+use nima_emulation::emulators::{
+    EmulatedFault, Serving,
+    haply::{Emulated, Felt},
+};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Tick},
     rig::LeaderSettings,
     runtime::Handle,
 };
+use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged};
-use nima_world::{
-    Plan,
-    emulators::{
-        EmulatedFault, Serving,
-        haply::{Emulated, Felt},
-    },
-    scene::Scene,
-};
 
 /// How far the hand goes down into the tissue, m, and how fast, m/s.
 const DEEP_M: f64 = 0.08;
@@ -97,7 +94,7 @@ fn a_haply_handle_feels_the_simulated_tissue_and_a_silent_one_takes_the_force_aw
         let scene = Scene::load("peg_transfer").unwrap();
         // A wish that is not granted: a person's hand may be at the handle.
         let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
-        let handle = nima_world::start(&plan).unwrap();
+        let handle = nima_simulation::start(&plan).unwrap();
         assert_eq!(handle.roster()[0].name(), "right handle");
         let mut bench = Bench { handle, newest: None, lost: Vec::new() };
         bench.until("half a second", |bench| bench.newest.is_some_and(|tick| tick.t_s > 0.5));

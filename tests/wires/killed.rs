@@ -7,19 +7,19 @@ use std::{
 };
 
 use nima_core::impedance::Mode;
+use nima_emulation::{
+    emulated::{Truth, provide_handles},
+    emulators::force_dimension::Mode as Motors,
+};
 use nima_machine::{
     config::RigConfig,
     rig::{Settings, Side},
 };
+use nima_simulation::Plan;
 use nima_testing::real_time::{alone, judged};
 use nima_tests::{
     emulated::{right_arm, started},
     plan,
-};
-use nima_world::{
-    Plan,
-    emulated::{Truth, provide_handles},
-    emulators::force_dimension::Mode as Motors,
 };
 
 /// Names the rig file of the process that is killed.
@@ -38,7 +38,7 @@ fn the_loop_of_another_process() {
     let Ok(rig) = std::env::var(RIG) else { return };
     provide_handles();
     let plan = Plan { rig: RigConfig::load(&rig).unwrap(), ..plan("peg_transfer") };
-    let _handle = nima_world::start(&plan).unwrap();
+    let _handle = nima_simulation::start(&plan).unwrap();
     std::thread::sleep(Duration::from_mins(1));
 }
 

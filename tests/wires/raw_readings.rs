@@ -18,6 +18,10 @@ use nima_core::{
     impedance::Mode,
 };
 use nima_devices::external::codec::{BYTES_MAX, Datagram};
+use nima_emulation::{
+    emulated::EmulatedRig,
+    emulators::{EmulatedFault, FaultSwitch},
+};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Tick},
@@ -25,14 +29,9 @@ use nima_machine::{
     runtime::Handle,
     teleop::Calibrations,
 };
+use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started_in};
-use nima_world::{
-    Plan,
-    emulated::EmulatedRig,
-    emulators::{EmulatedFault, FaultSwitch},
-    scene::Scene,
-};
 
 /// Time limit for the force after a sensor has begun to repeat itself, s.
 const GONE_S: f64 = 0.020;
@@ -60,7 +59,7 @@ struct Bench {
 impl Bench {
     fn new(plan: &Plan) -> Self {
         let calibrations = Some(plan.calibrations[0].clone()).filter(|known| known.gravity.is_some());
-        let handle = nima_world::start(plan).unwrap();
+        let handle = nima_simulation::start(plan).unwrap();
         Self { handle, calibrations, newest: None, ticks: Vec::new(), raised: Vec::new() }
     }
 

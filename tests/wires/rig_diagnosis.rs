@@ -8,10 +8,10 @@ use nima_devices::{
     discovery::{Diagnosis, Outcome, TIMEOUT, diagnose},
     force_dimension,
 };
+use nima_emulation::emulators::{EmulatedFault, force_dimension::Held};
 use nima_machine::rig::{Settings, rig_probes};
 use nima_testing::real_time::{alone, judged};
 use nima_tests::emulated::{elsewhere, started};
-use nima_world::emulators::{EmulatedFault, force_dimension::Held};
 
 fn tried(devices: &Settings) -> Vec<Diagnosis> {
     let of_right = devices.right.as_ref().map(|right| right.sensor.bota().unwrap().transport);
@@ -194,10 +194,10 @@ fn a_device_in_use_and_one_that_waits_for_calibration_are_reported() {
             "right handle" => Trouble::Busy { .. },
         );
         drop((held, rig));
-        let waiting = nima_world::emulators::force_dimension::Emulated {
+        let waiting = nima_emulation::emulators::force_dimension::Emulated {
             serial: 77,
             reset: true,
-            ..nima_world::emulators::force_dimension::Emulated::default()
+            ..nima_emulation::emulators::force_dimension::Emulated::default()
         };
         let serving = waiting.with(Held::default().body()).serve().unwrap();
         let handle = devices.right.as_mut().unwrap().handle.force_dimension_mut().unwrap();

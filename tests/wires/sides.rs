@@ -9,6 +9,7 @@ use std::{
 use nalgebra::Isometry3;
 use nima_core::frames::to_roll_pitch_yaw_deg;
 use nima_devices::{Standing, Trouble, bota};
+use nima_emulation::emulated::{EmulatedRig, Truth};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Refusal},
@@ -16,13 +17,9 @@ use nima_machine::{
     runtime::Handle,
 };
 use nima_recording::store::{CheckedDevice, ReadyRecord};
+use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started};
-use nima_world::{
-    Plan,
-    emulated::{EmulatedRig, Truth},
-    scene::Scene,
-};
 
 const TIMEOUT: Duration = Duration::from_secs(12);
 const DATE: &str = "2026-08-21T10:20:30Z";
@@ -249,7 +246,7 @@ impl Machine {
         rig.validate().unwrap();
         let scene = Scene::load("peg_transfer").unwrap();
         let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
-        let handle = nima_world::start(&plan).unwrap();
+        let handle = nima_simulation::start(&plan).unwrap();
         let healths = Healths::default();
         Self { handle, healths, refusals: Vec::new(), engaged: false, most_n: 0.0, tick_count: 0 }
     }

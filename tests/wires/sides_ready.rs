@@ -9,13 +9,13 @@ use nima_machine::{
     ready::{Arm, Ask, Cause, Check, Session, State, Subject},
     rig::{Exchange, Prompt, SIDES, Side},
 };
+use nima_simulation::{
+    Plan,
+    scene::Scene,
+    screen::{Screen, Task},
+};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started};
-use nima_world::{
-    Plan,
-    emulated::{Screen, Task},
-    scene::Scene,
-};
 
 const TIMEOUT: Duration = Duration::from_secs(40);
 const OWN: Check = Check::Own(Side::Right);
@@ -31,7 +31,7 @@ fn found(are_exchanged: bool) -> State {
     let rig = RigConfig { devices: Some(devices), ..RigConfig::load("emulated").unwrap() };
     let scene = Scene::load("peg_transfer").unwrap();
     let plan = Plan { rig: rig.clone(), scene, calibrations: Default::default(), engage: false };
-    let handle = nima_world::start(&plan).unwrap();
+    let handle = nima_simulation::start(&plan).unwrap();
     let arms = [(); SIDES].map(|()| Some(Arm { at_wrist: false, gravity: None, has_person: true }));
     let parts = handle.roster().iter().map(|entry| entry.part).collect();
     let gates_in_file = Some(rig.gates);

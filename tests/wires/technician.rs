@@ -5,19 +5,20 @@ use std::time::{Duration, Instant};
 
 use nima_core::calibration::gravity::{GravitySession, SessionSettings};
 use nima_devices::ARM_JOINTS;
+use nima_emulation::emulated::EmulatedRig;
 use nima_machine::{
     config::RigConfig,
     messages::Tick,
     rig::{Prompt, SIDES, Settings, Side},
     runtime::Handle,
 };
+use nima_simulation::{
+    Plan,
+    scene::Scene,
+    screen::{Screen, Task},
+};
 use nima_testing::real_time::{alone, judged};
 use nima_tests::emulated::{elsewhere, started};
-use nima_world::{
-    Plan,
-    emulated::{EmulatedRig, Screen, Task},
-    scene::Scene,
-};
 
 /// Poses that are taken at each arm.
 const POSES: usize = 3;
@@ -38,7 +39,7 @@ impl Bench {
         let config = RigConfig { devices: Some(devices.clone()), ..RigConfig::load("emulated").unwrap() };
         let scene = Scene::load("peg_transfer").unwrap();
         let plan = Plan { rig: config, scene, calibrations: Default::default(), engage: false };
-        let handle = nima_world::start(&plan).unwrap();
+        let handle = nima_simulation::start(&plan).unwrap();
         Self { rig, handle, newest: [None; SIDES] }
     }
 

@@ -7,9 +7,9 @@ use nima_machine::{
     messages::{Command, LoopState, Tick, Watchdog},
     runtime::Handle,
 };
+use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{right_arm, started};
-use nima_world::{Plan, scene::Scene};
 
 /// Waits for such a tick; in a state without drives no force is commanded. A machine that is too busy for that is not judged.
 fn until(handle: &Handle, what: &str, good: impl Fn(&Tick) -> bool) {
@@ -39,7 +39,7 @@ fn every_watchdog_bites_in_idle_twice_and_the_arm_engages_afterwards() {
         let config = RigConfig { devices: Some(devices.clone()), ..RigConfig::load("emulated").unwrap() };
         let scene = Scene::load("peg_transfer").unwrap();
         let plan = Plan { rig: config, scene, calibrations: Default::default(), engage: false };
-        let handle = nima_world::start(&plan).unwrap();
+        let handle = nima_simulation::start(&plan).unwrap();
         let is = |state: LoopState| move |tick: &Tick| tick.state == state;
         // It begins idle, before its devices are there.
         until(&handle, "a second of samples", |tick| tick.state == LoopState::Idle && tick.t_s > 2.0);

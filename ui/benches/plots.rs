@@ -20,7 +20,7 @@ use nima_console::console::{
     theme,
 };
 use nima_machine::{config::RigConfig, rig::Side};
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 const RATE_HZ: f64 = 2000.0;
 const SECONDS: f64 = 120.0;

@@ -67,7 +67,7 @@ pub(crate) fn undone(changes: &[RigChange]) -> Vec<RigChange> {
 #[cfg(test)]
 mod tests {
     use nima_machine::config::{RigConfig, change_rig};
-    use nima_world::emulators::endoscope::camera_of;
+    use nima_simulation::camera::camera_of;
 
     use super::*;
 

@@ -11,7 +11,7 @@ use nima_network::{
     endpoint::{Control, Endpoint, LinkState},
     figures::{Dropped, Figures},
 };
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 use serde::Serialize;
 
 use crate::words::state_in_words;

@@ -1,10 +1,10 @@
 //! The objects of a simulated scene, as a session and the screen have them.
 
 use nalgebra::{Isometry3, Translation3};
+use nima_core::task::Happening;
 use nima_machine::rig::{SIDES, Side};
-use nima_score::Happening;
 use nima_session::objects::{Jaws, Mark, ObjectSource, Objects, Standing, WireLoop};
-use nima_world::{LoopSeen, MARKS_MAX, Moment, Plan, Training, Watched};
+use nima_simulation::{LoopSeen, MARKS_MAX, Moment, Plan, Training, Watched};
 
 /// A simulation tells its recording of its objects.
 #[derive(Debug)]
@@ -57,7 +57,7 @@ pub(crate) fn objects(moment: &Moment, has_jaws: [bool; SIDES]) -> Objects {
 fn standing(training: &Training) -> Standing {
     let Training { ended, marks, marked, found, loops, touches, share, passed, placed, dropped } = *training;
     let seen = |LoopSeen { touches, on_wire }| WireLoop { touches, on_wire };
-    let mark = |nima_world::Mark { at_m, is_true }| Mark { at_m, is_true };
+    let mark = |nima_simulation::Mark { at_m, is_true }| Mark { at_m, is_true };
     let marks = marks.into_iter().flatten().map(mark).collect();
     Standing { ended, share, marked, found, touches, passed, placed, dropped, loops: loops.map(seen), marks }
 }
@@ -67,7 +67,7 @@ pub(crate) fn training(standing: &Standing) -> Training {
     let Standing { ended, share, marked, found, touches, passed, placed, dropped, loops, ref marks } = *standing;
     let mut all = [None; MARKS_MAX];
     for (place, Mark { at_m, is_true }) in all.iter_mut().zip(marks) {
-        *place = Some(nima_world::Mark { at_m: *at_m, is_true: *is_true });
+        *place = Some(nima_simulation::Mark { at_m: *at_m, is_true: *is_true });
     }
     let loops = loops.map(|WireLoop { touches, on_wire }| LoopSeen { touches, on_wire });
     Training { ended, marks: all, marked, found, loops, touches, share, passed, placed, dropped }

@@ -12,7 +12,7 @@ use nima_session::{
     outlet::Destination,
     recorder::{About, Attached, RecordError, Recorder},
 };
-use nima_world::Plan;
+use nima_simulation::Plan;
 
 use crate::words::{event, happening, operation};
 

@@ -1,9 +1,8 @@
 //! The score of a run in a scene with a task.
 
 use nima_machine::messages::Tick;
-use nima_score::{Score, TaskFile};
-use nima_session::scored::LiveTrial;
-use nima_world::Watched;
+use nima_score::{Score, TaskFile, scored::LiveTrial};
+use nima_simulation::Watched;
 
 /// Scores from the first tick in which an arm is engaged.
 #[derive(Debug)]

@@ -12,10 +12,10 @@ use nima_machine::{
 use nima_recording::store::utc_now;
 use nima_score::TaskFile;
 use nima_session::outlet::Destination;
+use nima_simulation::{Plan, Watched, scene::Scene};
 use nima_user_study::{
     Condition, Ending, Mistakes, Phase, Running, Step, Study, StudyError, StudyFile, TrialId, simulated::Hand,
 };
-use nima_world::{Plan, Watched, scene::Scene};
 
 use crate::{leaving::Leave, objects::OfSimulation, recording, scoring::Scoring, words::Remedy as _};
 
@@ -81,8 +81,8 @@ pub(crate) fn create(folder: &Path, file: &StudyFile) -> anyhow::Result<Study> {
 /// The scene of a study: with its task, and with so many rings as it asks for.
 pub(crate) fn scene_of(file: &StudyFile) -> anyhow::Result<Scene> {
     let mut scene = Scene::load(&file.scene)?;
-    if file.task.is_some() {
-        scene.task.clone_from(&file.task);
+    if let Some(task) = &file.task {
+        scene.task = Some(task.to_scene()?);
     }
     if let Some(rings) = file.rings {
         let Some(objects) = &mut scene.objects else { bail!("rings = {rings}: scene \"{}\" has none", scene.name) };
@@ -117,7 +117,7 @@ pub(crate) fn plain_hand(study: &Study, participant: &str) -> anyhow::Result<Han
     // Trials and interruptions, so that a repetition is not the same.
     let of = study.state().progress(participant).map_or(0, |one| u64::from(one.interruptions));
     let seed = scene.seed.wrapping_add(u64::from(made(study, participant).0) + 1000 * of);
-    let nima_world::scene::Hand { pace, tremor_m, intended_n, .. } = scene.hand;
+    let nima_simulation::scene::Hand { pace, tremor_m, intended_n, .. } = scene.hand;
     Ok(Hand { pace, tremor_m, intended_n, seed })
 }
 
@@ -141,7 +141,7 @@ pub(crate) fn scene_for(study: &Study, rig: &RigConfig, hand: &Hand) -> anyhow::
     let mut scene = scene_in(study)?;
     (scene.hand.pace, scene.hand.tremor_m, scene.seed) = (hand.pace, hand.tremor_m, hand.seed);
     scene.hand.intended_n = hand.intended_n;
-    let task = scene.task.clone().context("the scene of the study has no task")?;
+    let task = TaskFile::of(scene.task.as_ref().context("the scene of the study has no task")?)?;
     Ok((scene.mounted_at(rig)?, task))
 }
 

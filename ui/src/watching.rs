@@ -8,7 +8,7 @@ use std::{net::SocketAddr, path::PathBuf};
 use clap::Args;
 use nima_endoscope::Reel;
 use nima_session::outlet::Audience;
-use nima_world::Plan;
+use nima_simulation::Plan;
 
 #[cfg(any(feature = "live", feature = "department"))]
 use crate::telling::tell;
@@ -149,7 +149,7 @@ fn share_at(_: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigConfig;
-    use nima_world::scene::Scene;
+    use nima_simulation::scene::Scene;
 
     use super::*;
 

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use nima_core::kinematics::Hand;
 use nima_machine::rig::{Inputs, Outputs, Rig, SIDES, Side};
-use nima_world::{Worlds, scene::Leader};
+use nima_simulation::{Worlds, scene::Leader};
 
 /// A controller moves the handle no faster, m/s: the loop takes more for a jump.
 pub(super) const FASTEST_M_S: f64 = 1.0;

@@ -12,7 +12,7 @@ use nima_machine::{
     rig::{GRIP_MAX_RAD, SIDES},
     teleop::Calibrations,
 };
-use nima_world::{Plan, scene::Scene};
+use nima_simulation::{Plan, scene::Scene};
 use numpy::PyArray1;
 use pyo3::{prelude::*, types::PyDict};
 
@@ -74,6 +74,7 @@ impl Simulation {
         if !(1..=SUBSTEPS_MAX).contains(&substeps) {
             return Err(value(format_args!("substeps is {substeps}; it must be 1 to {SUBSTEPS_MAX}")));
         }
+        nima_score::provide_tasks();
         let scene = Scene::load(scene).map_err(value)?;
         let mut rig = RigConfig::load(rig).map_err(value)?;
         if rig.devices.is_some() || rig.desk.is_some() {

@@ -3,16 +3,15 @@
 use std::collections::VecDeque;
 
 use nalgebra::Vector3;
-use nima_core::impedance::SettingsError;
+use nima_core::{impedance::SettingsError, task::Event};
 use nima_machine::{
     messages::{Command, LoopState, Tick},
     rig::{GRIP_MAX_RAD, GUIDE_MAX_M, Inputs, Side},
     runtime,
     teleop::Loop,
 };
-use nima_score::{Event, Score};
-use nima_session::scored::LiveTrial;
-use nima_world::{Plan, Training, Watched, Worlds};
+use nima_score::{Score, TaskFile, scored::LiveTrial};
+use nima_simulation::{Plan, Training, Watched, Worlds};
 
 use super::{
     handle::{Handled, Holder},
@@ -75,7 +74,8 @@ impl Running {
         let period_s = 1.0 / plan.rig.rate_hz;
         let rig = Handled::new(worlds, SIDE, plan.scene.leader, plan.scene.hand.mass_kg, period_s);
         let (training, tips_m) = (None, VecDeque::new());
-        let trial = plan.scene.task.as_ref().map(LiveTrial::new);
+        let task = plan.scene.task.as_ref().and_then(|task| TaskFile::of(task).ok());
+        let trial = task.as_ref().map(LiveTrial::new);
         let (handle_before_m, known) = (None, None);
         Ok(Self { control, rig, watched, training, trial, ticks: 0, period_s, tips_m, handle_before_m, known })
     }

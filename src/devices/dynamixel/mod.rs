@@ -8,7 +8,7 @@
 //! stops it when the bus falls quiet. Dropping the driver switches it off. A servo that has shut itself down ([`Fault`]
 //! gives the reason) starts again only through [`Reboots`].
 //!
-//! The emulated bus with its servos is `nima_world::emulators::dynamixel`.
+//! The emulated bus with its servos is `nima_simulation::emulators::dynamixel`.
 
 mod clock;
 pub mod codec;

@@ -15,7 +15,7 @@
 //!   reports for 20 ms that there is nothing newer (`DHD_TIMEGUARD`).
 //!
 //! The replacement library is in `src/lab/stand_in`; the emulated device behind it is
-//! `nima_world::emulators::force_dimension`.
+//! `nima_simulation::emulators::force_dimension`.
 
 mod driver;
 mod leader;

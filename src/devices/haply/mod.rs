@@ -9,7 +9,7 @@
 //! - The device is lost after 20 ms without an answer, ten impossible answers in a row, or a line without a valid one.
 //!
 //! The codes are those of the manufacturer's own client (`HaplyHardwareAPI`); `tests/peers` holds the two together. The
-//! emulated device is `nima_world::emulators::haply`.
+//! emulated device is `nima_simulation::emulators::haply`.
 
 pub mod codec;
 mod driver;

@@ -7,7 +7,7 @@
 //!   that mode.
 //! - Faults are reported as text ([`faults::Faults`]) and cleared only by command: [`FaultClearing`].
 //! - Dropping the driver brakes, leaves low-level servoing, stops a twist and closes the sessions.
-//! - The emulated arm, which follows commands, is `nima_world::emulators::kinova`.
+//! - The emulated arm, which follows commands, is `nima_simulation::emulators::kinova`.
 //!
 //! Modules without input and output: [`wire`] (decodes protobuf in place), [`frame`], [`messages`], [`feedback`],
 //! [`faults`], [`limits`], [`kinematics`]. The wire uses degrees, everything else rad. The protocol has no checksum and

@@ -24,7 +24,7 @@ use nima_session::{
     recorder::{About as AboutSession, Attached, Recorder},
     replay::replay,
 };
-use nima_world::{Plan, scene::Scene};
+use nima_simulation::{Plan, scene::Scene};
 use zenoh::Wait as _;
 
 use super::*;

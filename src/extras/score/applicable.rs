@@ -1,6 +1,7 @@
 //! Which measures a kind of task can have: a form offers these.
 
-use crate::{Definition, TaskKind};
+use crate::Definition;
+use nima_core::task::TaskKind;
 
 /// Measures of one kind of task.
 const PEG_TRANSFER: [&str; 12] = [
@@ -40,10 +41,13 @@ impl Definition {
 
 #[cfg(test)]
 mod tests {
-    use nima_core::Side;
+    use nima_core::{
+        Side,
+        task::{Event, Happening},
+    };
 
     use super::*;
-    use crate::{Event, HandSample, Happening, MEASURES, Sample, Scorer, TaskFile};
+    use crate::{HandSample, MEASURES, Sample, Scorer, TaskFile};
 
     /// The measures that a trial has in which everything happens.
     fn measured(kind: TaskKind) -> Vec<&'static str> {

@@ -2,9 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use nima_core::{SIDES, Side};
-
-use crate::Event;
+use nima_core::{SIDES, Side, task::Event};
 
 /// Moments that are kept for the ways between them, and lumps that are told apart; more is a fault of the input.
 const MOST: usize = 10_000;

@@ -1,13 +1,17 @@
 //! The score of a trial of a training task: peg transfer, palpation, wire loop.
 //!
-//! Takes [`Sample`]s of motion (m) and force (N) of both hands at about 1 kHz, and [`Happening`]s (a ring placed, a wire touched); returns a
+//! Takes [`Sample`]s of motion (m) and force (N) of both hands at about 1 kHz, and [`Happening`](nima_core::task::Happening)s (a ring placed, a wire touched); returns a
 //! [`Score`] of named measures, each with unit, definition and source. [`Proficiency`] and [`LearningCurve`] judge a sequence of
-//! trials, [`Guidance`] says after which of them the trainee is told the result. This crate knows no loop, device, file, thread or clock. `docs/score.md` lists the measures.
+//! trials, [`Guidance`] says after which of them the trainee is told the result. [`scored`] scores the ticks of a loop, or a recorded
+//! session; everything else knows no loop, device, file, thread or clock. `docs/score.md` lists the measures.
 //!
 //! ```
 //! use nalgebra::Vector3;
-//! use nima_core::Side;
-//! use nima_score::{Event, HandSample, Happening, Sample, Scorer, TaskFile};
+//! use nima_core::{
+//!     Side,
+//!     task::{Event, Happening},
+//! };
+//! use nima_score::{HandSample, Sample, Scorer, TaskFile};
 //!
 //! let task = TaskFile::from_toml("name = 'Six rings'\nkind = 'peg_transfer'")?;
 //! let mut scorer = Scorer::new(&task);
@@ -35,13 +39,13 @@ mod events;
 mod force;
 mod guidance;
 mod hand;
-mod happening;
 mod jaw;
 mod learning;
 mod motion;
 mod proficiency;
 mod sample;
 mod score;
+pub mod scored;
 mod scorer;
 mod signal;
 mod smoothness;
@@ -52,10 +56,9 @@ mod two_hands;
 
 pub use catalogue::{Definition, MEASURES};
 pub use guidance::{Feedback, Guidance};
-pub use happening::{Event, Happening};
 pub use learning::{LEAST_TRIALS, LearningCurve, Shape};
 pub use proficiency::{Proficiency, Standing};
 pub use sample::{HandSample, Sample};
 pub use score::{Measure, Outcome, Score};
 pub use scorer::Scorer;
-pub use task::{Criterion, LONGEST_TRIAL_S, TaskError, TaskFile, TaskKind};
+pub use task::{Criterion, LONGEST_TRIAL_S, TaskError, TaskFile, provide_tasks};

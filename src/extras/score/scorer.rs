@@ -1,9 +1,12 @@
 //! From the samples and events of a trial to its score.
 
-use nima_core::{SIDES, Side};
+use nima_core::{
+    SIDES, Side,
+    task::{Event, Happening, TaskKind},
+};
 
 use crate::{
-    Event, Happening, Outcome, Sample, Score, TaskFile, TaskKind,
+    Outcome, Sample, Score, TaskFile,
     economy::path_economy,
     events::Events,
     hand::Hand,

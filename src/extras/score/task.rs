@@ -1,27 +1,21 @@
 //! The file that describes a training task.
 
+use std::fmt::Display;
+
+use nima_core::task::TaskKind;
+use nima_simulation::scene::{Task, score_tasks_by};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+use toml::Table;
 
 /// Longest time limit of a trial, s: its trajectory is kept at 100 Hz until it ends.
 pub const LONGEST_TRIAL_S: f64 = 1200.0;
 
-/// Which measures apply, and what counts as an error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the names say it")]
-pub enum TaskKind {
-    /// Motion and force alone: no objects are known, and no picture.
-    Free,
-    PegTransfer,
-    Palpation,
-    WireLoop,
-}
-
 /// A training task, as its TOML file says it. Every key but `name` and `kind` has a default.
 ///
 /// ```
-/// use nima_score::{TaskFile, TaskKind};
+/// use nima_core::task::TaskKind;
+/// use nima_score::TaskFile;
 ///
 /// let task = TaskFile::from_toml("name = 'Lumps'\nkind = 'palpation'\nlumps = 5\ntime_limit_s = 240.0")?;
 /// assert_eq!((task.kind, task.lumps, task.proficiency.time_s), (TaskKind::Palpation, Some(5), 48.0));
@@ -115,6 +109,24 @@ impl TaskFile {
         Ok(task)
     }
 
+    /// The task of a scene.
+    ///
+    /// # Errors
+    /// As [`from_toml`](Self::from_toml).
+    pub fn of(task: &Task) -> Result<Self, TaskError> {
+        let task: Self = Table::try_from(task).map_err(unreadable)?.try_into().map_err(unreadable)?;
+        task.check()?;
+        Ok(task)
+    }
+
+    /// As the task of a scene.
+    ///
+    /// # Errors
+    /// [`TaskError::Toml`] if it cannot be written.
+    pub fn to_scene(&self) -> Result<Task, TaskError> {
+        Table::try_from(self).map_err(unreadable)?.try_into().map_err(unreadable)
+    }
+
     /// Whether every value is in its range.
     ///
     /// # Errors
@@ -132,7 +144,7 @@ impl TaskFile {
             let allowed = "from 0 s to 1200 s";
             return Err(TaskError::Setting { key: "penalty_s", value: self.penalty_s, allowed });
         }
-        if !(0.0..=0.05).contains(&self.mark_tolerance_m) {
+        if !Task::MARK_TOLERANCES_M.contains(&self.mark_tolerance_m) {
             let allowed = "from 0 m to 0.05 m";
             return Err(TaskError::Setting { key: "mark_tolerance_m", value: self.mark_tolerance_m, allowed });
         }
@@ -145,6 +157,19 @@ impl TaskFile {
     pub(crate) fn limit_s(&self) -> f64 {
         if self.time_limit_s > 0.0 { self.time_limit_s.min(LONGEST_TRIAL_S) } else { time_limit_s() }
     }
+}
+
+/// Has the task of every scene that is loaded from now on read here. A program does it once, before it loads any.
+pub fn provide_tasks() {
+    score_tasks_by(|task| {
+        let read = TaskFile::of(task).and_then(|file| file.to_scene());
+        *task = read.map_err(|error| error.to_string())?;
+        Ok(())
+    });
+}
+
+fn unreadable(error: impl Display) -> TaskError {
+    TaskError::Toml { reason: error.to_string().lines().collect::<Vec<_>>().join(" ") }
 }
 
 fn time_limit_s() -> f64 {
@@ -168,5 +193,5 @@ fn contact_n() -> f64 {
 }
 
 fn mark_tolerance_m() -> f64 {
-    0.003
+    Task::MARK_TOLERANCE_M
 }

@@ -11,7 +11,7 @@ use nima_machine::{
     config::ConfigError,
     rig::{Inputs, Outputs, Rig as _, SIDES, Sensed, Side},
 };
-use nima_world::{World, Worlds, scene::Scene};
+use nima_simulation::{World, Worlds, scene::Scene};
 use serde::Serialize;
 
 use crate::{Experiment, Findings};

@@ -23,7 +23,7 @@ use nima_machine::{
         even::{Between, deadlines, stacked},
     },
 };
-use nima_world::{Tissue, scene::Tissue as TissueConfig};
+use nima_simulation::{Tissue, scene::Tissue as TissueConfig};
 
 /// Ticks per second.
 pub(super) const RATE_HZ: f64 = 1000.0;

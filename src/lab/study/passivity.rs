@@ -13,7 +13,7 @@ use nima_core::{
     safety::{ChainSettings, EnergyMode},
 };
 use nima_machine::runtime::{ClockProfile, VirtualClock};
-use nima_world::scene::Tissue;
+use nima_simulation::scene::Tissue;
 use serde::Serialize;
 
 use super::{

@@ -16,7 +16,7 @@ use nima_machine::{
     config::ConfigError,
     runtime::{ClockProfile, VirtualClock},
 };
-use nima_world::scene::{Scene, Tissue};
+use nima_simulation::scene::{Scene, Tissue};
 use serde::Serialize;
 
 use super::pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial};

@@ -21,7 +21,7 @@ use nima_core::{
     safety::{ChainSettings, EnergyMode},
 };
 use nima_machine::runtime::VirtualClock;
-use nima_world::scene::Tissue;
+use nima_simulation::scene::Tissue;
 use serde::{Serialize, Serializer};
 
 use crate::{

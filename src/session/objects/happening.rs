@@ -1,9 +1,9 @@
-//! A happening as a message: JSON, so that any event of the score is one.
+//! A happening as a message: JSON, so that any event is one.
 
-use nima_score::{Event, Happening};
+use nima_core::task::{Event, Happening};
 use serde_json::{Map, Value};
 
-/// Name and JSON schema of the messages. What an event has besides is named as in the score.
+/// Name and JSON schema of the messages. What an event has besides is named as its field.
 pub(crate) const SCHEMA_NAME: &str = "nima.Happening";
 /// See [`SCHEMA_NAME`].
 pub(crate) const SCHEMA: &str = r#"{
@@ -49,7 +49,7 @@ pub fn kind(event: &Event) -> String {
     if matches!(event, Event::RingDropped { in_view: false, .. }) { format!("{name}_out_of_view") } else { name }
 }
 
-/// Name and fields of an event, as the score serialises them.
+/// Name and fields of an event, as `serde` writes them.
 fn parts(event: &Event) -> (String, Map<String, Value>) {
     match serde_json::to_value(event) {
         Ok(Value::String(name)) => (name, Map::new()),

@@ -4,6 +4,7 @@
 use std::collections::VecDeque;
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
+use nima_core::task::Happening;
 use nima_machine::rig::{SIDES, Side};
 use nima_recording::{
     messages::{
@@ -12,7 +13,6 @@ use nima_recording::{
     },
     session::WriteError,
 };
-use nima_score::Happening;
 use prost::Message as _;
 
 use super::{

@@ -8,7 +8,7 @@ use std::{
 use anyhow::Context as _;
 use clap::Args;
 use nima_machine::config::SchedulingClass;
-use nima_world::Plan;
+use nima_simulation::Plan;
 
 use super::{network::ToFollower, output, setup::Setup};
 use crate::language::Language;

@@ -16,7 +16,7 @@ use std::{io::BufRead as _, sync::mpsc::RecvTimeoutError, time::Duration};
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima_world::emulators::{ALONE, EmulatedFault, Serving, Settings};
+use nima_emulation::emulators::{ALONE, EmulatedFault, Serving, Settings};
 use serde::Serialize;
 
 use super::output;
@@ -75,7 +75,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             let known: Vec<_> = ALONE.iter().map(|(known, _)| *known).collect();
             bail!("unknown emulator \"{name}\"; known: {}", known.join(", "));
         };
-        let serving = emulator(&settings).and_then(<dyn nima_world::emulators::Emulator>::serve);
+        let serving = emulator(&settings).and_then(<dyn nima_emulation::emulators::Emulator>::serve);
         emulated.push((*known, serving.with_context(|| format!("cannot emulate {name}"))?));
     }
     for (_, serving) in &emulated {

@@ -22,7 +22,7 @@ use nima_session::{
     plotted::{self, PlottedError, PlottedTick},
     recorder::Attached,
 };
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use super::{motion, output, stretch::Stretch};
 use crate::{

@@ -126,7 +126,8 @@ pub fn main() -> ExitCode {
         // --help and --version.
         Err(error) => error.exit(),
     };
-    nima_world::emulated::provide_handles();
+    nima_emulation::emulated::provide_handles();
+    nima_score::provide_tasks();
     let result = match command {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),

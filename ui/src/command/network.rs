@@ -15,7 +15,7 @@ use nima_network::{
     stream::StreamSettings,
 };
 
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use crate::{by_itself::Arm, line::Line};
 

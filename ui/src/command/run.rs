@@ -14,6 +14,7 @@ use std::{
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_core::{calibration::gravity::Drift, impedance::Mode};
+use nima_emulation::emulated::TipError;
 use nima_endoscope::Reel;
 use nima_machine::{
     config::{RigConfig, SchedulingClass},
@@ -22,9 +23,9 @@ use nima_machine::{
     runtime::{self, Assembly, ClockProfile, Summary, Tap, VirtualClock},
 };
 use nima_recording::store::WristId;
-use nima_score::Score;
+use nima_score::{Score, TaskError, TaskFile};
 use nima_session::outlet::Destination;
-use nima_world::{Plan, Watched, emulated::TipError, scene::Scene};
+use nima_simulation::{Plan, Watched, scene::Scene};
 use serde::Serialize;
 
 use self::{
@@ -208,7 +209,7 @@ pub(super) fn run_with(
     let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock(), arguments.seconds, pictures)?;
     let mut summary = if let Some(clock) = arguments.virtual_clock() {
         let (assembly, watched) = plan.watched()?;
-        start.watch_objects(&plan, watched, &recording);
+        start.watch_objects(&plan, watched, &recording)?;
         runtime::run_virtual_on(clock, Assembly { tap, ..assembly }, arguments.seconds.unwrap_or(60.0), |tick| {
             let command = start.watch(tick);
             if leave.is_asked() || recording.is_over() { Some(Command::Shutdown) } else { command }
@@ -284,11 +285,18 @@ struct Start {
 
 impl Start {
     /// Objects are told to the recording, and to the score if there is a task.
-    fn watch_objects(&mut self, plan: &Plan, mut watched: Option<Watched>, recording: &Recording) {
+    fn watch_objects(
+        &mut self,
+        plan: &Plan,
+        mut watched: Option<Watched>,
+        recording: &Recording,
+    ) -> Result<(), TaskError> {
         if let Some(watched) = watched.as_mut().and_then(Watched::another) {
             recording.watch(OfSimulation::source(plan, watched));
         }
-        self.scoring = plan.scene.task.as_ref().map(|task| Scoring::new(task, watched));
+        let task = plan.scene.task.as_ref().map(TaskFile::of).transpose()?;
+        self.scoring = task.map(|task| Scoring::new(&task, watched));
+        Ok(())
     }
 
     fn watch(&mut self, tick: &Tick) -> Option<Command> {
@@ -336,7 +344,7 @@ fn on_the_real_clock(
     arguments: &Arguments,
 ) -> anyhow::Result<Summary> {
     let (assembly, watched) = plan.watched_assembly()?;
-    start.watch_objects(plan, watched, recording);
+    start.watch_objects(plan, watched, recording)?;
     let assembly = Assembly { tap, ..assembly };
     let door = line.as_ref().map(Line::door);
     let handle = runtime::start(match line {

@@ -10,10 +10,10 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_files::write_atomically;
 use nima_recording::session::Reader;
-use nima_score::{MEASURES, Measure, Score, TaskFile};
-use nima_session::{objects, plotted, scored};
+use nima_score::{MEASURES, Measure, Score, TaskFile, scored};
+use nima_session::{objects, plotted};
+use nima_simulation::scene::Scene;
 use nima_study::csv_cell;
-use nima_world::scene::Scene;
 use serde::Serialize;
 
 use super::{output, stretch::Stretch};
@@ -94,7 +94,7 @@ fn recorded_task(session: &Path, reader: &Reader) -> anyhow::Result<TaskFile> {
     let scene = Scene::parse(Path::new(SCENE), &text).with_context(|| {
         format!("session {}: its scene cannot be read; give the task with --task FILE", session.display())
     })?;
-    scene.task.map_or_else(|| Ok(TaskFile::from_toml(FREE)?), Ok)
+    Ok(scene.task.map_or_else(|| TaskFile::from_toml(FREE), |task| TaskFile::of(&task))?)
 }
 
 fn scored(

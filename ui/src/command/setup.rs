@@ -2,7 +2,7 @@
 
 use clap::Args;
 use nima_machine::config::{ConfigError, Ranges, RigConfig};
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use crate::{
     console::start::{Choice, drawn_anew},

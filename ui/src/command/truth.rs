@@ -10,11 +10,11 @@ use std::{
 };
 
 use nalgebra::Vector3;
+use nima_emulation::emulated::{DoubtShares, IN_USE, TipError, TipErrors};
 use nima_machine::{
     messages::Tick,
     rig::{SIDES, Side},
 };
-use nima_world::emulated::{DoubtShares, IN_USE, TipError, TipErrors};
 use serde::{Deserialize, Serialize};
 
 /// Ticks of a side that are kept for the truth about them: two seconds at 1 kHz.
@@ -129,7 +129,7 @@ pub(super) fn in_words(figures: &[TipError]) -> String {
 #[cfg(test)]
 mod tests {
     use nima_machine::{config::RigConfig, messages::LoopState};
-    use nima_world::{Plan, run_virtual, scene::Scene};
+    use nima_simulation::{Plan, run_virtual, scene::Scene};
 
     use super::*;
     use crate::console::in_force::InForce;

@@ -28,7 +28,7 @@ use nima_machine::{
     rig::Side,
     runtime::{self, Assembly, Handle, StartError},
 };
-use nima_world::{Plan, Watched, emulated::Screen, scene::Scene};
+use nima_simulation::{Plan, Watched, scene::Scene, screen::Screen};
 
 use super::{
     Options,
@@ -282,7 +282,7 @@ impl ConsoleApp {
                 let audiences = self.sessions.blind_audiences(&plan, &trial.name());
                 trial.start(&plan, speed, (self.sessions.reel(), audiences))
             }
-            (None, Some(speed)) => nima_world::start_watched(&plan, speed).map_err(|error| error.to_string()),
+            (None, Some(speed)) => nima_simulation::start_watched(&plan, speed).map_err(|error| error.to_string()),
             (None, None) => start_recorded(&plan, &mut self.sessions, line).map_err(|error| error.to_string()),
         };
         let started = started.map_err(|error| text::calibrations::not_started_again(&error));

@@ -277,7 +277,7 @@ mod tests {
         config::RigConfig,
         messages::{Command, LoopState},
     };
-    use nima_world::{Plan, scene::Scene, start};
+    use nima_simulation::{Plan, scene::Scene, start};
 
     use super::*;
 

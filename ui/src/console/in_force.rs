@@ -24,7 +24,7 @@ use nima_machine::{
     teleop::Calibrations,
 };
 use nima_recording::store::{ReadyRecord, Store, WristId, utc_now};
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 use of_side::{Bound, OfSide};
 
 use super::{

@@ -22,7 +22,7 @@ use nima_machine::{
     rig::{DEVICES_MAX, DeviceName, Gauges, Healths, Roster, SIDES, Side},
 };
 use nima_session::objects::Objects;
-use nima_world::{Training, scene::Scene};
+use nima_simulation::{Training, scene::Scene};
 
 use crate::{
     line::{LineDoor, LineReport},

@@ -53,7 +53,7 @@ use std::{path::PathBuf, time::Duration};
 
 use app::Started;
 use nima_machine::config::RigConfig;
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 use sessions::Sessions;
 use settings::Kept;
 use start::Choice;

@@ -12,7 +12,7 @@ use eframe::glow;
 use egui::{Align, CentralPanel, Frame, Label, Layout, Margin, Panel, RichText, Stroke, StrokeKind, Ui};
 use nima_machine::config::RigConfig;
 use nima_session::watched::Moment;
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use super::{
     alarms::judge,

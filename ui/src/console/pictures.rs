@@ -113,7 +113,7 @@ impl Photographer {
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigConfig;
-    use nima_world::scene::Scene;
+    use nima_simulation::scene::Scene;
 
     use super::*;
 

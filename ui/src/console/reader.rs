@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nima_world::emulated::{Screen, Task};
+use nima_simulation::screen::{Screen, Task};
 
 use super::wizards::{Kind, Which};
 

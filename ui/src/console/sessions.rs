@@ -19,7 +19,7 @@ use nima_session::{
     recorder::{Note, NoteKind, Recorder},
     shelf::{MOST_BYTES, Shelf, keep},
 };
-use nima_world::Plan;
+use nima_simulation::Plan;
 
 use super::{
     alarms::{Alarm, Kind, Priority, log::AlarmLog},
@@ -307,7 +307,7 @@ mod tests {
         replay::replay,
         report::{Figures, MarkLevel},
     };
-    use nima_world::scene::Scene;
+    use nima_simulation::scene::Scene;
 
     use crate::console::alarms::{Signs, judge, log::Moment};
 

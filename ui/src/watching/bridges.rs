@@ -8,8 +8,9 @@ use nima_bridges::{
 };
 use nima_endoscope::Reel;
 use nima_machine::{messages::Fault, rig::Side};
+use nima_score::TaskFile;
 use nima_session::outlet::Audience;
-use nima_world::Plan;
+use nima_simulation::Plan;
 
 use super::{Server, Shown};
 use crate::{
@@ -68,7 +69,8 @@ impl Server for Marker {
 }
 
 fn marked(plan: &Plan, trial: Option<String>) -> lsl::About {
-    let contact_n = plan.scene.task.as_ref().map_or(CONTACT_N, |task| task.contact_n);
+    let contact_n =
+        plan.scene.task.as_ref().and_then(|task| TaskFile::of(task).ok()).map_or(CONTACT_N, |task| task.contact_n);
     lsl::About { contact_n, trial, words: Fault::cause }
 }
 
@@ -89,7 +91,7 @@ fn machine() -> String {
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigConfig;
-    use nima_world::scene::Scene;
+    use nima_simulation::scene::Scene;
 
     use super::*;
 
@@ -107,7 +109,7 @@ mod tests {
     #[test]
     fn a_mark_of_contact_begins_where_the_task_counts_contact() {
         let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("rings").unwrap());
-        let contact_n = scene.task.as_ref().unwrap().contact_n;
+        let contact_n = TaskFile::of(scene.task.as_ref().unwrap()).unwrap().contact_n;
         let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
         let marked_n = marked(&plan, Some("P03 4".to_owned())).contact_n;
         assert_eq!(marked_n.to_bits(), contact_n.to_bits());

@@ -63,7 +63,7 @@ mod tests {
         rig::{SIDES, Side},
     };
 
-    use nima_world::{Plan, scene::Scene};
+    use nima_simulation::{Plan, scene::Scene};
 
     use super::*;
 

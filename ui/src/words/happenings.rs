@@ -1,6 +1,6 @@
 //! What happens to the objects of a scene, in words. People count rings and pegs from 1, data from 0.
 
-use nima_score::Event;
+use nima_core::task::Event;
 
 use super::names::side_word;
 use crate::language::{told, word};

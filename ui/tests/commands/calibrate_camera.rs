@@ -5,9 +5,9 @@ use std::{
     process::{Command, Output},
 };
 
+use nima_emulation::emulators::endoscope::held;
 use nima_endoscope::{Board, Lens, board::Portrait, jpeg};
 use nima_machine::config::{RigConfig, RigFile};
-use nima_world::emulators::endoscope::held;
 use serde_json::Value;
 
 use crate::one_line;

@@ -10,18 +10,17 @@ use std::{
 };
 
 use nima_console::leaving::Leave;
+use nima_emulation::{
+    emulated::{Truth, provide_handles},
+    emulators::force_dimension::Mode as Motors,
+};
 use nima_machine::{
     config::RigConfig,
     rig::{Settings, Side},
 };
+use nima_simulation::{Plan, start};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::{emulated, plan};
-use nima_world::{
-    Plan,
-    emulated::{Truth, provide_handles},
-    emulators::force_dimension::Mode as Motors,
-    start,
-};
 use serde_json::Value;
 
 const TIMEOUT: Duration = Duration::from_mins(1);

@@ -6,12 +6,12 @@ use std::{
 };
 
 use nima_machine::config::RigFile;
+use nima_simulation::scene::Scene;
 use nima_testing::{
     real_time::{alone as one_rig_at_a_time, judged, too_busy},
     unjudged,
 };
 use nima_tests::emulated::{DEVICES, elsewhere, rig_file, started_in};
-use nima_world::scene::Scene;
 
 /// The ten of the paper's rig.
 fn devices() -> impl Iterator<Item = &'static str> {

@@ -8,7 +8,7 @@ use egui_kittest::{
 };
 use nima_console::console::{ConsoleApp, Options, settings::Kept, wizards::Which};
 use nima_machine::{config::RigConfig, messages::LoopState};
-use nima_world::{Plan, scene::Scene, start};
+use nima_simulation::{Plan, scene::Scene, start};
 
 use crate::bench::{console_of, press, read, until};
 

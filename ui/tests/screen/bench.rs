@@ -12,8 +12,8 @@ use egui_kittest::{
 };
 use nima_console::console::{ConsoleApp, settings::Kept};
 use nima_machine::messages::Tick;
+use nima_simulation::{Plan, start_watched};
 use nima_tests::plan;
-use nima_world::{Plan, start_watched};
 
 /// Far longer than anything takes, also on a busy machine.
 pub(crate) const TIMEOUT: Duration = Duration::from_mins(3);

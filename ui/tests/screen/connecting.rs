@@ -17,12 +17,12 @@ use nima_machine::{
     messages::LoopState,
     rig::{Settings, Side},
 };
+use nima_simulation::start_simulated;
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::{
     emulated::{elsewhere, rig_file},
     plan,
 };
-use nima_world::start_simulated;
 
 use crate::bench::{comes, press, toured, until};
 

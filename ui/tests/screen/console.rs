@@ -18,8 +18,8 @@ use nima_machine::{
     messages::{LoopState, Tick},
     rig::Side,
 };
+use nima_simulation::Plan;
 use nima_tests::plan;
-use nima_world::Plan;
 
 use crate::bench::{press, shown, until, wait};
 

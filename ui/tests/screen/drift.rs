@@ -4,8 +4,8 @@ use std::{path::Path, process::Command};
 
 use nima_machine::{config::RigConfig, teleop::Calibrations};
 use nima_recording::store::Store;
+use nima_simulation::{Plan, scene::Scene};
 use nima_tests::gravity::gravity;
-use nima_world::{Plan, scene::Scene};
 
 use crate::bench::{Console, can_press, read, shown, shows};
 

@@ -5,19 +5,20 @@ use egui::{
 };
 use egui_kittest::kittest::Queryable as _;
 use nima_console::console::desk::{Layout, Panel};
+use nima_emulation::emulators::{
+    EmulatedFault, Serving,
+    endoscope::{Emulated, Instrument},
+};
 use nima_machine::{
     config::{Endoscope, StereoView},
     messages::LoopState,
 };
-use nima_tests::plan;
-use nima_world::{
+use nima_simulation::{
     Plan,
-    emulators::{
-        EmulatedFault, Serving,
-        endoscope::{Emulated, Instrument, camera_of, usual},
-    },
+    camera::{camera_of, usual},
     scene::Scene,
 };
+use nima_tests::plan;
 
 use crate::bench::{Console, TIMEOUT, comes, press, shown, until};
 

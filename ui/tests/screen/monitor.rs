@@ -11,8 +11,8 @@ use nima_session::{
     objects::{Jaws, Objects, Standing},
     watched::{Moment, MomentWriter, read},
 };
+use nima_simulation::Plan;
 use nima_tests::plan;
-use nima_world::Plan;
 
 use crate::bench::{can_press, read as reads, shows, texts};
 

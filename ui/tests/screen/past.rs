@@ -14,6 +14,7 @@ use egui_kittest::{
     kittest::{NodeT as _, Queryable as _},
 };
 use nima_console::console::{ConsoleApp, roles::Role};
+use nima_core::task::Event;
 use nima_machine::{
     config::SchedulingClass,
     messages::{Command, LoopState},
@@ -21,10 +22,9 @@ use nima_machine::{
     runtime::{self, Assembly, Clock, Next, Operation, Passed, TapEnd, tap},
 };
 use nima_recording::session::Reader;
-use nima_score::Event;
 use nima_session::objects;
+use nima_simulation::Plan;
 use nima_tests::plan;
-use nima_world::Plan;
 
 use crate::bench::{TIMEOUT, console_of, press, shows, toured, until, wait};
 

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use nima_machine::{config::RigConfig, messages::LoopState, teleop::Calibrations};
 use nima_recording::store::{Outcome, Store};
+use nima_simulation::{Plan, scene::Scene};
 use nima_tests::gravity::gravity;
-use nima_world::{Plan, scene::Scene};
 
 use crate::bench::{Console, WIZARD_SPEED, can_press, pick, press, read, shown_at, shows, until};
 

@@ -10,15 +10,18 @@ use eframe::App as _;
 use egui::{Key, Pos2, Shape, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
 use nima_console::console::Options;
-use nima_core::Side;
+use nima_core::{
+    Side,
+    task::{Event, Happening},
+};
 use nima_machine::messages::LoopState;
-use nima_score::{Event, HandSample, Happening, Sample, Scorer, TaskFile};
+use nima_score::{HandSample, Sample, Scorer, TaskFile};
+use nima_simulation::scene::Scene;
 use nima_tests::{
     plan,
     studies::{BLIND, study_file},
 };
 use nima_user_study::{Comparison, Ending, Excludes, Study, StudyFile};
-use nima_world::scene::Scene;
 
 use crate::bench::{
     Console, can_press, pick, press, read, shown_at, shows, texts, toured, until, wait, write_into, write_over,
@@ -32,7 +35,8 @@ const AT: &str = "2026-01-01T09:00:00Z";
 pub(crate) fn make(data: &Path, head: &str, seconds: f64, rest: &str) -> PathBuf {
     let text = study_file(&format!("participants = 2\n{head}"), seconds, &format!("{BLIND}{rest}"));
     let file = StudyFile::from_toml(&text).unwrap();
-    let scene = Scene { task: file.task.clone(), ..Scene::load("peg_transfer").unwrap() };
+    let scene =
+        Scene { task: file.task.as_ref().map(|task| task.to_scene().unwrap()), ..Scene::load("peg_transfer").unwrap() };
     let place = data.join("studies/touching");
     Study::create(&place, &file, &toml::to_string(&scene).unwrap(), AT).unwrap();
     place
@@ -226,7 +230,7 @@ fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_fro
     assert_eq!((rule.is, rule.exclude), (Comparison::Below, Excludes::Participant));
     let scene = Scene::parse(&place, study.scene()).unwrap();
     assert_eq!(scene.objects.unwrap().rings.len(), 2);
-    assert!((scene.task.unwrap().time_limit_s - 30.0).abs() < 1e-9);
+    assert!((TaskFile::of(&scene.task.unwrap()).unwrap().time_limit_s - 30.0).abs() < 1e-9);
 
     pick(&mut window, "Begin the trial");
     wait(&mut window, "a trial", |window| window.state().in_trial());

@@ -20,7 +20,7 @@ use nima_machine::{
     teleop::Calibrations,
 };
 use nima_recording::store::utc_now;
-use nima_world::{Plan, World, run_virtual, scene::Scene};
+use nima_simulation::{Plan, World, run_virtual, scene::Scene};
 
 /// Samples of a calibration scene, each under the prompt that `session` wants after the one before; ends with `None`.
 fn calibrate(scene: &Scene, mut session: impl FnMut(&nima_core::frames::WristSample, f64) -> Option<Prompt>) {

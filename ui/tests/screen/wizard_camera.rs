@@ -7,17 +7,18 @@ use std::{
 
 use nalgebra::Isometry3;
 use nima_console::console::{Options, wizards::Which};
+use nima_emulation::emulators::{
+    Serving,
+    endoscope::{Emulated, Hands, held},
+};
 use nima_endoscope::Board;
 use nima_machine::config::{RigConfig, RigFile};
-use nima_tests::plan;
-use nima_world::{
+use nima_simulation::{
     Plan,
-    emulators::{
-        Serving,
-        endoscope::{Emulated, Hands, camera_of, held, usual},
-    },
+    camera::{camera_of, usual},
     scene::Scene,
 };
+use nima_tests::plan;
 
 use crate::{
     bench::{Console, can_press, pick, read, shown, shows, toured, until, wait},

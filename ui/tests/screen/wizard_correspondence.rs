@@ -16,11 +16,11 @@ use nima_machine::{
     teleop::Calibrations,
 };
 use nima_recording::store::Store;
-use nima_tests::gravity::gravity;
-use nima_world::{
+use nima_simulation::{
     Plan,
     scene::{Flaw, Scene},
 };
+use nima_tests::gravity::gravity;
 
 use crate::{
     bench::{Console, WIZARD_SPEED, can_press, pick, read, shown_at, write_into},

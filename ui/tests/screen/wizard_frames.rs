@@ -5,13 +5,14 @@ use std::path::Path;
 
 use egui_kittest::Harness;
 use nima_console::console::{ConsoleApp, reader::Reader};
+use nima_emulation::emulated::EmulatedRig;
 use nima_machine::{
     config::{RigConfig, RigFile},
     rig::{Settings, Side},
 };
+use nima_simulation::{Plan, scene::Scene, start};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{elsewhere, started};
-use nima_world::{Plan, emulated::EmulatedRig, scene::Scene, start};
 
 use crate::{
     bench::{Console, TIMEOUT, can_press, comes, console_of, pick, shows, texts, toured},

@@ -8,7 +8,7 @@ use std::{
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nima_machine::{config::RigConfig, messages::ForceSource, rig::Prompt};
-use nima_world::{
+use nima_simulation::{
     Plan,
     scene::{Flaw, Scene},
 };

@@ -27,7 +27,7 @@ use nima_recording::{
     store::{Store, utc_now},
     tip_force::{DataSet, Selection, kept_model},
 };
-use nima_world::{
+use nima_simulation::{
     Plan, run_virtual,
     scene::{Flaw, Scene},
 };

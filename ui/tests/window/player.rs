@@ -16,7 +16,7 @@ use egui_kittest::{Harness, kittest::Queryable as _};
 use nalgebra::Vector3;
 use nima_console::console::{ConsoleApp, scene3d::Camera};
 use nima_machine::rig::{SIDES, Side};
-use nima_world::{scene::Scene, start_watched};
+use nima_simulation::{scene::Scene, start_watched};
 
 use crate::{
     console::{Console, read},

@@ -1,10 +1,10 @@
 use std::{collections::BTreeSet, f64::consts::PI};
 
 use nalgebra::Vector3;
-use nima_core::Side;
+use nima_core::{Side, task::Event};
 
 use super::{task, trial};
-use crate::{Event, HandSample, MEASURES, Score, TaskFile};
+use crate::{HandSample, MEASURES, Score, TaskFile};
 
 #[test]
 fn there_are_at_least_thirty_measures_with_names_of_their_own() {

@@ -1,8 +1,11 @@
 use nalgebra::Vector3;
-use nima_core::Side;
+use nima_core::{
+    Side,
+    task::{Event, Happening},
+};
 
 use super::{near, of, right, task, trial, value};
-use crate::{Criterion, Event, HandSample, Happening, Outcome, Proficiency, Sample, Scorer, Standing};
+use crate::{Criterion, HandSample, Outcome, Proficiency, Sample, Scorer, Standing};
 
 const LEFT: Side = Side::Left;
 const RIGHT: Side = Side::Right;

@@ -1,9 +1,12 @@
 use nalgebra::Vector3;
-use nima_core::Side;
+use nima_core::{
+    Side,
+    task::{Event, Happening},
+};
 use proptest::prelude::*;
 
 use super::task;
-use crate::{Event, HandSample, Happening, Sample, Score, Scorer};
+use crate::{HandSample, Sample, Score, Scorer};
 
 /// Any number, and often one that is likely to do harm.
 fn number() -> impl Strategy<Value = f64> {

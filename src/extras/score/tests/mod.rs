@@ -5,12 +5,16 @@ mod events;
 mod force;
 mod garbage;
 mod motion;
+mod scene;
 mod two_hands;
 
 use nalgebra::Vector3;
-use nima_core::{SIDES, Side};
+use nima_core::{
+    SIDES, Side,
+    task::{Event, Happening},
+};
 
-use crate::{Event, HandSample, Happening, Sample, Score, Scorer, TaskFile};
+use crate::{HandSample, Sample, Score, Scorer, TaskFile};
 
 type Hands = [Option<HandSample>; SIDES];
 

@@ -1,10 +1,10 @@
 use std::f64::consts::PI;
 
 use nalgebra::Vector3;
-use nima_core::Side;
+use nima_core::{Side, task::Event};
 
 use super::{minimum_jerk, near, of, right, task, tip, trial, trial_at, value};
-use crate::{Event, HandSample, Score, ellipsoid::CHI_SQUARE_95};
+use crate::{HandSample, Score, ellipsoid::CHI_SQUARE_95};
 
 const DIRECTION: Vector3<f64> = Vector3::new(0.6, 0.0, 0.8);
 

@@ -9,8 +9,11 @@ mod sealing;
 
 use std::path::Path;
 
-use nima_core::Side;
-use nima_score::{Event, HandSample, Happening, Sample, Score, Scorer, TaskFile};
+use nima_core::{
+    Side,
+    task::{Event, Happening},
+};
+use nima_score::{HandSample, Sample, Score, Scorer, TaskFile};
 
 use crate::{Ending, Step, Study, StudyFile};
 

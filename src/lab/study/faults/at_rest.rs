@@ -20,8 +20,8 @@ use nima_recording::{
     store::{Store, utc_now},
     tip_force::{load_model, save_model},
 };
+use nima_simulation::{Worlds, scene::Scene};
 use nima_training::train_model;
-use nima_world::{Worlds, scene::Scene};
 
 use super::{FaultsError, LiveError, MODES, SensorAt, Special, Verdict};
 use crate::{

@@ -9,7 +9,7 @@ use nima_machine::{
     rig::{Inputs, Outputs, SIDES, Sensed, Side},
     teleop::{Calibrations, Loop, Timing},
 };
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use super::{
     FaultsError, HARMLESS_N, Kind, Part, Place, SensorAt,

@@ -6,7 +6,7 @@ use nima_machine::{
     messages::{Command, LoopState},
     teleop::Calibrations,
 };
-use nima_world::{Plan, run_virtual, scene::Scene};
+use nima_simulation::{Plan, run_virtual, scene::Scene};
 use serde::Serialize;
 
 use super::{FaultsError, MODES, SensorAt, bench::Bench};

@@ -21,7 +21,7 @@ use nima_machine::{
     rig::{Inputs, Outputs, Rig, Roster, SIDES},
     runtime::{Handle, StartError, Summary},
 };
-use nima_world::{Plan, Worlds, scene::Scene, start, start_on};
+use nima_simulation::{Plan, Worlds, scene::Scene, start, start_on};
 use serde::Serialize;
 
 use super::Verdict;

@@ -1,6 +1,6 @@
 //! Where the force is measured, and on which rig.
 
-use nima_world::emulated::Wiring;
+use nima_emulation::emulated::Wiring;
 use serde::Serialize;
 
 use super::{Kind, Place};

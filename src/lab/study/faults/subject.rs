@@ -9,15 +9,12 @@ use nima_core::{
     safety::{Raw, RawReadings},
 };
 use nima_devices::Stamped;
+use nima_emulation::emulated::{ArmReadings, Clocked, HandFrame};
 use nima_machine::{
     config::RigConfig,
     rig::{Delivering, Inputs, Measured, Outputs, Rig as _, SIDES, Sensed, SensorPlace, Side},
 };
-use nima_world::{
-    Worlds,
-    emulated::{ArmReadings, Clocked, HandFrame},
-    scene::Scene,
-};
+use nima_simulation::{Worlds, scene::Scene};
 
 use super::{FaultsError, Kind, SensorAt, inject::FAULTY};
 use crate::validation::ValidationError;

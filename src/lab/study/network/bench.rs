@@ -16,7 +16,7 @@ use nima_network::{
     impairment::Line,
     stream::{Stream, StreamSettings},
 };
-use nima_world::{World, scene::Scene};
+use nima_simulation::{World, scene::Scene};
 
 use super::{Condition, NetworkError, end::End};
 use crate::clocks;

@@ -2,7 +2,7 @@
 
 use nima_core::impedance::Mode;
 use nima_machine::runtime::VirtualClock;
-use nima_world::scene::Tissue;
+use nima_simulation::scene::Tissue;
 
 use super::{
     BRAKES_N_S_M, CONTACTS_N, DELAYS_MS, HANDLES, METHODS, Options, ReleaseError, Report, Situation, WEAK_N, Way,

@@ -6,7 +6,7 @@ use nima_machine::{
     runtime::{ClockProfile, VirtualClock},
 };
 use nima_recording::csv::Recording;
-use nima_world::{World, scene::Scene};
+use nima_simulation::{World, scene::Scene};
 
 /// Motion and force over time, and what to call them.
 #[derive(Clone, Debug)]

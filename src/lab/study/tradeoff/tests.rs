@@ -7,7 +7,7 @@ use nima_core::{
 };
 use nima_recording::csv::{Mapping, Recording};
 use nima_testing::unjudged;
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use super::{sweep::mark_front, *};
 use crate::{

@@ -10,7 +10,7 @@ use nima_core::{
     frames::{Wrench, WristSample},
 };
 use nima_machine::rig::{Outputs, Prompt};
-use nima_world::{World, scene::Scene};
+use nima_simulation::{World, scene::Scene};
 
 use super::ValidationError;
 

@@ -10,8 +10,8 @@ use nima_core::{
 };
 use nima_machine::rig::Prompt;
 use nima_recording::tip_force::{DataSet, Recorder, Selection};
+use nima_simulation::scene::Scene;
 use nima_training::{NoContact, Part, Progress, evaluate, train_model};
-use nima_world::scene::Scene;
 use serde::Serialize;
 
 use super::{ValidationError, experiment};

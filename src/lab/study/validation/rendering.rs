@@ -7,7 +7,7 @@ use nima_machine::{
     runtime::{ClockProfile, VirtualClock},
     teleop::ErrorStats,
 };
-use nima_world::{Plan, run_virtual_on, scene::Scene};
+use nima_simulation::{Plan, run_virtual_on, scene::Scene};
 use serde::Serialize;
 
 use super::ValidationError;

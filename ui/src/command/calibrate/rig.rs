@@ -17,9 +17,9 @@ use nima_machine::{
     runtime::Handle,
 };
 use nima_recording::store::Store;
-use nima_world::{
+use nima_simulation::{
     Plan,
-    emulated::{Screen, Task},
+    screen::{Screen, Task},
 };
 
 use crate::{
@@ -133,7 +133,7 @@ impl Bench {
         self.handle = None;
         self.in_force.bind(&self.plan.rig, &self.plan.scene);
         self.plan.calibrations = self.in_force.calibrations(&self.plan.rig);
-        let handle = nima_world::start(&self.plan)?;
+        let handle = nima_simulation::start(&self.plan)?;
         let ender = handle.ender();
         self.leave.at_once(move || ender.end());
         (self.handle, self.ticks) = (Some(handle), [None; SIDES]);

@@ -19,7 +19,7 @@ use nima_machine::{
     runtime::Handle,
 };
 use nima_recording::store::Store;
-use nima_world::{Plan, emulated::Screen, scene::Scene};
+use nima_simulation::{Plan, scene::Scene, screen::Screen};
 
 use crate::{
     command::{output, setup::Setup},
@@ -71,7 +71,7 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let calibrations = in_force.calibrations(&rig);
     let rig = in_force.with_checked(rig);
     let plan = Plan { rig, scene, calibrations, engage: false };
-    let handle = nima_world::start(&plan)?;
+    let handle = nima_simulation::start(&plan)?;
     let ender = handle.ender();
     leave.at_once(move || ender.end());
     let reader = emulators.as_ref().map(Emulators::technician);

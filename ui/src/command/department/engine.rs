@@ -11,7 +11,7 @@ use anyhow::{Context as _, bail};
 use nima_department::{Authority, Found, Identity, Recording, Rig, Role, Step, find, find_at};
 use nima_machine::config::RigConfig;
 use nima_recording::store::{Store, utc_of};
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 use serde::Serialize;
 
 use super::{DepartmentCommand, MonitorArguments, RecordArguments, RigsArguments, Which};

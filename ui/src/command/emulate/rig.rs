@@ -6,11 +6,9 @@
 use std::time::Duration;
 
 use anyhow::{Context as _, bail};
+use nima_emulation::emulated::{EmulatedRig, HandFrame, Witness};
 use nima_machine::{config::RigConfig, rig::Side};
-use nima_world::{
-    emulated::{EmulatedRig, HandFrame, Screen, Witness},
-    scene::Scene,
-};
+use nima_simulation::{scene::Scene, screen::Screen};
 
 use crate::{
     command::{

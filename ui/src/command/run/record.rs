@@ -15,7 +15,7 @@ use nima_session::{
     outlook::{Outlook, WARN_BEFORE},
     recorder::{Moved, Progress, Recorder},
 };
-use nima_world::Plan;
+use nima_simulation::Plan;
 use serde::Serialize;
 
 use crate::{

@@ -3,7 +3,7 @@
 use nima_core::statistics::Quantiles;
 use nima_devices::{Health, Standing};
 use nima_machine::runtime::{ArmEnd, CauseAndCure, DeviceFigures, Summary};
-use nima_world::Plan;
+use nima_simulation::Plan;
 
 /// The figures of a run, for a terminal.
 pub(super) fn in_words(plan: &Plan, summary: &Summary, is_measured: bool) -> String {

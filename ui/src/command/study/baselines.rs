@@ -2,11 +2,11 @@
 
 use clap::Args;
 use nima_machine::runtime::VirtualClock;
+use nima_simulation::scene::Scene;
 use nima_study::{
     baselines::{Options, Split},
     tradeoff::Source,
 };
-use nima_world::scene::Scene;
 
 use super::{
     Asked,

@@ -7,8 +7,8 @@ use clap::Args;
 use nima_core::limits::DELAY_S;
 use nima_machine::{rig::Side, runtime::VirtualClock};
 use nima_recording::csv::Mapping;
+use nima_simulation::scene::Scene;
 use nima_study::tradeoff::Source;
-use nima_world::scene::Scene;
 
 use super::super::motion;
 

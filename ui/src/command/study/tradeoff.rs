@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use nima_core::impedance::Settings;
+use nima_simulation::scene::Scene;
 use nima_study::{
     Experiment,
     tradeoff::{Plan, Source, Study, SweepError, sweep},
 };
-use nima_world::scene::Scene;
 
 use super::{
     Asked,

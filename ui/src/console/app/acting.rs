@@ -188,7 +188,7 @@ fn press_key_of(action: Action, ctx: &Context) {
 mod tests {
     use egui::{Key, Modifiers};
     use egui_kittest::Harness;
-    use nima_world::Plan;
+    use nima_simulation::Plan;
 
     use super::*;
     use crate::{

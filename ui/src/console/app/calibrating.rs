@@ -6,7 +6,7 @@ use nima_machine::{
     messages::{Command, LoopState},
     rig::{Prompt, Roster, Side},
 };
-use nima_world::{emulated::Screen, scene::Scene};
+use nima_simulation::{scene::Scene, screen::Screen};
 
 use super::ConsoleApp;
 use crate::console::{

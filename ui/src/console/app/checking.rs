@@ -8,7 +8,7 @@ use nima_machine::{
     ready::Ask,
     rig::Roster,
 };
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use super::ConsoleApp;
 use crate::console::{

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use nima_world::Watched;
+use nima_simulation::Watched;
 
 use super::{ConsoleApp, WARM_UP};
 use crate::language;

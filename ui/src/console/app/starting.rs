@@ -8,7 +8,7 @@ use std::{
 
 use egui::Ui;
 use nima_machine::config::RigConfig;
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use super::ConsoleApp;
 use crate::{

@@ -5,7 +5,7 @@
 use egui::Ui;
 use nima_machine::{config::RigConfig, messages::LoopState};
 use nima_recording::store::utc_now;
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use super::ConsoleApp;
 use crate::{

@@ -92,8 +92,8 @@ pub(super) fn told(view: Option<StereoView>, endoscope: &Endoscope) -> &'static 
 mod tests {
     use egui::{Pos2, vec2};
     use nalgebra::{Vector2, Vector3};
-    use nima_world::{
-        emulators::endoscope::{camera_of, usual},
+    use nima_simulation::{
+        camera::{camera_of, usual},
         scene::Scene,
     };
 

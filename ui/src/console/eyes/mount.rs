@@ -4,7 +4,7 @@ use nalgebra::Isometry3;
 use nima_core::frames::from_roll_pitch_yaw_deg;
 use nima_endoscope::{Camera, Lens};
 use nima_machine::config::EndoscopeCamera;
-use nima_world::emulators::endoscope::{camera_of, lens_of};
+use nima_simulation::camera::{camera_of, lens_of};
 
 /// The tracker's noise is averaged over this time, s. At the tips, some decimetres from the marker, that of a single reading can be seen.
 pub(super) const STEADY_S: f64 = 0.25;
@@ -45,8 +45,8 @@ mod tests {
 
     #[test]
     fn a_camera_on_the_marker_goes_where_the_marker_goes() {
-        let scene = nima_world::scene::Scene::load("bimanual").unwrap();
-        let mut settings = nima_world::emulators::endoscope::usual(&scene);
+        let scene = nima_simulation::scene::Scene::load("bimanual").unwrap();
+        let mut settings = nima_simulation::camera::usual(&scene);
         let fixed = Mount::of(&settings).unwrap().camera(None).unwrap();
         (settings.position_m, settings.world_from_camera_deg) = (None, None);
         assert_eq!(Mount::of(&settings), None);

@@ -6,9 +6,10 @@ use std::{
 
 use egui::{Pos2, pos2, vec2};
 use nalgebra::{Vector2, Vector3};
+use nima_emulation::emulators::endoscope::{Emulated, Instrument, SQUARE_PX};
 use nima_endoscope::time_code;
-use nima_world::{
-    emulators::endoscope::{Emulated, Instrument, SQUARE_PX, camera_of, usual},
+use nima_simulation::{
+    camera::{camera_of, usual},
     scene::Scene,
 };
 

@@ -7,16 +7,13 @@ use std::{
 
 use nima_core::calibration::{RecordHead, gravity::GravityRecord};
 use nima_devices::{ForceReading, Lever, Slot, bota};
+use nima_emulation::emulators::{Serving, bota as emulated};
 use nima_machine::{
     messages::ForceSource,
     rig::{DeviceEvent, Inputs, Outputs, Part, Rig, Roster, RosterEntry, Watch},
 };
+use nima_simulation::{Plan, Worlds, start_on};
 use nima_tests::gravity;
-use nima_world::{
-    Plan, Worlds,
-    emulators::{Serving, bota as emulated},
-    start_on,
-};
 
 use super::*;
 

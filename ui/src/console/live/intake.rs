@@ -235,7 +235,7 @@ pub(in crate::console) fn forces_of(tick: &Tick) -> [f32; CHANNELS] {
 mod tests {
     use nima_devices::Loss;
     use nima_machine::config::RigConfig;
-    use nima_world::scene::Scene;
+    use nima_simulation::scene::Scene;
 
     use super::*;
 

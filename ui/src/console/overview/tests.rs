@@ -3,8 +3,8 @@
 use nima_core::calibration::{RecordHead, Verdict, gravity::GravityRecord};
 use nima_machine::{config::RigConfig, ready::Check, rig::Side};
 use nima_recording::store::{CheckedItem, Outcome, READY_CHECK, ReadyRecord, Store, utc_now};
+use nima_simulation::scene::Scene;
 use nima_tests::gravity::gravity;
-use nima_world::scene::Scene;
 
 use super::{InForce, Line, OfArm, following, found_since, made_words, overview, verdict_words};
 use crate::{

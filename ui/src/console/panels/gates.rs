@@ -213,7 +213,7 @@ fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate) {
 #[cfg(test)]
 mod tests {
     use nima_machine::{config::RigConfig, messages::Tick, rig::SIDES};
-    use nima_world::{Plan, run_virtual, scene::Scene};
+    use nima_simulation::{Plan, run_virtual, scene::Scene};
 
     use super::*;
 

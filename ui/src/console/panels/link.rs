@@ -94,7 +94,7 @@ mod tests {
         endpoint::{Config, Endpoint, Role},
         keys::{Keys, Peers},
     };
-    use nima_world::scene::Scene;
+    use nima_simulation::scene::Scene;
 
     use super::*;
     use crate::line::Line;

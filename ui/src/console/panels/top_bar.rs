@@ -287,7 +287,7 @@ fn refusal_ui(ui: &mut Ui, live: &Live) {
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigConfig;
-    use nima_world::{Plan, run_virtual, scene::Scene};
+    use nima_simulation::{Plan, run_virtual, scene::Scene};
 
     use super::*;
 

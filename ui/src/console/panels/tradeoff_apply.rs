@@ -65,8 +65,8 @@ mod tests {
         rig::{Outputs, Side},
         teleop::{Calibrations, Loop, Timing},
     };
+    use nima_simulation::{World, scene::Scene};
     use nima_study::tradeoff::{Knob, Plan, Point, Source, SourceFigures, sweep};
-    use nima_world::{World, scene::Scene};
 
     use super::*;
     use crate::console::panels::tradeoff::{name, plan};

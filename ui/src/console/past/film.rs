@@ -19,7 +19,7 @@ use nima_session::{
     pictures, plotted,
     replay::Keyframe,
 };
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use super::{
     feed::{Feed, Frame, Reached, plots},

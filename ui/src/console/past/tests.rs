@@ -23,7 +23,7 @@ use nima_session::{
     plotted,
     replay::replay,
 };
-use nima_world::{Plan, Training, scene::Scene};
+use nima_simulation::{Plan, Training, scene::Scene};
 
 mod pictures;
 

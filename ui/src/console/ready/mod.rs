@@ -11,9 +11,9 @@ use nima_machine::{
     ready::{Arm, Ask, Session, Subject},
     rig::{Prompt, Roster, Side},
 };
-use nima_world::{
-    emulated::{Screen, Task},
+use nima_simulation::{
     scene::Scene,
+    screen::{Screen, Task},
 };
 
 pub(crate) use page::{Wish, ready_ui};

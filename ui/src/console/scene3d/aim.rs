@@ -3,7 +3,7 @@
 
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke};
 use nalgebra::Vector3;
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use super::{Camera, training};
 

@@ -2,7 +2,7 @@
 
 use egui::{Pos2, Rect, Vec2};
 use nalgebra::{Matrix4, Perspective3, Point3, Vector3, Vector4};
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 /// Vertical opening angle of the free view, rad.
 const FIELD_OF_VIEW: f32 = 0.62;
@@ -146,7 +146,7 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use egui::{pos2, vec2};
-    use nima_world::Worlds;
+    use nima_simulation::Worlds;
 
     use super::*;
     use crate::console::scene3d::{aim, vignette};

@@ -7,7 +7,7 @@ use egui::{
     pos2, vec2,
 };
 use nalgebra::Vector3;
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use super::{
     Camera,

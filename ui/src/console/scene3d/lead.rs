@@ -247,7 +247,7 @@ fn moved_m(at_m: &Vector3<f32>, way: Vec2, camera: &Camera, rect: Rect) -> Vecto
 #[cfg(test)]
 mod tests {
     use egui::pos2;
-    use nima_world::scene::Scene;
+    use nima_simulation::scene::Scene;
 
     use super::*;
 

@@ -22,7 +22,7 @@ use eframe::{egui_glow, glow};
 use egui::{Rect, Sense, Ui};
 use nalgebra::Vector3;
 use nima_machine::rig::{SIDES, Side};
-use nima_world::{Worlds, scene::Scene};
+use nima_simulation::{Worlds, scene::Scene};
 
 pub use self::{camera::Camera, written::side_name};
 

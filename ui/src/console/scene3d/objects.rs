@@ -4,7 +4,7 @@ use egui::Color32;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_machine::rig::{SIDES, Side};
 use nima_session::objects::Objects;
-use nima_world::{LoopSeen, Training, scene::Scene};
+use nima_simulation::{LoopSeen, Training, scene::Scene};
 
 use super::{
     mesh::{Material, Mesh, Paint},
@@ -78,7 +78,7 @@ impl Shown {
 }
 
 /// A board with its surface at this height, m.
-pub(super) fn board(mesh: &mut Mesh, board: &nima_physics::Board) {
+pub(super) fn board(mesh: &mut Mesh, board: &nima_simulation::physics::Board) {
     let ([x_m, y_m], top_m) = (board.size_m.map(|m| 0.5 * m as f32), board.z_m as f32);
     let low = Vector3::new(-x_m, -y_m, top_m - BOARD_THICKNESS_M);
     mesh.cuboid(low, Vector3::new(x_m, y_m, top_m), BOARD);

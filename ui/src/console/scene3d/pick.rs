@@ -2,7 +2,7 @@
 
 use egui::{Pos2, Rect};
 use nalgebra::Vector3;
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use super::{
     Camera,

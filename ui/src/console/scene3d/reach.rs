@@ -1,8 +1,8 @@
 //! What the jaws of an instrument would take, or hold: who leads it by mouse cannot feel that.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_physics::Setting;
 use nima_session::objects::Jaws;
+use nima_simulation::physics::Setting;
 
 /// A ring, as far as jaws are concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

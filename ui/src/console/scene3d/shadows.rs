@@ -28,14 +28,14 @@ const CAP: u32 = 12;
 /// Shadows on one board, which are gathered while objects are drawn.
 #[derive(Debug)]
 pub(super) struct Shadows {
-    board: Option<nima_physics::Board>,
+    board: Option<nima_simulation::physics::Board>,
     edges: Mesh,
     cores: Mesh,
 }
 
 impl Shadows {
     /// On this board; without one there are none.
-    pub(super) fn on(board: Option<&nima_physics::Board>) -> Self {
+    pub(super) fn on(board: Option<&nima_simulation::physics::Board>) -> Self {
         Self { board: board.copied(), edges: Mesh::default(), cores: Mesh::default() }
     }
 
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn a_shadow_falls_away_from_the_lamp_and_never_beyond_the_board() {
-        let board = nima_physics::Board { z_m: 0.01, size_m: [0.1, 0.1] };
+        let board = nima_simulation::physics::Board { z_m: 0.01, size_m: [0.1, 0.1] };
         let mut shadows = Shadows::on(Some(&board));
         let foot_m = Vector3::new(0.0, 0.0, 0.01);
         shadows.rod(&foot_m, &(foot_m + Vector3::z() * 0.02), 0.001);
@@ -170,7 +170,7 @@ mod tests {
         let mut shadows = Shadows::on(None);
         shadows.rod(&Vector3::zeros(), &Vector3::z(), 0.001);
         assert!(laid(shadows).vertices.is_empty());
-        let mut shadows = Shadows::on(Some(&nima_physics::Board::default()));
+        let mut shadows = Shadows::on(Some(&nima_simulation::physics::Board::default()));
         shadows.line([Vector3::repeat(f32::NAN), Vector3::repeat(f32::INFINITY)], 0.001);
         assert!(laid(shadows).vertices.is_empty());
     }

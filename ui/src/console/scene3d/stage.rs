@@ -3,7 +3,7 @@
 use egui::Color32;
 use nalgebra::Vector3;
 use nima_machine::rig::{SIDES, Side};
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use super::{
     mesh::{Material, Mesh, Paint},

@@ -4,7 +4,7 @@ use egui::{Color32, Label, Rect, RichText, Ui, vec2};
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::impedance::Mode;
 use nima_machine::rig::Side;
-use nima_world::{Training, scene::Scene};
+use nima_simulation::{Training, scene::Scene};
 
 use super::{
     mesh::{Material, Mesh, Paint},
@@ -108,7 +108,7 @@ pub(super) fn board(mesh: &mut Mesh, scene: &Scene) {
 }
 
 /// The board of a scene.
-pub(super) fn board_of(scene: &Scene) -> Option<&nima_physics::Board> {
+pub(super) fn board_of(scene: &Scene) -> Option<&nima_simulation::physics::Board> {
     let under_pegs = scene.objects.as_ref().map(|setting| &setting.board);
     under_pegs.or_else(|| scene.wire.as_ref().map(|setting| &setting.board))
 }
@@ -169,7 +169,7 @@ pub(super) fn line_ui(ui: &mut Ui, rect: Rect, words: Option<String>, readings: 
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigConfig;
-    use nima_world::{LoopSeen, MARKS_MAX, Mark};
+    use nima_simulation::{LoopSeen, MARKS_MAX, Mark};
 
     use super::*;
 

@@ -6,7 +6,7 @@ use std::{
 };
 
 use nima_machine::config::RigConfig;
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use crate::console::text;

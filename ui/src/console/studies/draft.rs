@@ -2,13 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use nima_core::Side;
-use nima_core::impedance::Mode;
-use nima_score::{Criterion, Definition, MEASURES, TaskFile, TaskKind};
+use nima_core::{Side, impedance::Mode, task::TaskKind};
+use nima_score::{Criterion, Definition, MEASURES, TaskFile};
+use nima_simulation::scene::Scene;
 use nima_user_study::{
     Breaks, Comparison, Condition, Excludes, ExclusionRule, NotReached, Practice, StudyFile, keys_of,
 };
-use nima_world::scene::Scene;
 
 use super::list::folder_of;
 use crate::{console::text, user_study};
@@ -65,7 +64,7 @@ impl Place {
     /// The scene of this name, if it has a task or gets this one.
     fn of(name: &str, task: Option<TaskFile>) -> Option<Self> {
         let scene = Scene::load(name).ok()?;
-        let kind = task.as_ref().or(scene.task.as_ref())?.kind;
+        let kind = task.as_ref().map(|task| task.kind).or(scene.task.as_ref().map(|task| task.kind))?;
         let rings = scene.objects.as_ref().map_or(0, |objects| objects.rings.len() as u32);
         let (name, of) = (scene.name, name.to_owned());
         Some(Self { of, name, about: scene.description, task, kind, two_hands: scene.left.is_some(), rings })
@@ -84,6 +83,11 @@ impl Place {
     }
 }
 
+/// What is done in the scene of this study.
+fn task_of(file: &StudyFile) -> Option<TaskFile> {
+    TaskFile::of(user_study::scene_of(file).ok()?.task.as_ref()?).ok()
+}
+
 /// Two trials in a row within 150 s without a drop out of view, as in the study of the paper.
 fn usual_practice() -> Practice {
     let criterion = Criterion { time_s: 150.0, drops_out_of_view: 0, consecutive: 2, additional: 0, max_trials: 12 };
@@ -98,7 +102,7 @@ impl Draft {
             name.as_ref().and_then(|name| file.conditions.iter().position(|condition| condition.name == *name))
         };
         let practice = file.practice.clone().unwrap_or_else(usual_practice);
-        let task = user_study::scene_of(&file).ok().and_then(|scene| scene.task);
+        let task = task_of(&file);
         let own = file.task.is_some().then(|| Place::of(&file.scene, file.task.clone())).flatten();
         let scenes: Vec<Place> =
             own.into_iter().chain(Scene::names().filter_map(|name| Place::of(name, None))).collect();
@@ -144,7 +148,7 @@ impl Draft {
         self.measures = place.measures();
         (self.takes_few, self.file.task) = (false, place.task);
         self.file.scene = place.of;
-        self.task = user_study::scene_of(&self.file()).ok().and_then(|scene| scene.task);
+        self.task = task_of(&self.file());
         let known = |key: &String| self.measures.iter().any(|measure| measure.key == *key);
         self.file.secondary.retain(known);
         self.file.exclusion.retain(|rule| known(&rule.measure));

@@ -14,8 +14,8 @@ use nima_session::{
     outlet::{Audience, Destination},
     recorder::Recorder,
 };
+use nima_simulation::{Plan, Watched};
 use nima_user_study::{Phase, Progress, Running, Study, TrialId};
-use nima_world::{Plan, Watched};
 
 use super::Hand;
 use crate::{

@@ -35,7 +35,7 @@ use nima_machine::{
     rig::{Prompt, Side},
 };
 use nima_recording::store::Store;
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 pub use attend::Attended;
 pub use correspondence::CorrespondenceWizard;

@@ -6,8 +6,8 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nima_console::console::{ConsoleApp, commands::Action};
 use nima_core::impedance::Mode;
 use nima_machine::{messages::LoopState, rig::Side};
+use nima_simulation::Plan;
 use nima_tests::plan;
-use nima_world::Plan;
 
 use super::{FIELD, SIZE, alike, begin, by_key, choose, close, entry, expect, is_open, open, rows};
 use crate::bench::{Console, console_of, press, read, shown, shows, until, wait, write_into};

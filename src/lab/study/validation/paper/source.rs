@@ -3,7 +3,7 @@
 use nima_core::impedance::{AXES, Sample};
 use nima_machine::config::RigConfig;
 use nima_recording::csv::Recording;
-use nima_world::{Plan, run_virtual, scene::Scene};
+use nima_simulation::{Plan, run_virtual, scene::Scene};
 use serde::Serialize;
 
 use crate::{tradeoff::Source, validation::ValidationError};

@@ -6,7 +6,7 @@ use nima_machine::{
     messages::{Command, Event, Fault, LoopState, Tick},
     rig::Side,
 };
-use nima_world::{Plan, run_virtual, scene::Scene};
+use nima_simulation::{Plan, run_virtual, scene::Scene};
 
 use super::{DemoState, script::SCRIPT};
 use crate::console::{live::Live, outbox::Outbox};

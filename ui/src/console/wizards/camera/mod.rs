@@ -18,7 +18,7 @@ use nima_machine::{
     messages::Tick,
     rig::Prompt,
 };
-use nima_world::emulators::endoscope::lens_of;
+use nima_simulation::camera::lens_of;
 
 use self::{
     detector::{Detector, Found},

@@ -10,7 +10,7 @@ use nima_machine::{
     rig::{Prompt, Roster, SIDES, Side},
     teleop::{Calibrations, Loop, Timing},
 };
-use nima_world::scene::Scene;
+use nima_simulation::scene::Scene;
 
 use super::*;
 use crate::console::in_force::InForce;

@@ -9,7 +9,7 @@ use nima_session::{
     outlet::Destination,
     recorder::{About, Recorder},
 };
-use nima_world::{Plan, scene::Scene};
+use nima_simulation::{Plan, scene::Scene};
 
 use super::*;
 

@@ -1,0 +1,303 @@
+//! One side's world with an arm of joints in it: what every emulator of the side asks.
+//!
+//! Time is the common clock's (s); the world goes on by fixed steps of 1 ms up to it whenever anybody asks. Positions in m, forces in N,
+//! in `world` unless the name says another. The joints follow what is asked of the arm as the simulated follower follows its command,
+//! or, while its drives are off, the hands of the technician.
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nima_core::{
+    frames::{GRAVITY_M_S2, Wrench, from_roll_pitch_yaw_deg},
+    kinematics::{Arm, Joints, view_from_omega},
+};
+use nima_devices::{ARM_JOINTS, ForceReading, ForceStatus, Tracked};
+use nima_machine::rig::{ArmSet, EndoscopeSettings, Flaws, Identified, Outputs, Prompt, Sensed};
+
+use nima_simulation::{Touch, World, scene::Scene, screen::Task};
+
+use super::{HandFrame, flawed::Flawed, seen::Camera, technician::Technician};
+use crate::emulators::{
+    force_dimension::{Applied, HandState},
+    kinova::{Asked, Body as _, BodyState, StandIn},
+};
+
+/// One step of the world, s.
+const STEP_S: f64 = 1e-3;
+/// Steps made up for after a pause of the whole process; what is older never happened.
+const CATCH_UP_STEPS: u64 = 100;
+/// How far the handle turns by itself, rad, and how fast, rad/s: no hand is a rock.
+const HANDLE_WAVE: (f64, f64) = (0.05, 0.9);
+/// How far the gripper is open, rad.
+const GRIPPER_RAD: f64 = 0.2;
+/// Housing of a sensor that has been on for a while, degrees Celsius.
+const SENSOR_C: f64 = 31.0;
+
+/// What only a simulation knows of a side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Truth {
+    /// Where the tip is, m.
+    pub tip_m: Vector3<f64>,
+    /// Force of the tissue on it, N.
+    pub tip_n: Vector3<f64>,
+    /// Where the hand is, m.
+    pub hand_m: Vector3<f64>,
+    /// Angles of the arm's joints, rad.
+    pub joint_rad: [f64; ARM_JOINTS],
+    /// How the wrist sensor is turned.
+    pub world_from_s1: UnitQuaternion<f64>,
+    /// What the motors of the handle do.
+    pub applied: Applied,
+    /// The arm moves as it is asked to; else it holds.
+    pub servoing: bool,
+    /// The marker in the wrist sensor's frame.
+    pub s1_from_m: Isometry3<f64>,
+    /// The tracker's camera in the workspace.
+    pub world_from_c: Isometry3<f64>,
+}
+
+/// How the endoscope's picture is turned.
+fn world_from_view(hand: &HandFrame) -> UnitQuaternion<f64> {
+    (view_from_omega() * hand.leader_from_world).inverse()
+}
+
+/// The world of one side.
+#[derive(Clone, Debug)]
+pub(super) struct SideWorld {
+    world: World,
+    arm: Arm,
+    /// Angular frequency with which joints follow, rad/s; none: they are where they are asked to be.
+    omega: Option<f64>,
+    body: BodyState,
+    asked: Asked,
+    applied: Applied,
+    hand: HandFrame,
+    start_m: Vector3<f64>,
+    imu_from_s1: UnitQuaternion<f64>,
+    technician: Technician,
+    camera: Camera,
+    flawed: Flawed,
+    world_from_s1: UnitQuaternion<f64>,
+    turn_rad_s: Vector3<f64>,
+    tip_m: Vector3<f64>,
+    /// Where the hand is, as its handle measures it.
+    hand_m: Vector3<f64>,
+    sensed: Sensed,
+    /// Steps due by the common clock that were made or dropped.
+    reached: u64,
+    /// Steps made.
+    made: u64,
+}
+
+impl SideWorld {
+    /// The world of a scene that has been made fit for this side, with the arm at these angles.
+    pub(super) fn new(
+        scene: &Scene,
+        set: &ArmSet,
+        arm: Arm,
+        start_rad: &Joints,
+        hand: HandFrame,
+        flaws: Flaws,
+    ) -> Self {
+        let pose = arm.pose(start_rad);
+        let imu_deg = scene.wrist.as_ref().and_then(|wrist| wrist.imu).map(|imu| imu.s1_from_imu_deg);
+        // The arm is this side's own, and so is the person at it.
+        let world = World::new(&Scene { follower: None, person: None, ..scene.clone() }, STEP_S.recip());
+        let start_m = world.hand().position_m();
+        let mut side = Self {
+            world,
+            arm,
+            omega: scene.follower.map(|follower| std::f64::consts::TAU * follower.bandwidth_hz),
+            body: BodyState { joint_rad: (*start_rad).into(), ..BodyState::default() },
+            asked: Asked::Rest,
+            applied: Applied::default(),
+            hand,
+            start_m,
+            imu_from_s1: imu_deg.map_or_else(UnitQuaternion::identity, |deg| from_roll_pitch_yaw_deg(&deg).inverse()),
+            technician: Technician::new(arm, *start_rad, scene, world_from_view(&hand)),
+            camera: Camera::new(scene, set),
+            flawed: Flawed::new(flaws, (*start_rad).into()),
+            world_from_s1: pose.orientation(),
+            turn_rad_s: Vector3::zeros(),
+            tip_m: pose.tip_m,
+            hand_m: start_m,
+            sensed: Sensed::AtTip(Vector3::zeros()),
+            reached: 0,
+            made: 0,
+        };
+        side.step();
+        side
+    }
+
+    /// Goes on to `now_s` of the common clock.
+    pub(super) fn advance(&mut self, now_s: f64) {
+        let due = (now_s / STEP_S) as u64;
+        self.reached = self.reached.max(due.saturating_sub(CATCH_UP_STEPS));
+        while self.reached < due {
+            self.reached += 1;
+            self.step();
+        }
+    }
+
+    /// What the base of the arm asks from now on; how the arm is.
+    pub(super) fn ask(&mut self, now_s: f64, asked: &Asked) -> BodyState {
+        self.advance(now_s);
+        self.asked = *asked;
+        BodyState { joint_rad: self.flawed.encoders(&self.body.joint_rad), ..self.body }
+    }
+
+    /// What the motors of the handle do from now on; where it is, in its own frame.
+    pub(super) fn hold(&mut self, now_s: f64, applied: &Applied) -> HandState {
+        self.advance(now_s);
+        self.applied = *applied;
+        let HandFrame { leader_from_world, scale } = self.hand;
+        let (most_rad, rad_s) = HANDLE_WAVE;
+        let phase = rad_s * now_s;
+        HandState {
+            position_m: leader_from_world * (self.hand_m - self.start_m) / scale,
+            orientation: UnitQuaternion::from_euler_angles(
+                most_rad * phase.sin(),
+                0.7 * most_rad * (1.3 * phase).cos(),
+                0.5 * most_rad * (0.6 * phase).sin(),
+            ),
+            gripper_rad: GRIPPER_RAD,
+            ..HandState::default()
+        }
+    }
+
+    /// What the sensor between arm and instrument reads, in its own frame.
+    pub(super) fn feel(&mut self, now_s: f64) -> ForceReading {
+        self.advance(now_s);
+        let s1_from_world = self.world_from_s1.inverse();
+        let support = self.imu_from_s1 * (s1_from_world * Vector3::new(0.0, 0.0, GRAVITY_M_S2));
+        let (wrench, measured) = match &self.sensed {
+            Sensed::AtWrist(sample) => (sample.raw, sample.acceleration_m_s2),
+            Sensed::AtTip(tip_n) | Sensed::FarEnd(Identified { force_n: tip_n, .. }) => {
+                (Wrench { force_n: s1_from_world * tip_n, torque_nm: Vector3::zeros() }, None)
+            }
+        };
+        let more = self.flawed.wrench(now_s, self.body.joint_rad[ARM_JOINTS - 1]);
+        ForceReading {
+            wrench: Wrench { force_n: wrench.force_n + more.force_n, torque_nm: wrench.torque_nm + more.torque_nm },
+            acceleration_m_s2: Some(self.flawed.askew() * measured.unwrap_or(support)),
+            angular_velocity_rad_s: Some(self.imu_from_s1 * self.turn_rad_s),
+            temperature_c: SENSOR_C,
+            status: ForceStatus::default(),
+        }
+    }
+
+    /// Share of this side in what the sensor under the tissue reads, N.
+    pub(super) fn press(&mut self, now_s: f64) -> Vector3<f64> {
+        self.advance(now_s);
+        self.sensed.wrist().and_then(|sample| sample.tissue_n).unwrap_or_else(|| self.world.true_tip_n())
+    }
+
+    /// What the tracker tells of the marker on the instrument.
+    pub(super) fn marker(&mut self, now_s: f64) -> Tracked {
+        self.advance(now_s);
+        let noisy = self.sensed.wrist().and_then(|sample| sample.m_from_c).map(|m_from_c| m_from_c.inverse());
+        let sensor_m = self.tip_m - self.world_from_s1 * Vector3::new(0.0, 0.0, self.arm.shaft_m());
+        let marker = self.camera.marker(&self.world_from_s1, &sensor_m, noisy);
+        self.flawed.tracked(now_s, marker)
+    }
+
+    /// What it tells of the marker on the endoscope, which stands still unless somebody has pushed it. An Omega stands below the endoscope's
+    /// picture, and the hand goes the picture's ways.
+    pub(super) fn endoscope(&mut self, endoscope: &EndoscopeSettings, is_moved: bool) -> Tracked {
+        self.camera.endoscope(&world_from_view(&self.hand), endoscope, is_moved)
+    }
+
+    /// What only a simulation knows.
+    pub(super) fn truth(&mut self, now_s: f64) -> Truth {
+        self.advance(now_s);
+        let [s1_from_m, world_from_c] = self.camera.truth();
+        Truth {
+            tip_m: self.tip_m,
+            tip_n: self.world.true_tip_n(),
+            hand_m: self.world.hand().position_m(),
+            joint_rad: self.body.joint_rad,
+            world_from_s1: self.world_from_s1,
+            applied: self.applied,
+            servoing: self.asked != Asked::Rest,
+            s1_from_m,
+            world_from_c,
+        }
+    }
+
+    /// The technician reads the screen.
+    pub(super) fn reads(&mut self, now_s: f64, task: Task, prompt: Prompt) {
+        self.advance(now_s);
+        self.technician.reads(task, prompt);
+    }
+
+    fn step(&mut self) {
+        let asked = self.asked;
+        self.move_joints(&asked);
+        let pose = self.arm.pose(&self.body.joint_rad.into());
+        let orientation = pose.orientation();
+        self.turn_rad_s = (self.world_from_s1.inverse() * orientation).scaled_axis() / STEP_S;
+        let bent_m = self.flawed.bent_m(&self.world.true_tip_n(), &pose.direction);
+        (self.world_from_s1, self.tip_m) = (orientation, pose.tip_m + bent_m);
+        self.world.carry(orientation);
+        // He takes his hands off an arm whose drives are on.
+        let hands_on = asked == Asked::Rest && !self.technician.is_away();
+        let (touch, aside) = (self.technician.touch(), self.technician.sets_aside());
+        let (touch, aside) = if hands_on { (touch, aside) } else { (Touch::default(), false) };
+        self.world.touched(&touch, aside);
+        if hands_on {
+            self.world.wait_at(self.start_m + self.technician.handle_m());
+        } else {
+            // A hand does not begin its task before the arm follows it.
+            self.world.wait(!matches!(asked, Asked::Joints(_)));
+        }
+        let force_n = self.hand.leader_from_world.inverse() * self.applied.force_n;
+        let outputs = Outputs { tip_command_m: Some(self.tip_m), hand_force_n: force_n, ..Outputs::SAFE };
+        self.made += 1;
+        let inputs = self.world.advance_to(self.made as f64 * STEP_S, &outputs);
+        (self.hand_m, self.sensed) = (inputs.hand.position_m, inputs.sensed);
+        self.load_joints(&pose.chain.jacobian(&pose.tip_m));
+    }
+
+    fn move_joints(&mut self, asked: &Asked) {
+        match asked {
+            Asked::Rest if self.technician.is_away() => self.body.joint_rad_s = [0.0; ARM_JOINTS],
+            Asked::Rest => {
+                let before = Joints::from(self.body.joint_rad);
+                let guided = self.technician.advance(&before, STEP_S);
+                self.body.joint_rad = guided.into();
+                self.body.joint_rad_s = ((guided - before) / STEP_S).into();
+            }
+            Asked::Joints(goal_rad) => {
+                for (joint, goal_rad) in goal_rad.iter().enumerate() {
+                    self.follow(joint, *goal_rad);
+                }
+            }
+            Asked::Twist { .. } => {
+                let moved = StandIn::at(self.body.joint_rad).step(STEP_S, asked);
+                (self.body.joint_rad, self.body.joint_rad_s) = (moved.joint_rad, moved.joint_rad_s);
+            }
+        }
+    }
+
+    /// Critically damped second order, exact over the step for a constant goal: as the simulated follower, joint by joint.
+    fn follow(&mut self, joint: usize, goal_rad: f64) {
+        let (angle_rad, speed_rad_s) = (&mut self.body.joint_rad[joint], &mut self.body.joint_rad_s[joint]);
+        let Some(omega) = self.omega else {
+            *speed_rad_s = (goal_rad - *angle_rad) / STEP_S;
+            *angle_rad = goal_rad;
+            return;
+        };
+        let offset_rad = *angle_rad - goal_rad;
+        let decay = (-omega * STEP_S).exp();
+        let slope = *speed_rad_s + offset_rad * omega;
+        *angle_rad = goal_rad + (offset_rad + slope * STEP_S) * decay;
+        *speed_rad_s = (*speed_rad_s - slope * (omega * STEP_S)) * decay;
+    }
+
+    /// What the tissue's force asks of the joints (`J^T f`), and the same force as the arm's base tells it.
+    fn load_joints(&mut self, jacobian: &nalgebra::SMatrix<f64, 6, ARM_JOINTS>) {
+        let tip_n = self.world.true_tip_n();
+        let held_nm = jacobian.fixed_rows::<3>(0).transpose() * tip_n;
+        // The motors push against it.
+        self.body.joint_nm = (-held_nm).into();
+        self.body.tool_force_n = self.arm.world_from_base().rotation.inverse() * tip_n;
+    }
+}

@@ -1,0 +1,260 @@
+//! The simulated technician at the emulated arm of one side: obeys what the screen shows, with the flaws of [`Person`].
+//!
+//! Takes what the screen shows; guides the joints (rad) by hand, pushes, and sets body wall and tissue aside where a
+//! calibration needs it. Everything he does reaches the loop through the devices: the arm's joints move, the sensors feel
+//! his hands. He never guides an arm whose drives are on.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::kinematics::{Arm, Joints};
+use nima_machine::rig::Prompt;
+
+use nima_simulation::{
+    Person, Touch,
+    scene::{Person as PersonConfig, Scene},
+    screen::Task,
+};
+
+use super::guiding::{Guide, Hold, nearest_turn};
+
+/// The shaft is in the trocar when its axis passes it this near, m.
+const IN_TROCAR_M: f64 = 1e-3;
+/// Carrying the arm: seconds for each radian of the joint that turns furthest, and at least.
+const CARRY_S_PER_RAD: f64 = 1.7;
+const CARRY_MIN_S: f64 = 0.8;
+/// A hold that is missed by this much, m at the tip's lever, ...
+const STUCK_M: f64 = 0.03;
+/// ... for this long is not reached by turning on: he lets the arm take another pose, s.
+const STUCK_S: f64 = 1.0;
+/// So many poses he considers before he takes one that the arm may not reach.
+const CHOICES: usize = 10;
+/// Height at which he holds the tip before poses in free space, touches and moves, m.
+const ABOVE_M: f64 = 0.05;
+
+/// The technician as far as this side is concerned.
+#[derive(Clone, Debug)]
+pub(super) struct Technician {
+    arm: Arm,
+    guide: Guide,
+    ready_rad: Joints,
+    config: PersonConfig,
+    scene: Scene,
+    /// How the endoscope's picture is turned.
+    world_from_view: UnitQuaternion<f64>,
+    task: Task,
+    prompt: Prompt,
+    doing: Doing,
+    stuck_s: f64,
+    /// Times he came: no two sessions are alike.
+    visits: u64,
+}
+
+#[derive(Clone, Debug)]
+enum Doing {
+    /// He is not at this arm; it is where it was left.
+    Away,
+    /// He was called, and takes hold of the arm.
+    Called,
+    /// He carries the arm.
+    Carrying(Carry),
+    /// He obeys the instructions.
+    AtWork(Box<Person>),
+    /// The same, while he lets the arm take another pose.
+    Reseating(Box<Person>, Carry),
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Carry {
+    from_rad: Joints,
+    to_rad: Joints,
+    seconds: f64,
+    in_s: f64,
+}
+
+impl Carry {
+    fn new(from_rad: &Joints, to_rad: &Joints) -> Self {
+        let seconds = (CARRY_S_PER_RAD * (to_rad - from_rad).amax()).max(CARRY_MIN_S);
+        Self { from_rad: *from_rad, to_rad: *to_rad, seconds, in_s: 0.0 }
+    }
+
+    /// Goes on; returns the joint angles, rad, and whether they are where they were to be.
+    fn step(&mut self, dt_s: f64) -> (Joints, bool) {
+        self.in_s += dt_s;
+        let s = (self.in_s / self.seconds).min(1.0);
+        let share = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
+        (self.from_rad + (self.to_rad - self.from_rad) * share, s >= 1.0)
+    }
+}
+
+impl Technician {
+    /// Away from the arm of a scene that has been made fit for its side. `ready_rad` are the joint angles in which the
+    /// instrument is in the trocar.
+    pub(super) fn new(arm: Arm, ready_rad: Joints, scene: &Scene, world_from_view: UnitQuaternion<f64>) -> Self {
+        Self {
+            arm,
+            guide: Guide::new(arm, ready_rad),
+            ready_rad,
+            config: scene.person.unwrap_or_default(),
+            scene: scene.clone(),
+            world_from_view,
+            task: Task::Surgery,
+            prompt: Prompt::Rest,
+            doing: Doing::Away,
+            stuck_s: 0.0,
+            visits: 0,
+        }
+    }
+
+    /// Reads the screen.
+    pub(super) fn reads(&mut self, task: Task, prompt: Prompt) {
+        self.prompt = if prompt.is_finite() { prompt } else { Prompt::Rest };
+        if task != self.task {
+            self.task = task;
+            self.doing = Doing::Called;
+        }
+    }
+
+    /// Whether nobody is at the arm.
+    pub(super) const fn is_away(&self) -> bool {
+        matches!(self.doing, Doing::Away)
+    }
+
+    /// Goes on by `dt_s` with the arm in these angles (rad), whose drives are off; returns where he guides it.
+    pub(super) fn advance(&mut self, joint_rad: &Joints, dt_s: f64) -> Joints {
+        let mut joints = *joint_rad;
+        self.doing = match std::mem::replace(&mut self.doing, Doing::Away) {
+            Doing::Away => Doing::Away,
+            // Nothing is taken out that is to go in again.
+            Doing::Called if self.stays_in_trocar() && self.is_in_trocar(joint_rad) => {
+                Doing::AtWork(Box::new(self.person(joint_rad)))
+            }
+            Doing::Called => Doing::Carrying(Carry::new(joint_rad, &self.beginning(joint_rad))),
+            Doing::Carrying(mut carry) => {
+                let (next, done) = carry.step(dt_s);
+                joints = next;
+                match self.task {
+                    _ if !done => Doing::Carrying(carry),
+                    Task::Surgery => Doing::Away,
+                    _ => Doing::AtWork(Box::new(self.person(&joints))),
+                }
+            }
+            Doing::AtWork(person) => self.obey(person, &mut joints, dt_s),
+            Doing::Reseating(mut person, mut carry) => {
+                person.advance(&self.prompt, dt_s);
+                let (next, done) = carry.step(dt_s);
+                joints = next;
+                if done { Doing::AtWork(person) } else { Doing::Reseating(person, carry) }
+            }
+        };
+        joints
+    }
+
+    fn obey(&mut self, mut person: Box<Person>, joints: &mut Joints, dt_s: f64) -> Doing {
+        person.advance(&self.prompt, dt_s);
+        self.let_choose(&mut person, joints);
+        let hold = self.hold(&person);
+        let miss_m = self.guide.step(joints, &hold, dt_s);
+        self.stuck_s = if miss_m > STUCK_M { self.stuck_s + dt_s } else { 0.0 };
+        if self.stuck_s > STUCK_S {
+            self.stuck_s = 0.0;
+            if let Some(other) = self.guide.find(joints, &hold) {
+                return Doing::Reseating(person, Carry::new(joints, &other));
+            }
+        }
+        Doing::AtWork(person)
+    }
+
+    /// A pose that the arm does not take from where it is, he does not try.
+    fn let_choose(&self, person: &mut Person, joint_rad: &Joints) {
+        for _ in 0..CHOICES {
+            let Some((tip_m, world_from_s1)) = person.chosen() else { return };
+            if !self.holds_poses() || self.guide.reaches(joint_rad, &Hold::Pose { tip_m, world_from_s1 }) {
+                return;
+            }
+            person.choose_again();
+        }
+    }
+
+    const fn holds_poses(&self) -> bool {
+        matches!(self.task, Task::Tip | Task::HandEye)
+    }
+
+    const fn stays_in_trocar(&self) -> bool {
+        matches!(self.task, Task::TipForce | Task::Trocar)
+    }
+
+    fn is_in_trocar(&self, joint_rad: &Joints) -> bool {
+        let (pose, trocar_m) = (self.arm.pose(joint_rad), &self.scene.trocar_m);
+        pose.insertion_m(trocar_m) > 0.0 && pose.axis_miss_m(trocar_m).norm() < IN_TROCAR_M
+    }
+
+    /// Somebody who begins with this task at an arm in these angles, rad.
+    fn person(&mut self, joint_rad: &Joints) -> Person {
+        self.visits += 1;
+        let mut scene = self.scene.clone();
+        scene.seed = scene.seed.wrapping_add(self.visits);
+        let pose = self.arm.pose(joint_rad);
+        if self.stays_in_trocar() {
+            return Person::new(self.config, &scene).begins_at(pose.tip_m);
+        }
+        // The others are done without the body wall.
+        scene.trocar = None;
+        let person = Person::new(self.config, &scene);
+        match self.task {
+            Task::Tip | Task::HandEye | Task::Table | Task::View => {
+                person.begins_at(pose.tip_m).turned(pose.orientation(), self.world_from_view)
+            }
+            _ => person,
+        }
+    }
+
+    /// Joint angles in which the present task begins.
+    fn beginning(&self, from_rad: &Joints) -> Joints {
+        let ready_rad = nearest_turn(from_rad, &self.ready_rad);
+        let down = Vector3::new(0.0, 0.0, 1.0);
+        let hold = match self.task {
+            Task::Surgery | Task::TipForce | Task::Trocar => return ready_rad,
+            Task::Gravity => Hold::Tilt(down),
+            Task::Correspondence => {
+                let person = Person::new(self.config, &Scene { trocar: None, ..self.scene.clone() });
+                Hold::Tip { tip_m: person.tip().0, along: -down }
+            }
+            Task::Tip | Task::HandEye | Task::Table | Task::View => Hold::Tip { tip_m: down * ABOVE_M, along: -down },
+        };
+        self.guide.find(from_rad, &hold).unwrap_or(ready_rad)
+    }
+
+    fn hold(&self, person: &Person) -> Hold {
+        let world_from_s1 = person.world_from_s1();
+        match self.task {
+            Task::Gravity => Hold::Tilt(world_from_s1.inverse() * -Vector3::z()),
+            Task::Tip | Task::HandEye => Hold::Pose { tip_m: person.tip().0, world_from_s1 },
+            _ => Hold::Tip { tip_m: person.tip().0, along: world_from_s1 * Vector3::z() },
+        }
+    }
+
+    /// Whether body wall and tissue are out of the way: he sets them aside for every way of the arm, and for the calibrations
+    /// without a wall. There his pushes stand for the tissue on its sensor.
+    pub(super) const fn sets_aside(&self) -> bool {
+        match self.doing {
+            Doing::Away => false,
+            Doing::Called | Doing::Carrying(_) | Doing::Reseating(..) => true,
+            Doing::AtWork(_) => !self.stays_in_trocar(),
+        }
+    }
+
+    /// Where he leads the handle, from where it rests, m (`world`).
+    pub(super) fn handle_m(&self) -> Vector3<f64> {
+        match &self.doing {
+            Doing::AtWork(person) | Doing::Reseating(person, _) => person.handle_m(),
+            _ => Vector3::zeros(),
+        }
+    }
+
+    /// What his hands do.
+    pub(super) fn touch(&self) -> Touch {
+        match &self.doing {
+            Doing::AtWork(person) | Doing::Reseating(person, _) => person.touch(),
+            _ => Touch::default(),
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Takes pictures of the scene: through one lens, or through two whose pictures lie side by side.
+
+use std::time::Duration;
+
+use nalgebra::Isometry3;
+use nima_endoscope::{Board, Camera, time_code};
+use nima_simulation::scene::Scene;
+
+use super::{Emulated, Instrument, board::Drawn, draw::Painter, push};
+use crate::emulators::EmulatedFault;
+
+/// What is before the lens.
+pub(super) enum Subject {
+    Scene(Box<Scene>),
+    /// For the calibration of one lens.
+    Board(Board),
+}
+
+/// How it is at some time.
+pub(super) enum Seen {
+    Instruments(Vec<Instrument>),
+    /// The board's place before the lens.
+    Board(Isometry3<f64>),
+}
+
+/// What draws it.
+enum Easel {
+    /// One for each lens; and the same where a push moves the endoscope, once it has been pushed.
+    Scene {
+        here: Vec<Painter>,
+        moved: Option<Vec<Painter>>,
+        scene: Box<Scene>,
+    },
+    Board(Box<Drawn>),
+}
+
+pub(super) struct Studio {
+    emulated: Emulated,
+    easel: Easel,
+    rgb: Vec<u8>,
+    size_px: [usize; 2],
+}
+
+/// A picture of three bytes a pixel.
+pub(super) struct Shot<'a> {
+    pub(super) rgb: &'a [u8],
+    pub(super) size_px: [usize; 2],
+}
+
+impl Studio {
+    /// Takes some tenths of a second.
+    pub(super) fn new(emulated: Emulated, subject: &Subject) -> Self {
+        let easel = match subject {
+            Subject::Scene(scene) => {
+                let here = painters(emulated.camera, emulated.baseline_m, scene);
+                Easel::Scene { here, moved: None, scene: scene.clone() }
+            }
+            Subject::Board(board) => Easel::Board(Box::new(Drawn::new(*board, &emulated.camera.lens))),
+        };
+        Self { emulated, easel, rgb: Vec::new(), size_px: [0; 2] }
+    }
+
+    /// The picture of what was seen then (since 1970), black or half as large where that is the fault; of a camera that hangs the last one again,
+    /// if there was one.
+    pub(super) fn take(&mut self, since: Duration, seen: &Seen, fault: EmulatedFault) -> Shot<'_> {
+        if fault == EmulatedFault::Freeze && !self.rgb.is_empty() {
+            return Shot { rgb: &self.rgb, size_px: self.size_px };
+        }
+        self.draw(seen, fault == EmulatedFault::Moved);
+        if self.emulated.square_px > 0 {
+            time_code::draw(since.as_micros() as u64, self.emulated.square_px, &mut self.rgb, self.size_px[0]);
+        }
+        match fault {
+            EmulatedFault::Black => self.rgb.fill(0),
+            EmulatedFault::WrongSize => (self.rgb, self.size_px) = halved(&self.rgb, self.size_px),
+            _ => {}
+        }
+        Shot { rgb: &self.rgb, size_px: self.size_px }
+    }
+
+    fn draw(&mut self, seen: &Seen, is_moved: bool) {
+        let Emulated { camera, baseline_m, .. } = self.emulated;
+        let [width, height] = camera.lens.size_px;
+        match (&mut self.easel, seen) {
+            (Easel::Scene { here, moved, scene }, Seen::Instruments(instruments)) => {
+                let there = || Camera { world_from_camera: push() * camera.world_from_camera, ..camera };
+                let painters =
+                    if is_moved { moved.get_or_insert_with(|| painters(there(), baseline_m, scene)) } else { here };
+                self.size_px = [width * painters.len(), height];
+                self.rgb.resize(3 * self.size_px[0] * height, 0);
+                for (number, painter) in painters.iter_mut().enumerate() {
+                    let rows = painter.draw(instruments).chunks_exact(3 * width);
+                    for (whole, row) in self.rgb.chunks_exact_mut(3 * self.size_px[0]).zip(rows) {
+                        whole[3 * width * number..][..3 * width].copy_from_slice(row);
+                    }
+                }
+            }
+            (Easel::Board(drawn), Seen::Board(camera_from_board)) => {
+                self.size_px = [width, height];
+                self.rgb.clear();
+                self.rgb.extend_from_slice(drawn.draw(camera_from_board));
+            }
+            // Made as pairs where the emulator is made.
+            (Easel::Scene { .. }, Seen::Board(_)) | (Easel::Board(_), Seen::Instruments(_)) => {}
+        }
+    }
+}
+
+/// One for each lens.
+fn painters(camera: Camera, baseline_m: Option<f64>, scene: &Scene) -> Vec<Painter> {
+    let second = baseline_m.map(|baseline_m| camera.beside(baseline_m));
+    [Some(camera), second].into_iter().flatten().map(|camera| Painter::new(camera, scene)).collect()
+}
+
+/// Every second pixel of every second row.
+fn halved(rgb: &[u8], [width, height]: [usize; 2]) -> (Vec<u8>, [usize; 2]) {
+    let half_px = [width / 2, height / 2];
+    let rows = rgb.chunks_exact(3 * width).step_by(2).take(half_px[1]);
+    let half = rows.flat_map(|row| row.chunks_exact(3).step_by(2).take(half_px[0]).flatten().copied()).collect();
+    (half, half_px)
+}

@@ -1,0 +1,278 @@
+//! The objects and the instruments among them: one step for each tick.
+
+mod rings;
+mod state;
+mod tools;
+
+use nalgebra::Vector3;
+use nima_core::SIDES;
+
+use crate::physics::{
+    contact::{Law, Memory, Pair},
+    geometry::{PLACES, Segment, directions},
+    instrument::{Instrument, Loads},
+    ring::Ring,
+    setting::{Board, Setting, Start, View},
+    tool::{PARTS, Tool},
+};
+pub use state::{Doing, RingState};
+
+/// Longest sub-step, s.
+const SUBSTEP_MOST_S: f64 = 1e-3;
+/// Longest period of a step, s.
+const PERIOD_MOST_S: f64 = 0.1;
+/// A sub-step is at most this, in terms of the fastest vibration of a ring between four fingers (12 contact stiffnesses on its mass, as the rim is
+/// three times as light as the whole). Semi-implicit Euler is stable below 2, less with damping.
+const SUBSTEP_OF_VIBRATION: f64 = 0.75;
+
+/// Rings, pegs and board, and two instruments among them.
+///
+/// Deterministic: the same calls give the same bits, on every processor. A step allocates nothing.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use nima_core::Side;
+/// use nima_simulation::physics::{Doing, Instrument, Objects, Setting};
+///
+/// let setting = Setting::default();
+/// setting.validate()?;
+/// let mut objects = Objects::new(&setting, 1e-3);
+/// // An instrument that points downwards and has been pressed 1 mm into the board.
+/// let down = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
+/// let trocar_m = Vector3::new(0.0, 0.0, 0.15);
+/// let tip_m = Vector3::new(0.0, 0.0, -0.001);
+/// let right = Instrument { tip_m, world_from_jaws: down, trocar_m, opening_rad: 0.0 };
+/// let loads = objects.step(&Side::Right.alone(right))[Side::Right.index()];
+/// assert!(loads.touching.board && (loads.tip_n.z - 3.6).abs() < 0.01, "both fingers, 1 kN/m each, 1.8 mm deep");
+/// assert_eq!(objects.rings()[3].doing, Doing::OnPeg(3));
+/// # Ok::<(), nima_simulation::physics::SettingError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Objects {
+    period_s: f64,
+    substeps: u32,
+    setting: Setting,
+    laws: Laws,
+    directions: [[f64; 2]; PLACES],
+    /// Forces on ring 0 at a point, N, for tests.
+    #[cfg(test)]
+    pub(crate) pulled_n: Option<(Vector3<f64>, Vector3<f64>)>,
+    pegs: Vec<Segment>,
+    rings: Vec<Ring>,
+    tools: [Option<Tool>; SIDES],
+    memories: Memories,
+    notes: Vec<Note>,
+    states: Vec<RingState>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Laws {
+    instrument: Law,
+    jaw_ring: Law,
+    ring_peg: Law,
+    /// Of each of the places of a ring.
+    ring_board: Law,
+    ring_ring: Law,
+}
+
+/// What places that touch remember. Rings first, then what they touch.
+#[derive(Clone, Debug)]
+struct Memories {
+    ring_board: Vec<[Memory; PLACES]>,
+    ring_pegs: Vec<Pair>,
+    ring_tools: Vec<[[Pair; PARTS]; SIDES]>,
+    ring_rings: Vec<RingPair>,
+    tool_board: [[Memory; PARTS]; SIDES],
+    tool_pegs: Vec<[[Memory; PARTS]; SIDES]>,
+    tool_tool: [[Memory; PARTS]; PARTS],
+}
+
+/// Places of one ring on another.
+#[derive(Clone, Copy, Debug, Default)]
+struct RingPair {
+    places: [Memory; PLACES],
+    touched: bool,
+}
+
+/// What was noticed of a ring during a step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Note {
+    /// Board, peg or ring touch it.
+    supported: bool,
+    touched_by: [bool; SIDES],
+    /// Direction and size of what the fingers press, N; of the last sub-step.
+    fingers_n: [[Vector3<f64>; 2]; SIDES],
+    outside_s: f64,
+}
+
+impl Objects {
+    /// The objects of a setting with a step each `period_s`. The setting must have been validated.
+    pub fn new(setting: &Setting, period_s: f64) -> Self {
+        let period_s = if period_s > 0.0 { period_s.min(PERIOD_MOST_S) } else { SUBSTEP_MOST_S };
+        let Board { z_m, .. } = setting.board;
+        let peg = |[x, y]: &[f64; 2]| Segment {
+            from_m: Vector3::new(*x, *y, z_m),
+            to_m: Vector3::new(*x, *y, z_m + setting.pegs.height_m - setting.pegs.radius_m),
+        };
+        let directions = directions();
+        let mut rings: Vec<Ring> = Vec::with_capacity(setting.rings.len());
+        for (i, start) in setting.rings.iter().enumerate() {
+            let below = setting.rings.iter().take(i).filter(|other| *other == start).count() as f64;
+            let tube_m = setting.ring.tube_radius_m;
+            let centre_m = match start {
+                Start::Peg(peg) => {
+                    let [x, y] = setting.pegs.at_m.get(*peg).copied().unwrap_or_default();
+                    Vector3::new(x, y, z_m + tube_m * (1.0 + 2.0 * below))
+                }
+                Start::At(at_m) => Vector3::from(*at_m),
+            };
+            rings.push(Ring::new(&setting.ring, centre_m, &directions));
+        }
+        let (count, pegs) = (rings.len(), setting.pegs.at_m.len());
+        let mut objects = Self {
+            period_s,
+            substeps: substeps(setting, period_s),
+            laws: laws(setting),
+            directions,
+            #[cfg(test)]
+            pulled_n: None,
+            pegs: setting.pegs.at_m.iter().map(peg).collect(),
+            tools: [None, None],
+            memories: Memories {
+                ring_board: vec![[Memory::default(); PLACES]; count],
+                ring_pegs: vec![Pair::default(); count * pegs],
+                ring_tools: vec![[[Pair::default(); PARTS]; SIDES]; count],
+                ring_rings: vec![RingPair::default(); count * count],
+                tool_board: [[Memory::default(); PARTS]; SIDES],
+                tool_pegs: vec![[[Memory::default(); PARTS]; SIDES]; pegs],
+                tool_tool: [[Memory::default(); PARTS]; PARTS],
+            },
+            notes: vec![Note::default(); count],
+            states: rings.iter().map(RingState::of).collect(),
+            setting: setting.clone(),
+            rings,
+        };
+        objects.tell();
+        objects
+    }
+
+    /// Moves on by one period, at whose end the instruments are here. An instrument with anything that is not a number counts as
+    /// absent. Returns what acts on each.
+    pub fn step(&mut self, instruments: &[Option<Instrument>; SIDES]) -> [Loads; SIDES] {
+        for (tool, at) in self.tools.iter_mut().zip(instruments) {
+            match (tool.as_mut(), at.filter(Instrument::is_sane)) {
+                (Some(tool), Some(at)) => tool.aim(&at),
+                (None, Some(at)) => {
+                    let stiffness_n_m = self.setting.contact.ring_stiffness_n_m;
+                    *tool = Some(Tool::new(&self.setting.jaws, stiffness_n_m, &at, self.period_s));
+                }
+                (_, None) => *tool = None,
+            }
+        }
+        for note in &mut self.notes {
+            (note.supported, note.touched_by) = (false, [false; SIDES]);
+        }
+        let step_s = self.period_s / f64::from(self.substeps);
+        for substep in 1..=self.substeps {
+            let share = f64::from(substep) / f64::from(self.substeps);
+            self.tools.iter_mut().flatten().for_each(|tool| tool.place(share));
+            self.touch_rings(step_s);
+            self.touch_tools(step_s);
+            self.tools.iter_mut().flatten().for_each(|tool| tool.drive(step_s));
+            #[cfg(test)]
+            self.pull();
+            for ring in &mut self.rings {
+                if ring.moves() {
+                    ring.advance(step_s, &self.directions);
+                } else {
+                    ring.clear_forces();
+                }
+            }
+        }
+        self.tell();
+        let substeps = f64::from(self.substeps);
+        self.tools.each_ref().map(|tool| tool.as_ref().map_or_else(Loads::default, |tool| tool.loads(substeps)))
+    }
+
+    /// The rings.
+    pub fn rings(&self) -> &[RingState] {
+        &self.states
+    }
+
+    /// Actual angle between the fingers of each instrument, rad; `None` if there is none.
+    pub fn openings_rad(&self) -> [Option<f64>; SIDES] {
+        self.tools.each_ref().map(|tool| tool.as_ref().map(|tool| tool.opening_rad))
+    }
+
+    /// Time from step to step, s.
+    pub const fn period_s(&self) -> f64 {
+        self.period_s
+    }
+
+    #[cfg(test)]
+    fn pull(&mut self) {
+        if let (Some((at_m, force_n)), Some(ring)) = (self.pulled_n, self.rings.first_mut()) {
+            ring.push(&at_m, &crate::physics::contact::Push { force_n, ..crate::physics::contact::Push::default() });
+        }
+    }
+
+    /// For tests.
+    #[cfg(test)]
+    pub(crate) fn ring_mut(&mut self, ring: usize) -> &mut Ring {
+        &mut self.rings[ring]
+    }
+
+    /// What the fingers of an instrument press on a ring, N, for tests.
+    #[cfg(test)]
+    pub(crate) fn grip_n(&self, ring: usize, side: usize) -> f64 {
+        0.5 * self.notes[ring].fingers_n[side].iter().map(Vector3::norm).sum::<f64>()
+    }
+
+    /// Energy of all motion and height, J, for tests.
+    #[cfg(test)]
+    pub(crate) fn energy_j(&self) -> f64 {
+        self.rings.iter().map(Ring::energy_j).sum()
+    }
+
+    const fn view(&self) -> &View {
+        &self.setting.view
+    }
+}
+
+fn substeps(setting: &Setting, period_s: f64) -> u32 {
+    let longest_s = if setting.rings.is_empty() {
+        SUBSTEP_MOST_S
+    } else {
+        let fastest_rad_s = (12.0 * setting.contact.ring_stiffness_n_m / setting.ring.mass_kg).sqrt();
+        (SUBSTEP_OF_VIBRATION / fastest_rad_s).min(SUBSTEP_MOST_S)
+    };
+    // Rounding must not make two of what fits into one.
+    (period_s / longest_s - 1e-9).ceil().max(1.0) as u32
+}
+
+fn laws(setting: &Setting) -> Laws {
+    let (contact, friction) = (&setting.contact, &setting.friction);
+    let stiffness_n_m = contact.ring_stiffness_n_m;
+    // Half of critical for a ring between two fingers, whose rim is three times as light as the whole.
+    let damping_s = (setting.ring.mass_kg / (6.0 * stiffness_n_m)).sqrt();
+    let ring = |share: f64, friction: f64, patch_radius_m: f64| Law {
+        stiffness_n_m: stiffness_n_m * share,
+        damping_n_s_m: stiffness_n_m * share * damping_s,
+        friction,
+        patch_radius_m,
+    };
+    // Two or three places touch at an edge, all of them where a ring lies flat.
+    let of_many = 0.25;
+    Laws {
+        instrument: Law {
+            stiffness_n_m: contact.stiffness_n_m,
+            damping_n_s_m: contact.damping_n_s_m,
+            friction: friction.instrument,
+            patch_radius_m: 0.0,
+        },
+        jaw_ring: ring(1.0, friction.jaw_ring, friction.patch_radius_m),
+        ring_peg: ring(1.0, friction.ring_peg, 0.0),
+        ring_board: ring(of_many, friction.ring_board, 0.0),
+        ring_ring: ring(of_many, friction.ring_ring, 0.0),
+    }
+}

@@ -1,0 +1,224 @@
+//! What touches the rings.
+
+use nalgebra::Vector3;
+use nima_core::Side;
+
+use super::{Objects, RingPair};
+use crate::physics::{
+    contact::{Law, Memory, Pair, Push, Touch},
+    geometry::{PLACES, Segment, unit_or},
+    ring::Ring,
+    tool::{PARTS, SHAFT, Tool},
+};
+
+/// A ring that is hit faster than this is woken, m/s.
+const WAKES_M_S: f64 = 5e-3;
+/// How far below the surface of the board a ring is taken for one beside it, m.
+const BESIDE_M: f64 = 0.004;
+
+impl Objects {
+    /// The forces on all rings, and what the instruments feel of them.
+    pub(super) fn touch_rings(&mut self, step_s: f64) {
+        for i in 0..self.rings.len() {
+            if self.rings[i].lost {
+                continue;
+            }
+            self.tools_on_ring(i, step_s);
+            if self.rings[i].moves() {
+                self.board_under_ring(i, step_s);
+                self.pegs_in_ring(i, step_s);
+            }
+            for other in i + 1..self.rings.len() {
+                self.ring_on_ring(i, other, step_s);
+            }
+        }
+    }
+
+    fn tools_on_ring(&mut self, i: usize, step_s: f64) {
+        let (ring, note) = (&mut self.rings[i], &mut self.notes[i]);
+        note.fingers_n = Default::default();
+        for side in Side::LEFT_TO_RIGHT.map(Side::index) {
+            let pairs = &mut self.memories.ring_tools[i][side];
+            let Some(tool) = &mut self.tools[side] else {
+                pairs.iter_mut().for_each(Pair::forget);
+                continue;
+            };
+            for part in 0..PARTS {
+                let pressed_n = tool_on_ring(ring, tool, part, &mut pairs[part], &self.laws.jaw_ring, step_s);
+                let Some(pressed_n) = pressed_n else { continue };
+                note.touched_by[side] = true;
+                tool.touching.ring = true;
+                if part != SHAFT {
+                    note.fingers_n[side][part] = pressed_n;
+                }
+            }
+        }
+    }
+
+    fn board_under_ring(&mut self, i: usize, step_s: f64) {
+        let (ring, memories) = (&mut self.rings[i], &mut self.memories.ring_board[i]);
+        let board = &self.setting.board;
+        if ring.centre_m.z > board.z_m + ring.reach_m() {
+            return;
+        }
+        let half_m = board.size_m.map(|size_m| 0.5 * size_m);
+        for (memory, at_m) in memories.iter_mut().zip(ring.places_m) {
+            let depth_m = board.z_m + ring.tube_radius_m - at_m.z;
+            let above = at_m.x.abs() <= half_m[0] && at_m.y.abs() <= half_m[1];
+            if depth_m <= 0.0 || depth_m > ring.tube_radius_m + BESIDE_M || !above {
+                *memory = Memory::default();
+                continue;
+            }
+            let touched_m = at_m - Vector3::z() * (ring.tube_radius_m - 0.5 * depth_m);
+            let touch =
+                Touch { depth_m, normal: Vector3::z(), velocity_m_s: ring.velocity_at(&touched_m), spin_rad_s: 0.0 };
+            let push = self.laws.ring_board.push(memory, &touch, step_s);
+            ring.push(&touched_m, &push);
+            self.notes[i].supported = true;
+        }
+    }
+
+    fn pegs_in_ring(&mut self, i: usize, step_s: f64) {
+        let ring = &mut self.rings[i];
+        let radius_m = self.setting.pegs.radius_m;
+        let far_m = ring.reach_m() + radius_m;
+        let top_m = self.setting.board.z_m + self.setting.pegs.height_m + ring.reach_m();
+        for (peg, segment) in self.pegs.iter().enumerate() {
+            let pair = &mut self.memories.ring_pegs[i * self.pegs.len() + peg];
+            let across_m = (ring.centre_m - segment.from_m).xy().norm_squared();
+            if across_m > far_m * far_m || ring.centre_m.z > top_m {
+                pair.forget();
+                continue;
+            }
+            let touched = capsule_on_ring(ring, segment, radius_m, pair, |ring, memory, contact| {
+                let touch = Touch { velocity_m_s: ring.velocity_at(&contact.at_m), ..contact.touch };
+                self.laws.ring_peg.push(memory, &touch, step_s)
+            });
+            self.notes[i].supported |= touched;
+        }
+    }
+
+    fn ring_on_ring(&mut self, i: usize, other: usize, step_s: f64) {
+        let pair = &mut self.memories.ring_rings[i * self.notes.len() + other];
+        let (before, after) = self.rings.split_at_mut(other);
+        let (a, b) = (&mut before[i], &mut after[0]);
+        let still = !a.moves() && !b.moves();
+        let far_m = a.reach_m() + b.reach_m();
+        if still || b.lost {
+            return;
+        }
+        let touching = (a.centre_m - b.centre_m).norm_squared() < far_m * far_m
+            && places_on_ring(a, b, pair, &self.laws.ring_ring, step_s);
+        if touching {
+            (self.notes[i].supported, self.notes[other].supported) = (true, true);
+            let fast = (a.velocity_m_s - b.velocity_m_s).norm() > WAKES_M_S;
+            let led = |i: usize| self.notes[i].touched_by.contains(&true);
+            if fast || led(i) || led(other) {
+                wake_both(a, b);
+            }
+        } else if pair.touched {
+            // What rested on the other must not stay in the air.
+            wake_both(a, b);
+            *pair = RingPair::default();
+        }
+        pair.touched = touching;
+    }
+}
+
+fn wake_both(a: &mut Ring, b: &mut Ring) {
+    for ring in [a, b] {
+        if ring.asleep {
+            ring.wake();
+        }
+    }
+}
+
+/// One place of a capsule on a ring; the normal points to the ring.
+struct Contact {
+    at_m: Vector3<f64>,
+    touch: Touch,
+}
+
+/// Lets `law` push the ring wherever it touches the capsule; whether it does.
+fn capsule_on_ring(
+    ring: &mut Ring,
+    segment: &Segment,
+    radius_m: f64,
+    pair: &mut Pair,
+    mut law: impl FnMut(&Ring, &mut Memory, &Contact) -> Push,
+) -> bool {
+    let reach_m = ring.tube_radius_m + radius_m;
+    let nearest = ring.circle.nearest(&ring.places_m, segment, reach_m);
+    if nearest[0].is_none() {
+        pair.forget();
+        return false;
+    }
+    let ring_from_world = ring.world_from_ring.inverse();
+    let on_ring_m = nearest.map(|nearest| nearest.map(|[ours_m, _]| ring_from_world * (ours_m - ring.centre_m)));
+    let mut memories = pair.of(on_ring_m);
+    pair.forget();
+    for (place, nearest) in nearest.iter().enumerate() {
+        let (Some([ours_m, theirs_m]), Some(on_ring_m)) = (nearest, on_ring_m[place]) else { continue };
+        let (normal, distance_m) = unit_or(&(ours_m - theirs_m), &ring.circle.axis);
+        let depth_m = reach_m - distance_m;
+        let at_m = theirs_m + normal * (radius_m - 0.5 * depth_m);
+        let touch = Touch { depth_m, normal, velocity_m_s: Vector3::zeros(), spin_rad_s: 0.0 };
+        let push = law(ring, &mut memories[place], &Contact { at_m, touch });
+        ring.push(&at_m, &push);
+        pair.keep(place, on_ring_m, memories[place]);
+    }
+    true
+}
+
+/// One part of an instrument on a ring: what it presses, N towards the ring, if it touches.
+fn tool_on_ring(
+    ring: &mut Ring,
+    tool: &mut Tool,
+    part: usize,
+    pair: &mut Pair,
+    law: &Law,
+    step_s: f64,
+) -> Option<Vector3<f64>> {
+    let (segment, radius_m) = (tool.parts[part], tool.radii_m[part]);
+    let mut pressed_n = Vector3::zeros();
+    let touched = capsule_on_ring(ring, &segment, radius_m, pair, |ring, memory, contact| {
+        let Contact { at_m, touch } = contact;
+        let touch = Touch {
+            velocity_m_s: ring.velocity_at(at_m) - tool.velocity_at(part, at_m),
+            spin_rad_s: ring.turning_rad_s.dot(&touch.normal) - tool.spin_about(part, &touch.normal),
+            ..*touch
+        };
+        let push = law.push(memory, &touch, step_s);
+        pressed_n += touch.normal * push.normal_n;
+        tool.push(part, at_m, &push.reverse());
+        push
+    });
+    if touched && ring.asleep {
+        ring.wake();
+    }
+    touched.then_some(pressed_n)
+}
+
+/// The places of a ring on the tube of another; whether any touches.
+fn places_on_ring(a: &mut Ring, b: &mut Ring, pair: &mut RingPair, law: &Law, step_s: f64) -> bool {
+    let reach_m = a.tube_radius_m + b.tube_radius_m;
+    let mut touching = false;
+    for place in 0..PLACES {
+        let memory = &mut pair.places[place];
+        let ours_m = a.places_m[place];
+        let theirs_m = b.circle.closest(&ours_m);
+        let (normal, distance_m) = unit_or(&(ours_m - theirs_m), &b.circle.axis);
+        let depth_m = reach_m - distance_m;
+        if depth_m <= 0.0 {
+            *memory = Memory::default();
+            continue;
+        }
+        touching = true;
+        let at_m = theirs_m + normal * (b.tube_radius_m - 0.5 * depth_m);
+        let velocity_m_s = a.velocity_at(&at_m) - b.velocity_at(&at_m);
+        let push = law.push(memory, &Touch { depth_m, normal, velocity_m_s, spin_rad_s: 0.0 }, step_s);
+        a.push(&at_m, &push);
+        b.push(&at_m, &push.reverse());
+    }
+    touching
+}

@@ -1,0 +1,141 @@
+//! What each ring is doing.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::SIDES;
+
+use super::{Note, Objects};
+use crate::physics::{ring::Ring, setting::View};
+
+/// Both fingers press at least so much on a ring that is held, N: with a friction of 0.4 just enough for 2 g.
+const HOLDS_N: f64 = 0.03;
+/// Out of the picture for so long without being held, a ring is lost, s.
+const LOST_AFTER_S: f64 = 0.1;
+/// Farther from the origin a ring is lost even if it is held, m.
+const LOST_BEYOND_M: f64 = 1.5;
+/// A ring that stands more upright than this is on no peg: cosine of the angle between its axis and the vertical.
+const UPRIGHT: f64 = 0.2;
+
+/// What a ring is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doing {
+    /// A peg, counted from 0, is through it, and no jaws hold it.
+    OnPeg(usize),
+    /// Both fingers of an instrument, or of both, press it from opposite sides.
+    Held {
+        /// Which instruments hold it.
+        by: [bool; SIDES],
+    },
+    /// On the board, against a peg or on another ring.
+    Lying,
+    /// Nothing touches it but an instrument, if anything.
+    Falling,
+    /// Lost out of the picture: it stays where it was.
+    OutOfView,
+}
+
+/// A ring at the end of a step. Workspace frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RingState {
+    /// Its middle, m.
+    pub centre_m: Vector3<f64>,
+    /// Its orientation; z is the axis through the hole.
+    pub world_from_ring: UnitQuaternion<f64>,
+    /// What it is doing.
+    pub doing: Doing,
+    /// The peg that is through it, held or not.
+    pub around: Option<usize>,
+    /// Board, a peg or another ring touches it.
+    pub supported: bool,
+    /// Which instruments touch it.
+    pub touched_by: [bool; SIDES],
+    /// It hardly moves, or not at all.
+    pub slow: bool,
+}
+
+/// Slower than this a ring has come to rest as an operator sees it, m/s.
+const SLOW_M_S: f64 = 0.01;
+
+impl RingState {
+    pub(super) fn of(ring: &Ring) -> Self {
+        Self {
+            centre_m: ring.centre_m,
+            world_from_ring: ring.world_from_ring,
+            doing: Doing::Falling,
+            around: None,
+            supported: false,
+            touched_by: [false; SIDES],
+            slow: false,
+        }
+    }
+}
+
+impl View {
+    fn shows(&self, at_m: &Vector3<f64>) -> bool {
+        (0..3).all(|axis| (self.from_m[axis]..=self.to_m[axis]).contains(&at_m[axis]))
+    }
+}
+
+impl Note {
+    fn held_by(&self) -> [bool; SIDES] {
+        self.fingers_n.map(|[one, other]| {
+            one.norm() > HOLDS_N && other.norm() > HOLDS_N && one.dot(&other) < -0.3 * one.norm() * other.norm()
+        })
+    }
+}
+
+impl Objects {
+    /// At the end of a step: which rings are lost or at rest, and what is told of each.
+    pub(super) fn tell(&mut self) {
+        for i in 0..self.rings.len() {
+            let around = self.peg_in(&self.rings[i]);
+            let view = *self.view();
+            let (ring, note) = (&mut self.rings[i], &mut self.notes[i]);
+            let by = note.held_by();
+            let held = by.contains(&true);
+            if !ring.lost {
+                let outside = !held && !view.shows(&ring.centre_m);
+                note.outside_s = if outside { note.outside_s + self.period_s } else { 0.0 };
+                if note.outside_s > LOST_AFTER_S || ring.centre_m.norm() > LOST_BEYOND_M {
+                    ring.lose();
+                }
+                ring.settle(!note.touched_by.contains(&true), self.period_s);
+                if !ring.asleep && ring.quiet() && note.supported {
+                    ring.sleep();
+                }
+            }
+            let supported = note.supported || ring.asleep;
+            let doing = match around {
+                _ if ring.lost => Doing::OutOfView,
+                _ if held => Doing::Held { by },
+                Some(peg) => Doing::OnPeg(peg),
+                None if supported => Doing::Lying,
+                None => Doing::Falling,
+            };
+            self.states[i] = RingState {
+                centre_m: ring.centre_m,
+                world_from_ring: ring.world_from_ring,
+                doing,
+                around,
+                supported,
+                touched_by: note.touched_by,
+                slow: ring.velocity_m_s.norm() < SLOW_M_S,
+            };
+        }
+    }
+
+    /// The peg that goes through a ring.
+    fn peg_in(&self, ring: &Ring) -> Option<usize> {
+        let axis = ring.circle.axis;
+        if axis.z.abs() < UPRIGHT {
+            return None;
+        }
+        self.pegs.iter().position(|peg| {
+            let across_m = peg.from_m - ring.centre_m;
+            // Where the peg's axis goes through the plane of the ring, from its middle.
+            let up_m = -(axis.x * across_m.x + axis.y * across_m.y) / axis.z;
+            let z_m = ring.centre_m.z + up_m;
+            let through = across_m.xy().norm_squared() + up_m * up_m < ring.circle.radius_m * ring.circle.radius_m;
+            through && z_m > peg.from_m.z && z_m < peg.to_m.z + self.setting.pegs.radius_m
+        })
+    }
+}

@@ -1,0 +1,139 @@
+//! Tests of the whole: what a ring does among instruments.
+
+mod carrying;
+mod cost;
+mod energy;
+mod forces;
+mod hostile;
+mod repeats;
+mod setting;
+mod transfer;
+mod wire;
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::{SIDES, Side, task::Event};
+
+use crate::physics::{Instrument, Loads, Objects, Setting, Start, Watch};
+
+pub(crate) const LEFT: usize = Side::Left.index();
+pub(crate) const RIGHT: usize = Side::Right.index();
+/// Wide enough to reach around a tube, rad.
+pub(crate) const OPEN_RAD: f64 = 0.6;
+
+pub(crate) fn at(x_m: f64, y_m: f64, z_m: f64) -> Vector3<f64> {
+    Vector3::new(x_m, y_m, z_m)
+}
+
+/// Jaws that point downwards and open along x.
+pub(crate) fn downwards() -> UnitQuaternion<f64> {
+    UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI)
+}
+
+/// An instrument that points downwards, through a trocar of the scene `bimanual`.
+pub(crate) fn instrument(side: usize, tip_m: Vector3<f64>, opening_rad: f64) -> Instrument {
+    let trocar_m = at(if side == LEFT { -0.05 } else { 0.05 }, -0.06, 0.14);
+    Instrument { tip_m, world_from_jaws: downwards(), trocar_m, opening_rad }
+}
+
+pub(crate) fn one_ring(start: Start) -> Setting {
+    Setting { rings: vec![start], ..Setting::default() }
+}
+
+/// Objects, and two hands that do what a test says.
+pub(crate) struct Scene {
+    pub objects: Objects,
+    pub hands: [Option<Instrument>; SIDES],
+    pub loads: [Loads; SIDES],
+    pub events: Vec<Event>,
+    /// Hands like those of a person: tremor, aim that is off by this, m, and jaws in line with the shaft.
+    pub unsure_m: f64,
+    ticks: u32,
+    watch: Watch,
+}
+
+impl Scene {
+    pub(crate) fn new(setting: &Setting) -> Self {
+        setting.validate().unwrap();
+        let objects = Objects::new(setting, 1e-3);
+        let watch = Watch::new(&objects);
+        Self {
+            objects,
+            hands: [None; SIDES],
+            loads: [Loads::default(); SIDES],
+            events: Vec::new(),
+            unsure_m: 0.0,
+            ticks: 0,
+            watch,
+        }
+    }
+
+    pub(crate) fn tick(&mut self) {
+        let hands = if self.unsure_m > 0.0 { self.trembling() } else { self.hands };
+        self.ticks += 1;
+        self.loads = self.objects.step(&hands);
+        self.watch.look(&self.objects);
+        self.events.extend(std::iter::from_fn(|| self.watch.next_event()));
+    }
+
+    /// The hands with 0.1 mm of tremor at 8 to 11 Hz (Elble and Koller 1990), and jaws along the shaft: no wrist.
+    fn trembling(&self) -> [Option<Instrument>; SIDES] {
+        let t_s = f64::from(self.ticks) * 1e-3;
+        let shakes_m = at(libm::sin(50.0 * t_s), libm::sin(61.0 * t_s), libm::sin(69.0 * t_s)) * 1e-4;
+        self.hands.map(|hand| {
+            let hand = hand?;
+            let tip_m = hand.tip_m + shakes_m;
+            let tilt = UnitQuaternion::rotation_between(&-Vector3::z(), &(tip_m - hand.trocar_m))?;
+            Some(Instrument { tip_m, world_from_jaws: tilt * downwards(), ..hand })
+        })
+    }
+
+    /// How far the next aim is off, m: every direction in turn.
+    pub(crate) fn off_m(&self) -> Vector3<f64> {
+        let turn = f64::from(self.ticks);
+        at(libm::sin(turn), libm::cos(turn), 0.0) * self.unsure_m
+    }
+
+    pub(crate) fn run(&mut self, seconds: f64) {
+        (0..(seconds * 1e3).round() as u32).for_each(|_| self.tick());
+    }
+
+    /// Moves a tip to a place in a straight line, at this speed on the average, smoothly.
+    pub(crate) fn glide(&mut self, side: usize, to_m: Vector3<f64>, speed_m_s: f64) {
+        let from_m = self.hands[side].unwrap().tip_m;
+        let ticks = ((to_m - from_m).norm() / speed_m_s * 1e3).ceil().max(1.0) as u32;
+        for tick in 1..=ticks {
+            let share = f64::from(tick) / f64::from(ticks);
+            let smooth = share * share * (3.0 - 2.0 * share);
+            self.hands[side].as_mut().unwrap().tip_m = from_m + (to_m - from_m) * smooth;
+            self.tick();
+        }
+    }
+
+    /// Opens or closes the jaws within 0.15 s: their ends move at some 30 to 60 mm/s.
+    pub(crate) fn jaws(&mut self, side: usize, opening_rad: f64) {
+        let from_rad = self.hands[side].unwrap().opening_rad;
+        for tick in 1..=150 {
+            let share = f64::from(tick) / 150.0;
+            self.hands[side].as_mut().unwrap().opening_rad = from_rad + (opening_rad - from_rad) * share;
+            self.tick();
+        }
+        self.run(0.1);
+    }
+
+    pub(crate) fn centre_m(&self, ring: usize) -> Vector3<f64> {
+        self.objects.rings()[ring].centre_m
+    }
+
+    /// From above to the rim of a ring on the side of `x_sign`, closed on it.
+    pub(crate) fn grasp(&mut self, side: usize, ring: usize, x_sign: f64) {
+        let rim_m = self.centre_m(ring) + at(x_sign * 0.00725, 0.0, 0.0) + self.off_m();
+        let above_m = rim_m + at(0.0, 0.0, 0.03);
+        match &mut self.hands[side] {
+            Some(_) => self.glide(side, above_m, 0.1),
+            hand @ None => *hand = Some(instrument(side, above_m, OPEN_RAD)),
+        }
+        self.jaws(side, OPEN_RAD);
+        self.glide(side, rim_m - at(0.0, 0.0, 0.001), 0.05);
+        self.jaws(side, 0.0);
+    }
+}

@@ -1,0 +1,186 @@
+//! An instrument as bodies that touch: two fingers and a shaft, all capsules.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::physics::{
+    contact::Push,
+    geometry::Segment,
+    instrument::{Instrument, Loads, OPENING_MOST_RAD, Touching},
+    setting::Jaws,
+};
+
+/// Two fingers, then the shaft.
+pub(crate) const PARTS: usize = 3;
+pub(crate) const SHAFT: usize = 2;
+/// The jaws follow their command, and give way to what opens them, with this time constant, s.
+const FOLLOW_S: f64 = 0.01;
+/// The same against what is between them, s: long enough for the longest sub-step.
+const LEAST_S: f64 = 1.25e-3;
+/// Further than this from one step to the next an instrument is set down anew and sweeps nothing, m and rad.
+const JUMP_M: f64 = 0.03;
+const JUMP_RAD: f64 = 0.5;
+
+/// An instrument within a step.
+#[derive(Clone, Debug)]
+pub(crate) struct Tool {
+    jaws: Jaws,
+    /// What slows the jaws, N s/m at the end of a finger.
+    damping_n_s_m: f64,
+    from: Instrument,
+    to: Instrument,
+    period_s: f64,
+    /// Actual angle between the fingers, rad, and its change, rad/s.
+    pub opening_rad: f64,
+    opening_rad_s: f64,
+    tip_m: Vector3<f64>,
+    hinge_m: Vector3<f64>,
+    hinge_m_s: Vector3<f64>,
+    turning_rad_s: Vector3<f64>,
+    /// The axis about which the fingers open.
+    about: Vector3<f64>,
+    pub parts: [Segment; PARTS],
+    pub radii_m: [f64; PARTS],
+    /// Sums over the step.
+    force_n: Vector3<f64>,
+    torque_nm: Vector3<f64>,
+    opening_n: f64,
+    /// The same of the current sub-step alone.
+    now_opening_n: f64,
+    pub touching: Touching,
+}
+
+/// `+1` for the finger on the side of x.
+const fn side_of(finger: usize) -> f64 {
+    if finger == 0 { 1.0 } else { -1.0 }
+}
+
+impl Tool {
+    pub(crate) fn new(jaws: &Jaws, ring_stiffness_n_m: f64, at: &Instrument, period_s: f64) -> Self {
+        let opening_rad = at.opening_rad.clamp(0.0, OPENING_MOST_RAD);
+        let mut tool = Self {
+            jaws: *jaws,
+            damping_n_s_m: (jaws.stiffness_n_m * FOLLOW_S).max(ring_stiffness_n_m * LEAST_S),
+            from: *at,
+            to: *at,
+            period_s,
+            opening_rad,
+            opening_rad_s: 0.0,
+            tip_m: at.tip_m,
+            hinge_m: at.tip_m,
+            hinge_m_s: Vector3::zeros(),
+            turning_rad_s: Vector3::zeros(),
+            about: Vector3::y(),
+            parts: [Segment::default(); PARTS],
+            radii_m: [jaws.finger_radius_m, jaws.finger_radius_m, jaws.shaft_radius_m],
+            force_n: Vector3::zeros(),
+            torque_nm: Vector3::zeros(),
+            opening_n: 0.0,
+            now_opening_n: 0.0,
+            touching: Touching::default(),
+        };
+        tool.place(1.0);
+        tool
+    }
+
+    /// Begins a step at whose end the instrument is here.
+    pub(crate) fn aim(&mut self, at: &Instrument) {
+        self.from = self.to;
+        self.to = *at;
+        let far = (self.to.tip_m - self.from.tip_m).norm() > JUMP_M;
+        let turn = self.to.world_from_jaws * self.from.world_from_jaws.inverse();
+        // `w` is the cosine of half the angle; a small angle is twice the vector part.
+        let half = turn.vector() * if turn.w < 0.0 { -1.0 } else { 1.0 };
+        if far || turn.w.abs() < 1.0 - 0.125 * JUMP_RAD * JUMP_RAD {
+            self.from = *at;
+            self.turning_rad_s = Vector3::zeros();
+        } else {
+            self.turning_rad_s = half * (2.0 / self.period_s);
+        }
+        let hinge_m = |at: &Instrument| at.tip_m - at.world_from_jaws * Vector3::z() * self.jaws.finger_length_m;
+        self.hinge_m_s = (hinge_m(&self.to) - hinge_m(&self.from)) / self.period_s;
+        (self.force_n, self.torque_nm, self.opening_n) = (Vector3::zeros(), Vector3::zeros(), 0.0);
+        self.touching = Touching::default();
+    }
+
+    /// Puts the capsules where they are at this share of the step.
+    pub(crate) fn place(&mut self, share: f64) {
+        let (from, to) = (self.from.world_from_jaws.into_inner(), self.to.world_from_jaws.into_inner());
+        let to = if from.dot(&to) < 0.0 { -to } else { to };
+        let world_from_jaws = UnitQuaternion::new_normalize(from * (1.0 - share) + to * share);
+        let between = |from: &Vector3<f64>, to: &Vector3<f64>| from * (1.0 - share) + to * share;
+        self.tip_m = between(&self.from.tip_m, &self.to.tip_m);
+        let (x, z) = (world_from_jaws * Vector3::x(), world_from_jaws * Vector3::z());
+        self.about = world_from_jaws * Vector3::y();
+        self.hinge_m = self.tip_m - z * self.jaws.finger_length_m;
+        let (sin, cos) = libm::sincos(0.5 * self.opening_rad);
+        for finger in 0..SHAFT {
+            let side = side_of(finger);
+            // Closed fingers lie side by side: the middle of each is its radius away from the hinge.
+            let (out, along) = (x * cos - z * (side * sin), z * cos + x * (side * sin));
+            let from_m = self.hinge_m + out * (side * self.jaws.finger_radius_m);
+            self.parts[finger] = Segment { from_m, to_m: from_m + along * self.jaws.finger_length_m };
+        }
+        self.parts[SHAFT] = Segment { from_m: between(&self.from.trocar_m, &self.to.trocar_m), to_m: self.hinge_m };
+    }
+
+    /// Height of the lowest point of a part, m.
+    pub(crate) fn lowest_m(&self, part: usize) -> f64 {
+        self.parts[part].from_m.z.min(self.parts[part].to_m.z) - self.radii_m[part]
+    }
+
+    /// Direction and lever in which a point of a finger moves when its half of the opening grows, m/rad.
+    fn opens(&self, finger: usize, point_m: &Vector3<f64>) -> Vector3<f64> {
+        self.about.cross(&(point_m - self.hinge_m)) * side_of(finger)
+    }
+
+    /// Velocity of a point of a part, m/s.
+    pub(crate) fn velocity_at(&self, part: usize, point_m: &Vector3<f64>) -> Vector3<f64> {
+        if part == SHAFT {
+            // The trocar stands still.
+            let shaft = self.parts[SHAFT];
+            let length_m = (shaft.to_m - shaft.from_m).norm().max(1e-6);
+            return self.hinge_m_s * ((point_m - shaft.from_m).norm() / length_m).min(1.0);
+        }
+        let rigid = self.hinge_m_s + self.turning_rad_s.cross(&(point_m - self.hinge_m));
+        rigid + self.opens(part, point_m) * (0.5 * self.opening_rad_s)
+    }
+
+    /// Turning of a part about a direction, rad/s.
+    pub(crate) fn spin_about(&self, part: usize, direction: &Vector3<f64>) -> f64 {
+        if part == SHAFT { 0.0 } else { self.turning_rad_s.dot(direction) }
+    }
+
+    /// Something pushes a part at a point.
+    pub(crate) fn push(&mut self, part: usize, at_m: &Vector3<f64>, push: &Push) {
+        self.force_n += push.force_n;
+        self.torque_nm += (at_m - self.tip_m).cross(&push.force_n) + push.torque_nm;
+        if part != SHAFT {
+            // Both fingers move by half the opening, so half of the work of each counts.
+            self.now_opening_n += 0.5 * push.force_n.dot(&self.opens(part, at_m)) / self.jaws.finger_length_m;
+        }
+    }
+
+    /// Moves the jaws on by `step_s`: a spring towards the command, limited in force, and what opens them, against a damper.
+    pub(crate) fn drive(&mut self, step_s: f64) {
+        let Jaws { finger_length_m, stiffness_n_m, force_max_n, .. } = self.jaws;
+        let commanded_rad = self.to.opening_rad.clamp(0.0, OPENING_MOST_RAD);
+        let wide_m = finger_length_m * (self.opening_rad - commanded_rad);
+        let closing_n = (stiffness_n_m * wide_m).clamp(-force_max_n, force_max_n);
+        let before_rad = self.opening_rad;
+        let rate_rad_s = (self.now_opening_n - closing_n) / (self.damping_n_s_m * finger_length_m);
+        self.opening_rad = (before_rad + rate_rad_s * step_s).clamp(0.0, OPENING_MOST_RAD);
+        self.opening_rad_s = (self.opening_rad - before_rad) / step_s;
+        self.opening_n += self.now_opening_n;
+        self.now_opening_n = 0.0;
+    }
+
+    /// Means over the step.
+    pub(crate) fn loads(&self, substeps: f64) -> Loads {
+        Loads {
+            tip_n: self.force_n / substeps,
+            torque_nm: self.torque_nm / substeps,
+            opening_n: self.opening_n / substeps,
+            touching: self.touching,
+        }
+    }
+}

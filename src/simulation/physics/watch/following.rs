@@ -1,0 +1,205 @@
+//! One ring, followed from event to event.
+
+use nima_core::{SIDES, Side, task::Event};
+
+use crate::physics::objects::{Doing, RingState};
+
+/// A ring is grasped when it was held for this long, s.
+const GRASPED_AFTER_S: f64 = 0.03;
+/// It is let go when it was not held for this long, s: less is a slip. A ring falls 11 mm in this time.
+const LET_GO_AFTER_S: f64 = 0.05;
+/// It has left a peg, or is on one, after this, s.
+const OFF_PEG_AFTER_S: f64 = 0.05;
+const ON_PEG_AFTER_S: f64 = 0.1;
+/// A ring that nobody holds was knocked off its peg after this, s.
+const KNOCKED_AFTER_S: f64 = 0.1;
+/// It lies after so long at rest, or after so long in all, s; until then it may still roll out of the picture.
+const LIES_AFTER_S: f64 = 0.15;
+const LIES_AT_LAST_S: f64 = 2.0;
+
+/// What is known of a ring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Stage {
+    /// Nobody holds it; on this peg, or somewhere.
+    Free {
+        peg: Option<usize>,
+    },
+    /// Held; `peg` is where it was grasped, until it left that.
+    Held {
+        side: Side,
+        peg: Option<usize>,
+    },
+    /// Let go, and not known yet what becomes of it. `landed` if something has carried it since.
+    LetGo {
+        side: Side,
+        peg: Option<usize>,
+        landed: bool,
+        since_s: f64,
+    },
+    Lost,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Following {
+    stage: Stage,
+    /// For how long each side has held it, and has not, s.
+    held_s: [f64; SIDES],
+    loose_s: [f64; SIDES],
+    /// For how long it has been around the peg of the moment, off the peg of its stage, and at rest, s.
+    on_s: f64,
+    on: Option<usize>,
+    off_s: f64,
+    rest_s: f64,
+    last: Option<Side>,
+}
+
+fn for_s(time_s: f64, lasts: bool, period_s: f64) -> f64 {
+    if lasts { time_s + period_s } else { 0.0 }
+}
+
+impl Following {
+    pub(super) fn new(state: &RingState) -> Self {
+        Self {
+            stage: Stage::Free { peg: state.around },
+            held_s: [0.0; SIDES],
+            loose_s: [f64::INFINITY; SIDES],
+            on_s: 0.0,
+            on: state.around,
+            off_s: 0.0,
+            rest_s: 0.0,
+            last: None,
+        }
+    }
+
+    /// The next step. `last` is who touched any ring last.
+    pub(super) fn look(
+        &mut self,
+        ring: usize,
+        state: &RingState,
+        last: Option<Side>,
+        period_s: f64,
+        tell: &mut dyn FnMut(Event),
+    ) {
+        self.measure(state, period_s);
+        let lost = state.doing == Doing::OutOfView;
+        let of = |side: Option<Side>| side.or(last).unwrap_or(Side::Right);
+        self.stage = match self.stage {
+            Stage::Lost => Stage::Lost,
+            Stage::Free { .. } if lost => {
+                tell(Event::RingDropped { ring, side: of(self.last), in_view: false });
+                Stage::Lost
+            }
+            Stage::Held { side, .. } | Stage::LetGo { side, .. } if lost => {
+                tell(Event::RingDropped { ring, side, in_view: false });
+                Stage::Lost
+            }
+            Stage::Free { peg } => self.free(ring, peg, tell),
+            Stage::Held { side, peg } => self.held(ring, state, side, peg, tell),
+            Stage::LetGo { side, peg, landed, since_s } => {
+                let landed = landed || (state.supported && !state.touched_by.contains(&true)) || state.around.is_some();
+                self.let_go(ring, side, peg, (landed, since_s + period_s), tell)
+            }
+        };
+    }
+
+    fn measure(&mut self, state: &RingState, period_s: f64) {
+        let by = if let Doing::Held { by } = state.doing { by } else { [false; SIDES] };
+        for side in Side::LEFT_TO_RIGHT {
+            let i = side.index();
+            self.loose_s[i] = for_s(self.loose_s[i], !by[i], period_s);
+            self.held_s[i] = for_s(self.held_s[i], self.loose_s[i] < LET_GO_AFTER_S, period_s);
+            if state.touched_by[i] {
+                self.last = Some(side);
+            }
+        }
+        self.on_s = for_s(self.on_s, state.around == self.on && self.on.is_some(), period_s);
+        self.on = state.around;
+        let peg = match self.stage {
+            Stage::Free { peg } | Stage::Held { peg, .. } | Stage::LetGo { peg, .. } => peg,
+            Stage::Lost => None,
+        };
+        self.off_s = for_s(self.off_s, peg.is_some() && state.around != peg, period_s);
+        self.rest_s = for_s(self.rest_s, state.supported && state.slow && !by.contains(&true), period_s);
+    }
+
+    /// The side that holds it firmly, other than `than`; the left one if both do.
+    fn firm(&self, than: Option<Side>) -> Option<Side> {
+        Side::LEFT_TO_RIGHT.into_iter().find(|side| Some(*side) != than && self.held_s[side.index()] >= GRASPED_AFTER_S)
+    }
+
+    fn free(&self, ring: usize, peg: Option<usize>, tell: &mut dyn FnMut(Event)) -> Stage {
+        if let Some(side) = self.firm(None) {
+            tell(Event::RingGrasped { ring, side });
+            return Stage::Held { side, peg };
+        }
+        match peg {
+            Some(_) if self.off_s >= KNOCKED_AFTER_S => {
+                tell(Event::RingKnockedOff { ring, side: self.last });
+                Stage::Free { peg: None }
+            }
+            // A ring that was pushed onto a peg, or fell on it, is on it.
+            None if self.on_s >= ON_PEG_AFTER_S => Stage::Free { peg: self.on },
+            peg => Stage::Free { peg },
+        }
+    }
+
+    fn held(
+        &self,
+        ring: usize,
+        state: &RingState,
+        side: Side,
+        peg: Option<usize>,
+        tell: &mut dyn FnMut(Event),
+    ) -> Stage {
+        let peg = if self.off_s >= OFF_PEG_AFTER_S {
+            tell(Event::RingLifted { ring, side });
+            None
+        } else {
+            peg
+        };
+        if self.loose_s[side.index()] < LET_GO_AFTER_S {
+            return Stage::Held { side, peg };
+        }
+        let Some(to) = self.firm(Some(side)) else {
+            return Stage::LetGo { side, peg, landed: false, since_s: 0.0 };
+        };
+        let in_air = !state.supported && state.around.is_none();
+        let event = if in_air { Event::RingTransferred { ring, to } } else { Event::RingGrasped { ring, side: to } };
+        tell(event);
+        Stage::Held { side: to, peg }
+    }
+
+    fn let_go(
+        &self,
+        ring: usize,
+        side: Side,
+        peg: Option<usize>,
+        (landed, since_s): (bool, f64),
+        tell: &mut dyn FnMut(Event),
+    ) -> Stage {
+        if let Some(by) = self.firm(None) {
+            match (landed, peg) {
+                (false, _) if by == side => {}
+                (false, _) => tell(Event::RingTransferred { ring, to: by }),
+                (true, Some(_)) => tell(Event::RingGrasped { ring, side: by }),
+                (true, None) => {
+                    tell(Event::RingDropped { ring, side, in_view: true });
+                    tell(Event::RingGrasped { ring, side: by });
+                }
+            }
+            return Stage::Held { side: by, peg };
+        }
+        if let (Some(on), true) = (self.on, self.on_s >= ON_PEG_AFTER_S) {
+            // A ring that never left its peg was not placed.
+            if peg != Some(on) {
+                tell(Event::RingPlaced { ring, side, peg: on });
+            }
+            return Stage::Free { peg: Some(on) };
+        }
+        if self.rest_s >= LIES_AFTER_S || (landed && since_s >= LIES_AT_LAST_S) {
+            tell(Event::RingDropped { ring, side, in_view: true });
+            return Stage::Free { peg: None };
+        }
+        Stage::LetGo { side, peg, landed, since_s }
+    }
+}

@@ -1,0 +1,289 @@
+//! A loop that is led along a bent wire: where both touch, and with what force.
+//!
+//! Wire and board stand still and each loop is where its instrument is, so that a step is the law of the contacts at its end: there is nothing to
+//! integrate. What a penalty alone would let through, a loop that is pulled over the wire, is kept by remembering whether the wire goes
+//! through the loop: then the wire is pushed back inside, however far out it is.
+
+mod curve;
+mod following;
+mod setting;
+
+use nalgebra::Vector3;
+use nima_core::SIDES;
+
+use crate::physics::{
+    contact::{Law, Memory, Touch},
+    geometry::{Circle, unit_or},
+    instrument::{Instrument, Loads},
+};
+pub use curve::Curve;
+use curve::{Place, Reach};
+pub use following::WireTask;
+pub use setting::{Hoop, WireContact, WireSetting};
+
+/// Places at which a loop can touch the wire at once.
+const PLACES: usize = 3;
+/// A place that is farther than this along the wire from where it was is another one, m.
+const MOVED_M: f64 = 2e-3;
+/// How far along the wire the place where it goes through a loop is looked for from one step to the next, m.
+const SEARCH_M: f64 = 0.015;
+/// So far outside its loop a wire is no longer in it: an arm that pulls this hard has torn it off, m.
+const TORN_OFF_M: f64 = 0.012;
+/// The place where a wire that lies outside its loop is closest to it is at most so far from where it goes through the loop's plane, m along it.
+const AROUND_M: f64 = 0.006;
+/// Further than this from one step to the next an instrument was set down anew, m.
+const JUMP_M: f64 = 0.03;
+
+/// A wire, the board under it, and a loop at the tip of each of two instruments.
+///
+/// Deterministic: the same calls give the same bits, on every processor. A step allocates nothing.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use nima_core::Side;
+/// use nima_simulation::physics::{Instrument, Wire, WireSetting};
+///
+/// let points_m = vec![[-0.05, 0.0, 0.03], [0.05, 0.0, 0.03]];
+/// let setting = WireSetting { points_m, goal_point: 1, ..WireSetting::default() };
+/// setting.validate()?;
+/// let mut wire = Wire::new(&setting, 1e-3);
+/// // The loop is around the wire, and pulled up until it overlaps it by 0.5 mm.
+/// let room_m = setting.hoop.radius_m - setting.hoop.tube_radius_m - setting.radius_m;
+/// let mut right = Instrument {
+///     tip_m: Vector3::new(0.0, 0.0, 0.03),
+///     world_from_jaws: UnitQuaternion::identity(),
+///     trocar_m: Vector3::new(0.0, -0.06, 0.14),
+///     opening_rad: 0.0,
+/// };
+/// wire.step(&Side::Right.alone(right));
+/// right.tip_m.z += room_m + 0.0005;
+/// wire.step(&Side::Right.alone(right));
+/// let loads = wire.step(&Side::Right.alone(right))[Side::Right.index()];
+/// let law_n = setting.contact.stiffness_n_m * 0.0005;
+/// assert!((loads.tip_n.z + law_n).abs() < 0.02 * law_n, "{} N", loads.tip_n.z);
+/// assert!(wire.states()[Side::Right.index()].touches);
+/// # Ok::<(), nima_simulation::physics::SettingError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Wire {
+    setting: WireSetting,
+    period_s: f64,
+    curve: Curve,
+    law: Law,
+    loops: [Option<Loop>; SIDES],
+    states: [WireState; SIDES],
+}
+
+/// What a loop is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WireState {
+    /// It touches the wire.
+    pub touches: bool,
+    /// How far along the wire from its free end the wire goes through it, m; `None` if it does not.
+    pub along_m: Option<f64>,
+    /// How far both overlap where they do most, m.
+    pub deepest_m: f64,
+}
+
+/// A loop within a step, and what it remembers.
+#[derive(Clone, Copy, Debug)]
+struct Loop {
+    circle: Circle,
+    velocity_m_s: Vector3<f64>,
+    turning_rad_s: Vector3<f64>,
+    /// Where the wire goes through it, m along the wire.
+    through_m: Option<f64>,
+    places: [Option<(f64, Memory)>; PLACES],
+    on_board: Memory,
+}
+
+impl Wire {
+    /// The wire of a setting with a step each `period_s`. The setting must have been validated.
+    pub fn new(setting: &WireSetting, period_s: f64) -> Self {
+        let period_s = if period_s > 0.0 { period_s.min(0.1) } else { 1e-3 };
+        let contact = &setting.contact;
+        let law = Law {
+            stiffness_n_m: contact.stiffness_n_m,
+            damping_n_s_m: contact.damping_n_s_m,
+            friction: contact.friction,
+            patch_radius_m: 0.0,
+        };
+        let (curve, loops, states) = (setting.curve(), [None, None], [WireState::default(); SIDES]);
+        Self { setting: setting.clone(), period_s, curve, law, loops, states }
+    }
+
+    /// The curve of the wire's middle.
+    pub const fn curve(&self) -> &Curve {
+        &self.curve
+    }
+
+    /// What the loop of each side is doing.
+    pub const fn states(&self) -> &[WireState; SIDES] {
+        &self.states
+    }
+
+    /// Time from step to step, s.
+    pub const fn period_s(&self) -> f64 {
+        self.period_s
+    }
+
+    /// Moves on by one period, at whose end the instruments are here. An instrument with anything that is not a number counts as
+    /// absent. Returns what acts on each.
+    pub fn step(&mut self, instruments: &[Option<Instrument>; SIDES]) -> [Loads; SIDES] {
+        let mut loads = [Loads::default(); SIDES];
+        for side in 0..SIDES {
+            let Some(at) = instruments[side].filter(Instrument::is_sane) else {
+                (self.loops[side], self.states[side]) = (None, WireState::default());
+                continue;
+            };
+            let circle = self.setting.hoop.circle(&at);
+            let mut held = match self.loops[side] {
+                Some(before) if (circle.centre_m - before.circle.centre_m).norm() <= JUMP_M => {
+                    before.moved(circle, self.period_s)
+                }
+                _ => Loop::at(circle),
+            };
+            (loads[side], self.states[side]) = self.touch(&mut held);
+            self.loops[side] = Some(held);
+        }
+        loads
+    }
+
+    fn touch(&self, held: &mut Loop) -> (Loads, WireState) {
+        let both_m = self.setting.radius_m + self.setting.hoop.tube_radius_m;
+        let found = self.curve.near(&held.circle, both_m);
+        held.through_m = self.through_m(held, &found, both_m);
+        let (mut loads, mut state) = (Loads::default(), WireState { along_m: held.through_m, ..WireState::default() });
+        let outside = held.through_m.filter(|along_m| {
+            let beyond_m = held.off_axis_m(&self.curve.at(*along_m)) - held.circle.radius_m;
+            beyond_m > 0.0
+        });
+        let mut before = std::mem::take(&mut held.places);
+        let touched = match outside {
+            Some(along_m) => {
+                let place = self.curve.closest_around(&held.circle, along_m, AROUND_M);
+                [Some(held.outside(&place, both_m)), None, None]
+            }
+            None => found.places.map(|place| place.map(|place| held.inside(&place, both_m))),
+        };
+        for (at, place) in touched.into_iter().enumerate() {
+            let Some((along_m, point_m, touch)) = place else { continue };
+            let mut memory = Loop::remembered(&mut before, along_m);
+            loads.add(held, &point_m, &self.law, &mut memory, &touch, self.period_s);
+            held.places[at] = Some((along_m, memory));
+            state.touches = true;
+            state.deepest_m = state.deepest_m.max(touch.depth_m);
+        }
+        self.on_board(held, &mut loads);
+        (loads, state)
+    }
+
+    /// Where the wire goes through the loop now, m along it.
+    fn through_m(&self, held: &Loop, found: &Reach, both_m: f64) -> Option<f64> {
+        let radius_m = held.circle.radius_m;
+        let Some(before_m) = held.through_m else {
+            // It comes in over a free end, or it is set down around the wire.
+            return found.through.filter(|(_, off_axis_m)| *off_axis_m < radius_m - both_m).map(|(along_m, _)| along_m);
+        };
+        let along_m = self.curve.crossing(&held.circle, before_m, SEARCH_M)?;
+        (held.off_axis_m(&self.curve.at(along_m)) < radius_m + TORN_OFF_M).then_some(along_m)
+    }
+
+    /// The lowest point of the loop on the board.
+    fn on_board(&self, held: &mut Loop, loads: &mut Loads) {
+        let (Circle { centre_m, axis, radius_m, .. }, board) = (held.circle, &self.setting.board);
+        let down = -Vector3::z() + axis * axis.z;
+        let (lowest, _) = unit_or(&down, &Vector3::zeros());
+        let at_m = centre_m + lowest * radius_m - Vector3::z() * self.setting.hoop.tube_radius_m;
+        let depth_m = board.z_m - at_m.z;
+        let [half_x_m, half_y_m] = board.size_m.map(|size_m| 0.5 * size_m);
+        if depth_m <= 0.0 || at_m.x.abs() > half_x_m || at_m.y.abs() > half_y_m {
+            held.on_board = Memory::default();
+            return;
+        }
+        let velocity_m_s = held.velocity_at(&at_m);
+        let touch = Touch { depth_m, normal: Vector3::z(), velocity_m_s, spin_rad_s: 0.0 };
+        let mut memory = held.on_board;
+        loads.add(held, &at_m, &self.law, &mut memory, &touch, self.period_s);
+        held.on_board = memory;
+        loads.touching.board = true;
+    }
+}
+
+impl Loads {
+    /// One more place that touches a loop.
+    fn add(&mut self, held: &Loop, at_m: &Vector3<f64>, law: &Law, memory: &mut Memory, touch: &Touch, period_s: f64) {
+        let push = law.push(memory, touch, period_s);
+        self.tip_n += push.force_n;
+        self.torque_nm += (at_m - held.circle.centre_m).cross(&push.force_n);
+    }
+}
+
+impl Loop {
+    fn at(circle: Circle) -> Self {
+        Self {
+            circle,
+            velocity_m_s: Vector3::zeros(),
+            turning_rad_s: Vector3::zeros(),
+            through_m: None,
+            places: [None; PLACES],
+            on_board: Memory::default(),
+        }
+    }
+
+    /// The same loop a period later.
+    fn moved(self, circle: Circle, period_s: f64) -> Self {
+        Self {
+            velocity_m_s: (circle.centre_m - self.circle.centre_m) / period_s,
+            turning_rad_s: self.circle.axis.cross(&circle.axis) / period_s,
+            circle,
+            ..self
+        }
+    }
+
+    fn velocity_at(&self, point_m: &Vector3<f64>) -> Vector3<f64> {
+        self.velocity_m_s + self.turning_rad_s.cross(&(point_m - self.circle.centre_m))
+    }
+
+    /// Distance of a point from the axis of the loop, m.
+    fn off_axis_m(&self, point_m: &Vector3<f64>) -> f64 {
+        self.outwards(point_m).1
+    }
+
+    fn outwards(&self, point_m: &Vector3<f64>) -> (Vector3<f64>, f64) {
+        let offset_m = point_m - self.circle.centre_m;
+        unit_or(&(offset_m - self.circle.axis * self.circle.axis.dot(&offset_m)), &self.circle.across[0])
+    }
+
+    /// How a place of the wire touches the loop's tube: where along the wire, where in space, and how.
+    fn inside(&self, place: &Place, both_m: f64) -> (f64, Vector3<f64>, Touch) {
+        let (outwards, _) = self.outwards(&place.wire_m);
+        let (normal, distance_m) = unit_or(&(place.loop_m - place.wire_m), &outwards);
+        self.touched(place.along_m, &place.loop_m, both_m - distance_m, normal)
+    }
+
+    /// The same of a wire that goes through the loop and lies beyond the middle line of its tube: it is pushed back in.
+    fn outside(&self, place: &Place, both_m: f64) -> (f64, Vector3<f64>, Touch) {
+        let (outwards, _) = self.outwards(&place.wire_m);
+        let (normal, distance_m) = unit_or(&(place.wire_m - place.loop_m), &outwards);
+        self.touched(place.along_m, &place.loop_m, both_m + distance_m, normal)
+    }
+
+    fn touched(
+        &self,
+        along_m: f64,
+        at_m: &Vector3<f64>,
+        depth_m: f64,
+        normal: Vector3<f64>,
+    ) -> (f64, Vector3<f64>, Touch) {
+        (along_m, *at_m, Touch { depth_m, normal, velocity_m_s: self.velocity_at(at_m), spin_rad_s: 0.0 })
+    }
+
+    /// The memory of the place that was here, which then belongs to no other.
+    fn remembered(before: &mut [Option<(f64, Memory)>; PLACES], along_m: f64) -> Memory {
+        let near = |place: &&mut Option<(f64, Memory)>| {
+            place.is_some_and(|(before_m, _)| (before_m - along_m).abs() < MOVED_M)
+        };
+        before.iter_mut().find(near).and_then(Option::take).map_or_else(Memory::default, |(_, memory)| memory)
+    }
+}

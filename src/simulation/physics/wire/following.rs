@@ -1,0 +1,127 @@
+//! Tells from the loops what happens on a wire, and when the task is done.
+
+use nima_core::{SIDES, Side, task::Event};
+
+use super::{Wire, WireSetting, WireState};
+
+/// A touch is over when the loop has been clear of the wire for this long, s: a loop that slides along the wire jumps a little.
+const CLEAR_AFTER_S: f64 = 0.05;
+/// A loop is at the beginning of the wire up to this distance from its free end, m.
+const BEGINNING_M: f64 = 0.012;
+
+/// The state of the task: a loop that came onto the wire at its free end has to reach the goal.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use nima_core::Side;
+/// use nima_simulation::physics::{Instrument, Wire, WireSetting, WireTask};
+/// use nima_core::task::Event;
+///
+/// let setting = WireSetting { points_m: vec![[0.0, 0.0, 0.03], [0.05, 0.0, 0.03]], goal_point: 1, ..WireSetting::default() };
+/// let (mut wire, mut task, mut ended) = (Wire::new(&setting, 1e-3), WireTask::new(&setting), false);
+/// for tick in -100..=501 {
+///     let tip_m = Vector3::new(f64::from(tick) * 1e-4, 0.0, 0.03);
+///     let trocar_m = Vector3::new(0.0, -0.06, 0.14);
+///     let right = Instrument { tip_m, world_from_jaws: UnitQuaternion::identity(), trocar_m, opening_rad: 0.0 };
+///     wire.step(&Side::Right.alone(right));
+///     task.look(&wire, &mut |_, event| ended |= event == Event::Ended);
+/// }
+/// assert!(ended && task.is_done() && task.touches() == 0);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct WireTask {
+    goal_m: f64,
+    loops: [Following; SIDES],
+    touches: u32,
+    is_done: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Following {
+    touching: bool,
+    clear_s: f64,
+    /// It came onto the wire at its free end, and has not left it since.
+    on_its_way: bool,
+    farthest_m: f64,
+}
+
+/// Nearer to the goal than this a loop has reached it, m: the end of a wire cannot be passed and still be in the loop.
+const REACHED_M: f64 = 1e-3;
+
+impl WireTask {
+    /// At the beginning.
+    pub fn new(setting: &WireSetting) -> Self {
+        let goal_m = setting.curve().given_m(setting.goal_point) - REACHED_M;
+        Self { goal_m, loops: [Following::default(); SIDES], touches: 0, is_done: false }
+    }
+
+    /// Begins anew; a touch that lasts is then a new one.
+    pub fn begin(&mut self) {
+        *self = Self { loops: [Following::default(); SIDES], touches: 0, is_done: false, ..*self };
+    }
+
+    /// Looks at the loops after a step; once for each step. `tell` takes what happened, and how long ago, s.
+    pub fn look(&mut self, wire: &Wire, tell: &mut dyn FnMut(f64, Event)) {
+        if self.is_done {
+            return;
+        }
+        for side in Side::LEFT_TO_RIGHT {
+            let state = &wire.states()[side.index()];
+            let following = &mut self.loops[side.index()];
+            self.touches += u32::from(following.touch(side, state, wire.period_s(), tell));
+            self.is_done |= following.goes(state) >= self.goal_m;
+        }
+        if self.is_done {
+            tell(0.0, Event::Ended);
+        }
+    }
+
+    /// Whether a loop has reached the goal.
+    pub const fn is_done(&self) -> bool {
+        self.is_done
+    }
+
+    /// How often a loop has touched the wire.
+    pub const fn touches(&self) -> u32 {
+        self.touches
+    }
+
+    /// Share of the way to the goal that is done.
+    pub fn share(&self) -> f64 {
+        let farthest_m = self.loops.iter().map(|following| following.farthest_m).fold(0.0, f64::max);
+        (farthest_m / self.goal_m.max(1e-9)).clamp(0.0, 1.0)
+    }
+}
+
+impl Following {
+    /// Whether a touch has begun.
+    fn touch(&mut self, side: Side, state: &WireState, period_s: f64, tell: &mut dyn FnMut(f64, Event)) -> bool {
+        if state.touches {
+            self.clear_s = 0.0;
+            let begins = !std::mem::replace(&mut self.touching, true);
+            if begins {
+                tell(0.0, Event::WireTouched { side });
+            }
+            return begins;
+        }
+        self.clear_s += period_s;
+        if self.touching && self.clear_s >= CLEAR_AFTER_S {
+            self.touching = false;
+            tell(self.clear_s, Event::WireLeft { side });
+        }
+        false
+    }
+
+    /// How far it has come on its way from the free end, m.
+    fn goes(&mut self, state: &WireState) -> f64 {
+        match state.along_m {
+            Some(along_m) => self.on_its_way |= along_m <= BEGINNING_M,
+            None => self.on_its_way = false,
+        }
+        self.farthest_m = match state.along_m {
+            Some(along_m) if self.on_its_way => self.farthest_m.max(along_m),
+            _ => 0.0,
+        };
+        self.farthest_m
+    }
+}

@@ -1,0 +1,130 @@
+//! Palpation: places on the tissue are marked, and each mark is over a lump or over none.
+
+use nalgebra::Vector3;
+use nima_core::task::Event;
+use nima_machine::rig::Side;
+
+use crate::{
+    scene::{Lump, Scene},
+    watched::{MARKS_MAX, Mark, Training},
+};
+
+/// The lumps, and what was marked.
+#[derive(Clone, Debug)]
+pub(super) struct Palpation {
+    lumps: Vec<Lump>,
+    found: Vec<bool>,
+    tolerance_m: f64,
+    half_m: [f64; 2],
+    surface_m: f64,
+    marks: [Option<Mark>; MARKS_MAX],
+    marked: u32,
+    ended: bool,
+}
+
+impl Palpation {
+    /// Of this scene; `None` if nobody looks for lumps in it.
+    pub(super) fn of(scene: &Scene) -> Option<Self> {
+        let (tissue, task) = (scene.tissue?, scene.task.as_ref()?);
+        let lumps = scene.placed_lumps().filter(|_| scene.is_searched())?.list;
+        Some(Self {
+            found: vec![false; lumps.len()],
+            lumps,
+            tolerance_m: task.mark_tolerance_m,
+            half_m: tissue.size_m.map(|size_m| 0.5 * size_m),
+            surface_m: tissue.surface_z_m,
+            marks: [None; MARKS_MAX],
+            marked: 0,
+            ended: false,
+        })
+    }
+
+    /// The trial begins anew.
+    pub(super) fn begin(&mut self) {
+        self.found.fill(false);
+        (self.marks, self.marked, self.ended) = ([None; MARKS_MAX], 0, false);
+    }
+
+    /// Marks the place under a tip; beside the tissue there is none. The last lump that is found ends the trial.
+    pub(super) fn mark(&mut self, side: Side, tip_m: &Vector3<f64>, tell: &mut dyn FnMut(f64, Event)) {
+        if self.ended || tip_m.x.abs() > self.half_m[0] || tip_m.y.abs() > self.half_m[1] {
+            return;
+        }
+        let lump = self.lump_at(tip_m);
+        let mark = Mark { at_m: Vector3::new(tip_m.x, tip_m.y, self.surface_m), is_true: lump.is_some() };
+        if let Some(free) = self.marks.iter_mut().find(|mark| mark.is_none()) {
+            *free = Some(mark);
+        }
+        self.marked = self.marked.saturating_add(1);
+        tell(0.0, Event::LumpMarked { side, lump });
+        if let Some(found) = lump.and_then(|lump| self.found.get_mut(lump)) {
+            *found = true;
+        }
+        if self.found.iter().all(|found| *found) {
+            self.ended = true;
+            tell(0.0, Event::Ended);
+        }
+    }
+
+    /// The trial is over.
+    pub(super) const fn end(&mut self) {
+        self.ended = true;
+    }
+
+    /// The lump over which this place is, or beside which it is near enough; the nearest of them.
+    fn lump_at(&self, at_m: &Vector3<f64>) -> Option<usize> {
+        let apart_m = |lump: &Lump| (at_m.x - lump.at_m[0]).hypot(at_m.y - lump.at_m[1]) - lump.radius_m;
+        let near = self.lumps.iter().enumerate().map(|(i, lump)| (i, apart_m(lump)));
+        let nearest = near.min_by(|one, other| one.1.total_cmp(&other.1))?;
+        (nearest.1 <= self.tolerance_m).then_some(nearest.0)
+    }
+
+    pub(super) fn training(&self) -> Training {
+        let found = self.found.iter().filter(|found| **found).count() as u32;
+        Training { marks: self.marks, marked: self.marked, found, ..Training::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(palpation: &mut Palpation, at_m: [f64; 3]) -> Vec<Event> {
+        let mut events = Vec::new();
+        palpation.mark(Side::Right, &Vector3::from(at_m), &mut |_, event| events.push(event));
+        events
+    }
+
+    #[test]
+    fn a_mark_is_true_within_the_radius_and_the_tolerance_and_every_lump_is_found_once() {
+        let mut scene = Scene::load("find_lumps").unwrap();
+        scene.lumps.iter_mut().for_each(|lumps| {
+            lumps.drawn = None;
+            lumps.list =
+                [[-0.02, 0.0], [0.02, 0.01]].map(|at_m| Lump { at_m, radius_m: 0.005, times_stiffer: 10.0 }).to_vec();
+        });
+        let mut palpation = Palpation::of(&scene).unwrap();
+        let marked = |lump| vec![Event::LumpMarked { side: Side::Right, lump }];
+        // 5 mm and 3 mm of tolerance; whatever the height.
+        assert_eq!(told(&mut palpation, [-0.0121, 0.0, -0.004]), marked(Some(0)));
+        assert_eq!(told(&mut palpation, [-0.0119, 0.0, 0.03]), marked(None));
+        assert_eq!(told(&mut palpation, [-0.02, 0.0, 0.0]), marked(Some(0)), "again");
+        assert_eq!(told(&mut palpation, [0.061, 0.0, 0.0]), [], "beside the tissue");
+        let before = palpation.training();
+        assert_eq!((before.marked, before.found), (3, 1));
+        assert_eq!(before.marks[1].map(|mark| mark.is_true), Some(false));
+        let last = told(&mut palpation, [0.02, 0.01, 0.0]);
+        assert_eq!(last, [marked(Some(1)), vec![Event::Ended]].concat());
+        assert_eq!(told(&mut palpation, [0.0, 0.0, 0.0]), [], "the trial is over");
+        palpation.begin();
+        assert_eq!((palpation.training().marked, palpation.training().found), (0, 0));
+        assert_eq!(told(&mut palpation, [0.0, 0.0, 0.0]), marked(None));
+    }
+
+    #[test]
+    fn there_is_nothing_to_mark_where_nobody_looks_for_lumps() {
+        for scene in ["lumps", "peg_transfer", "rings", "wire"] {
+            assert!(Palpation::of(&Scene::load(scene).unwrap()).is_none(), "{scene}");
+        }
+    }
+}

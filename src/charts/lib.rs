@@ -1,4 +1,4 @@
-//! Plots as SVG, shared by the studies: points and lines over linear or logarithmic axes, with a legend.
+//! Plots as SVG, shared by evaluations, reports and studies: points and lines over linear or logarithmic axes, with a legend.
 //!
 //! Written here instead of using a plotting library: the result is one text file that uses the reader's own sans-serif
 //! font. A value that is not finite (or not positive on a logarithmic axis) is left out; one beyond the axis is drawn

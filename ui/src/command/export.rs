@@ -21,7 +21,7 @@ use nima_session::{
 };
 use nima_world::scene::Scene;
 
-use super::{motion, output, stretch::Stretch};
+use super::{output, setup::side, stretch::Stretch};
 use crate::{
     console::sessions,
     leaving::Leave,
@@ -47,7 +47,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     stretch: Stretch,
     /// Which arm comes into the table, right or left (needed if the session has both)
-    #[arg(long, value_name = "ARM", value_parser = motion::side)]
+    #[arg(long, value_name = "ARM", value_parser = side)]
     arm: Option<Side>,
     /// Leave out what tells who recorded it, where and when (.mcap only)
     #[arg(long)]

@@ -22,10 +22,10 @@ use nima_machine::{
     runtime::{self, Assembly, ClockProfile, Summary, Tap, VirtualClock},
 };
 use nima_recording::store::WristId;
-use nima_score::Score;
 use nima_session::outlet::Destination;
 use nima_world::{Plan, Watched, emulated::TipError, scene::Scene};
 use serde::Serialize;
+use serde_json::Value;
 
 use self::{
     engaging::Engaging,
@@ -35,7 +35,7 @@ use self::{
 };
 use super::{
     ending::Reasons,
-    network::ToFollower,
+    far::ToFollower,
     output,
     setup::Setup,
     truth::{self, Comparison},
@@ -44,13 +44,14 @@ use crate::{
     by_itself::{self, Arm, Starter},
     console::in_force::InForce,
     emulators::Emulators,
+    extras,
     leaving::Leave,
-    line::{Line, LinkFigures, LinkNews},
+    link::{Line, LineDoor},
     objects::OfSimulation,
-    scoring::Scoring,
+    scoring::Scorer,
     telling::tell,
     watching::Watching,
-    words::{Remedy as _, drift as drift_in_words, link_rows},
+    words::{Remedy as _, drift as drift_in_words},
 };
 
 /// True forces at the tips that emulators tell in a second.
@@ -58,7 +59,7 @@ const TRUTH_HZ: u32 = 200;
 
 #[derive(Debug, Default, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "switches of a command")]
-pub(super) struct Arguments {
+pub(crate) struct Arguments {
     #[command(flatten)]
     setup: Setup,
     /// Seconds to run (default: until Ctrl-C; 60 with --virtual)
@@ -120,7 +121,7 @@ impl Arguments {
     }
 
     /// Of the machine with the arm: what is rendered, and how, is the console's.
-    pub(super) fn of_follower(
+    pub(crate) fn of_follower(
         setup: Setup,
         seconds: Option<f64>,
         scheduling: Option<SchedulingClass>,
@@ -133,7 +134,7 @@ impl Arguments {
 }
 
 /// A finite number of seconds above zero.
-pub(super) fn positive_seconds(text: &str) -> Result<f64, String> {
+pub(crate) fn positive_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds > 0.0 && seconds <= 1e7 => Ok(seconds),
         _ => Err("give a number of seconds above 0".to_owned()),
@@ -145,9 +146,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 /// The same with the line to another machine that `open` gives, which changes the rig to what is at this one.
-pub(super) fn run_with(
+pub(crate) fn run_with(
     arguments: &Arguments,
-    open: impl FnOnce(&mut RigConfig, &Scene) -> anyhow::Result<Option<Line>>,
+    open: impl FnOnce(&mut RigConfig, &Scene) -> anyhow::Result<Option<Box<dyn Line>>>,
 ) -> anyhow::Result<()> {
     let (mut rig, scene) = arguments.setup.load()?;
     rig.mode = arguments.mode.unwrap_or(rig.mode);
@@ -160,7 +161,7 @@ pub(super) fn run_with(
         bail!("rig \"{}\" has devices, which need the real clock: remove --virtual", rig.name);
     }
     let line = open(&mut rig, &scene)?;
-    let here = line.as_ref().map_or(Ends::Both, Line::here);
+    let here = line.as_ref().map_or(Ends::Both, |line| line.here());
     let leave = arguments.setup.leave()?;
     // The emulators of the whole rig are the follower's.
     let emulated = rig.devices.as_ref().filter(|_| here.have_follower());
@@ -189,8 +190,8 @@ pub(super) fn run_with(
         emulators,
         comparison: Comparison::default(),
         lacking: None,
-        link: LinkNews::default(),
-        scoring: None,
+        line: line.as_ref().map(|line| line.door()),
+        scorer: None,
     };
     if !plan.may_engage() {
         bail!(
@@ -221,7 +222,7 @@ pub(super) fn run_with(
     let tip_error = start.comparison.figures();
     summary.explain(|fault| [fault.cause(), fault.cure()]);
     let drift = start.in_force.drift();
-    let score = start.scoring.take().and_then(Scoring::end);
+    let score = start.scorer.take().and_then(Scorer::end);
     if arguments.json {
         if let Some(drift @ Drift::Moved { .. }) = drift {
             tell(format_args!("warning: the bias of the wrist sensor has {}", drift_in_words(drift)));
@@ -230,22 +231,17 @@ pub(super) fn run_with(
             summary: &summary,
             tip_error,
             recorded: recorded.as_ref().ok().and_then(Option::as_ref),
-            link: start.link.newest().map(LinkFigures::from),
-            score: score.as_ref(),
+            link: start.line.as_ref().and_then(|line| line.figures()),
+            score,
         })?;
     } else {
         let bias =
             drift.map_or_else(String::new, |drift| format!("\nbias of the wrist sensor: {}", drift_in_words(drift)));
         let kept = recorded.as_ref().ok().and_then(Option::as_ref).map_or_else(String::new, Recorded::in_words);
-        let rows = start.link.newest().map(link_rows).unwrap_or_default();
-        let link = rows.iter().fold(String::new(), |all, row| all + "\n" + row.name + ": " + &row.value);
-        output::line(
-            &(in_words(&plan, &summary, start.link.newest().is_some())
-                + &truth::in_words(&tip_error)
-                + &bias
-                + &link
-                + &kept),
-        )?;
+        let rows = start.line.as_ref().map(|line| line.rows()).unwrap_or_default();
+        let link = rows.iter().fold(String::new(), |all, [name, value]| all + "\n" + name + ": " + value);
+        let is_measured = start.line.as_ref().is_some_and(|line| line.has_reported());
+        output::line(&(in_words(&plan, &summary, is_measured) + &truth::in_words(&tip_error) + &bias + &link + &kept))?;
     }
     recorded?;
     // Without its calibrations an emulated rig does what it can, and has said what it lacks.
@@ -263,9 +259,9 @@ struct Told<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     recorded: Option<&'a Recorded>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    link: Option<LinkFigures>,
+    link: Option<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    score: Option<&'a Score>,
+    score: Option<Value>,
 }
 
 /// Engages after the bias of the wrist sensor has been checked, whatever the result.
@@ -277,9 +273,10 @@ struct Start {
     comparison: Comparison,
     /// What was told to be missing.
     lacking: Option<String>,
-    link: LinkNews,
+    /// To the machine with the other half of the rig.
+    line: Option<Box<dyn LineDoor>>,
     /// In a scene with a task.
-    scoring: Option<Scoring>,
+    scorer: Option<Box<dyn Scorer>>,
 }
 
 impl Start {
@@ -288,11 +285,11 @@ impl Start {
         if let Some(watched) = watched.as_mut().and_then(Watched::another) {
             recording.watch(OfSimulation::source(plan, watched));
         }
-        self.scoring = plan.scene.task.as_ref().map(|task| Scoring::new(task, watched));
+        self.scorer = extras::part(|extra| extra.scorer(plan, &mut watched));
     }
 
     fn watch(&mut self, tick: &Tick) -> Option<Command> {
-        self.scoring.iter_mut().for_each(|scoring| scoring.tick(tick));
+        self.scorer.iter_mut().for_each(|scorer| scorer.tick(tick));
         self.in_force.watch(tick);
         self.reasons.watch(tick);
         let known = !self.in_force.is_waiting() && self.in_force.uncalibrated().is_none();
@@ -329,7 +326,7 @@ impl Start {
 
 fn on_the_real_clock(
     plan: &Plan,
-    (tap, line): (Option<Tap>, Option<Line>),
+    (tap, line): (Option<Tap>, Option<Box<dyn Line>>),
     start: &mut Start,
     recording: &mut Recording,
     leave: &Leave,
@@ -338,7 +335,6 @@ fn on_the_real_clock(
     let (assembly, watched) = plan.watched_assembly()?;
     start.watch_objects(plan, watched, recording);
     let assembly = Assembly { tap, ..assembly };
-    let door = line.as_ref().map(Line::door);
     let handle = runtime::start(match line {
         Some(line) => line.join(assembly),
         None => assembly,
@@ -367,7 +363,7 @@ fn on_the_real_clock(
         for words in recording.news() {
             status.tell(&words);
         }
-        if let Some(words) = door.as_ref().and_then(|door| start.link.hear(door)) {
+        if let Some(words) = start.line.as_mut().and_then(|line| line.hear()) {
             status.tell(&words);
         }
         troubles.look(&handle, &status);

@@ -34,7 +34,7 @@ pub(crate) struct Known {
 }
 
 /// The time of day, s since 1970.
-pub(super) fn now_s() -> f64 {
+pub(crate) fn now_s() -> f64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64())
 }
 

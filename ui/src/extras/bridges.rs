@@ -1,30 +1,55 @@
 //! The bridges to other programs: `OpenIGTLink`, and marks over the Lab Streaming Layer.
 
-use std::{net::SocketAddr, path::Path};
+use std::{net::SocketAddr, path::Path, time::Duration};
 
 use nima_bridges::{
-    igtl::{self, Outline},
+    igtl::{self, Image, Outline, Pictures},
     lsl::{self, CONTACT_N, Marker},
 };
-use nima_endoscope::Reel;
+use nima_endoscope::{Compressed, Glimpse, Reel, jpeg};
 use nima_machine::{messages::Fault, rig::Side};
 use nima_session::outlet::Audience;
 use nima_world::Plan;
 
-use super::{Server, Shown};
+use super::Extra;
 use crate::{
-    pictures::OfReel,
     recording::PROGRAM,
     telling::tell,
+    watching::{INSTALLED, Server, Show, Shown},
     words::{Remedy as _, trouble_of},
 };
 
-/// In place of a file: the library that is installed.
-pub(super) const INSTALLED: &str = "liblsl";
+/// The extra.
+pub(super) struct Bridges;
+
+impl Extra for Bridges {
+    fn server(&self, show: Show, at: SocketAddr) -> Option<anyhow::Result<Box<dyn Server>>> {
+        (show == Show::Igtl).then(|| igtl_at(at))
+    }
+
+    fn marks(&self, library: &Path) -> Option<anyhow::Result<Box<dyn Server>>> {
+        Some(marks_by(library))
+    }
+}
+
+/// Hands the newest picture of a reel to a bridge, as pixels.
+#[derive(Debug)]
+struct OfReel(Glimpse);
+
+impl Pictures for OfReel {
+    fn newest(&mut self, is_wanted: bool) -> Option<(Image, Duration)> {
+        let Compressed { bytes, arrived, .. } = self.0.take(is_wanted).filter(|_| is_wanted)?;
+        // A damaged one is left out; the next one comes soon.
+        let jpeg::Picture { size_px, rgba } = jpeg::decode(&bytes).ok()?;
+        let [width, height] = size_px.map(u16::try_from);
+        let pixels = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+        Some((Image { size_px: [width.ok()?, height.ok()?], colours: 3, pixels }, arrived.elapsed()))
+    }
+}
 
 impl Server for igtl::Server {
     fn audience(&self, plan: &Plan, reel: &Reel) -> Box<dyn Audience> {
-        let pictures = plan.rig.endoscope.as_ref().map(|_| Box::new(OfReel::new(reel)) as Box<dyn igtl::Pictures>);
+        let pictures = plan.rig.endoscope.as_ref().map(|_| Box::new(OfReel(reel.glimpse())) as Box<dyn Pictures>);
         self.show(pictures);
         self.audience(outline(plan))
     }
@@ -43,7 +68,7 @@ fn outline(plan: &Plan) -> Outline {
     Outline { trocars_m: Side::ALL.map(trocar) }
 }
 
-pub(super) fn igtl_at(address: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
+fn igtl_at(address: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
     let server = igtl::Server::start(address, trouble_of)?;
     let at = server.address();
     tell(format_args!("nima: OpenIGTLink at {at}: connect 3D Slicer (OpenIGTLinkIF, client) or pyigtl to it"));
@@ -72,7 +97,7 @@ fn marked(plan: &Plan, trial: Option<String>) -> lsl::About {
     lsl::About { contact_n, trial, words: Fault::cause }
 }
 
-pub(super) fn marks_by(library: &Path) -> anyhow::Result<Box<dyn Server>> {
+fn marks_by(library: &Path) -> anyhow::Result<Box<dyn Server>> {
     let named = (library != Path::new(INSTALLED)).then_some(library);
     let marker = Marker::start(named, PROGRAM, &machine())?;
     tell(format_args!("nima: marks over the Lab Streaming Layer: stream {}, type {}", lsl::STREAM, lsl::STREAM_TYPE));

@@ -5,7 +5,6 @@
 //! Causes are sentences; cures say what the operator can do; reasons start in lower case, because they follow a colon.
 
 mod calibration;
-pub(crate) mod camera;
 mod causes;
 mod channels;
 mod commands;
@@ -18,7 +17,6 @@ mod frames;
 mod gates;
 mod happenings;
 mod known;
-mod link;
 mod modes;
 mod names;
 mod numbers;
@@ -38,7 +36,6 @@ pub(crate) use frames::{axes_words, cause, phase};
 pub(crate) use gates::gate_words;
 pub(crate) use happenings::happening;
 pub(crate) use known::Lines;
-pub(crate) use link::{link_rows, link_trouble, state_in_words};
 pub(crate) use modes::{mode_meaning, mode_name};
 pub(crate) use names::{
     device_name, exchange_words, goal_words, loss_words, obstacle_words, part_name, scheduling_advice, side_word,

@@ -71,7 +71,8 @@ fn the_name_of_a_blind_study_tells_no_condition() {
 
 #[test]
 fn the_ready_files_are_in_order() {
-    for text in [include_str!("../../../../config/studies/paper.toml"), include_str!("../../../../config/studies/short.toml")]
+    for text in
+        [include_str!("../../../../config/studies/paper.toml"), include_str!("../../../../config/studies/short.toml")]
     {
         let study = file(text);
         assert!(study.blind && study.seed.is_none(), "a seed in a file would give the labels away");

@@ -186,7 +186,8 @@ fn a_scene_is_recorded_open_loop_and_repeats() {
 
 #[test]
 fn a_real_recording_has_a_front() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data/tue_1dof/m1_question1a_foam.csv");
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../../../shared/data/tue_1dof/m1_question1a_foam.csv");
     if !path.exists() {
         eprintln!("left out: the recording {} is not here", path.display());
         return;

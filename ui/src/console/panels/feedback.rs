@@ -9,7 +9,6 @@ use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
 use nima_core::impedance::Mode;
 use nima_machine::messages::Command;
 
-use super::stable_gain::stable_gain_ui;
 use crate::{
     console::{
         live::Live,
@@ -17,6 +16,7 @@ use crate::{
         text, theme,
         widgets::{at_the_right, small},
     },
+    extras::{self, Extra},
     words::{mode_meaning, mode_name},
 };
 
@@ -149,7 +149,9 @@ fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Out
     };
     let limit = if state.allow_above_one { GAIN_LIMIT } else { 1.0 };
     let (wanted, rail) = setting_ui(ui, &setting, 0.0..=limit, live.gain(), &mut state.gain);
-    stable_gain_ui(ui, live, rail, limit);
+    if let Some(strip_ui) = extras::part(Extra::stable_gain) {
+        strip_ui(ui, live, rail, limit);
+    }
     if let Some(gain) = wanted {
         outbox.push(if gain > 1.0 { Command::SetGainAboveOne(gain) } else { Command::SetGain(gain) });
     }
@@ -214,7 +216,7 @@ fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Ou
         at_once: false,
     };
     let in_force = live.delay_s() * 1e3;
-    let measured = live.line_door.is_some();
+    let measured = live.line.is_some();
     ui.add_enabled_ui(!measured, |ui| {
         if let Some(delay_ms) = setting_ui(ui, &setting, DELAY_MS, in_force, &mut state.delay_ms).0 {
             outbox.push(Command::SetDelay(delay_ms * 1e-3));

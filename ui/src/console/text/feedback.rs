@@ -1,16 +1,12 @@
-//! The feedback panel: mode, gain, delay, dead band, highest stable gain.
+//! The feedback panel: mode, gain, delay, dead band.
 
-use nima_study::stability_map::Verdict;
-
-use crate::language::{Text, told, word};
+use crate::language::{Text, told};
 
 pub(in crate::console) const GAIN_HOVER: Text = Text::of(
     "Ratio of the force in the hand to the force that the mode asks for, no unit: 0 to 1, or up to 3 if \
-    allowed below. 0 is no force, 1 is natural. The gain changes by at most 2 per second. The strip \
-    below shows up to which gain a gripping hand comes to rest.",
+    allowed below. 0 is no force, 1 is natural. The gain changes by at most 2 per second.",
     "Verhältnis der Kraft in der Hand zu der vom Modus verlangten, ohne Einheit: 0 bis 1, oder bis 3, wenn unten \
-     erlaubt. 0 ist keine Kraft, 1 ist natürlich. Ändert sich um höchstens 2 je Sekunde. Der Streifen unten zeigt, bis \
-     zu welcher Verstärkung eine greifende Hand zur Ruhe kommt.",
+     erlaubt. 0 ist keine Kraft, 1 ist natürlich. Ändert sich um höchstens 2 je Sekunde.",
 );
 pub(in crate::console) const DELAY_HOVER: Text = Text::of(
     "One-way delay from the follower to the hand, 0 to 500 ms, added to the link's own. The paper uses \
@@ -48,38 +44,6 @@ pub(in crate::console) const LOWER_GAIN: Text = Text::of("Lower the gain", "Vers
 pub(in crate::console) const LINK_DELAY: Text = Text::of("Link delay", "Verzögerung");
 pub(in crate::console) const DEAD_BAND: Text = Text::of("Dead band", "Totband");
 pub(in crate::console) const HOLD: Text = Text::of("Keep force at standstill", "Kraft im Stillstand halten");
-pub(in crate::console) const STABLE_GAIN_UNKNOWN: Text = Text::of(
-    "Highest stable gain: known after the first contact",
-    "Höchste stabile Verstärkung: nach dem ersten Kontakt bekannt",
-);
-pub(in crate::console) const STABLE_GAIN_UNMEASURED: Text = Text::of(
-    "Highest stable gain: not measured in this mode",
-    "Höchste stabile Verstärkung: in diesem Modus nicht \
-     gemessen",
-);
-pub(in crate::console) const STABLE_GAIN_HOVER: Text = Text::of(
-    "From simulations of a gripping hand that is pushed aside and must come to rest again, for the mode \
-    and delay in use and the stiffness of the present contact (N/m; between contacts, of the last one). \
-    Force is kept at standstill and the energy gate is off, which is harder than the default settings. \
-    Solid: stable. Thin: at the limit. Hatched: the hand shakes.",
-    "Aus Simulationen einer greifenden Hand, die ausgelenkt wird und wieder zur Ruhe kommen muss, für aktuellen Modus, \
-     aktuelle Verzögerung und die Steifigkeit des jetzigen Kontakts (N/m; sonst des letzten). Kraft im Stillstand wird \
-     gehalten, die Energiesperre ist aus: strenger als die Standardeinstellungen. Voll: stabil. Dünn: an der Grenze. \
-     Schraffiert: die Hand zittert.",
-);
-
-/// Verdict of the stability map for this gain.
-pub(in crate::console) fn stable_up_to(verdict: Verdict, greatest: f64, stiffness_n_m: f64) -> String {
-    let verdict = match verdict {
-        Verdict::Stable => word("stable", "stabil"),
-        Verdict::Marginal => word("at the limit", "an der Grenze"),
-        Verdict::Unstable => word("unstable", "instabil"),
-    };
-    told!(
-        "This gain is {verdict}; stable up to {greatest:.2} at {stiffness_n_m:.0} N/m",
-        "Diese Verstärkung ist {verdict}; stabil bis {greatest:.2} bei {stiffness_n_m:.0} N/m"
-    )
-}
 
 /// The present gain, while it ramps to the chosen one.
 pub(in crate::console) fn gain_in_use(gain: f64) -> String {

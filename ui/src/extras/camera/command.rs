@@ -15,13 +15,8 @@ use nima_endoscope::{Address, Board, Feed, Standing, Wrong, board::Corners, jpeg
 use nima_machine::config::{RigFile, change_rig};
 use serde_json::json;
 
-use crate::{
-    command::output,
-    leaving::Leave,
-    lens::changes,
-    telling::tell,
-    words::{Words as _, camera},
-};
+use super::{lens::changes, words as camera};
+use crate::{command::output, leaving::Leave, telling::tell, words::Words as _};
 
 /// Most pictures of a folder.
 const PICTURES: usize = 500;
@@ -32,7 +27,7 @@ const PATIENCE: Duration = Duration::from_mins(2);
 const NAP: Duration = Duration::from_millis(20);
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(super) struct Arguments {
     /// Folder with JPEGs of the board, or the camera itself (http://HOST:PORT/PATH), which is watched while you move the board
     #[arg(value_name = "FOLDER_OR_URL")]
     source: String,

@@ -9,16 +9,16 @@ const CAMERA: &str = "endoscope.camera";
 
 /// Where a camera was found to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct FoundPlace {
+pub(super) struct FoundPlace {
     /// In the workspace, or in the frame of the endoscope's marker.
-    pub(crate) pose: Isometry3<f64>,
-    pub(crate) on_marker: bool,
+    pub(super) pose: Isometry3<f64>,
+    pub(super) on_marker: bool,
     /// Its error on held-out points, px.
-    pub(crate) checked_px: f64,
+    pub(super) checked_px: f64,
 }
 
 /// The changes that put this lens into a rig file. The camera's place was found with another lens and is taken away, unless a new one is given.
-pub(crate) fn changes(file: &RigFile, lens: &Lens, place: Option<FoundPlace>) -> Vec<RigChange> {
+pub(super) fn changes(file: &RigFile, lens: &Lens, place: Option<FoundPlace>) -> Vec<RigChange> {
     let [width, height] = lens.size_px;
     let Bend { k1, k2, p1, p2 } = lens.bend;
     let (focal_px, centre_px) = (lens.focal_px, lens.centre_px);
@@ -56,7 +56,7 @@ pub(crate) fn changes(file: &RigFile, lens: &Lens, place: Option<FoundPlace>) ->
 }
 
 /// What undoes these changes. Where there was no camera before there is none again, without an empty table in its place.
-pub(crate) fn undone(changes: &[RigChange]) -> Vec<RigChange> {
+pub(super) fn undone(changes: &[RigChange]) -> Vec<RigChange> {
     let size = format!("{CAMERA}.size_px");
     if changes.iter().any(|change| change.key == size && change.before.is_none()) {
         return vec![RigChange { key: CAMERA.to_owned(), before: None, after: None }];
@@ -75,7 +75,7 @@ mod tests {
     fn a_rig_file_has_the_camera_as_it_was_found_and_comes_back_as_it_was() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rig.toml");
-        let text = include_str!("../../config/rigs/simulated.toml").to_owned()
+        let text = include_str!("../../../../config/rigs/simulated.toml").to_owned()
             + "\n[endoscope]\nurl = \"http://127.0.0.1:1/\" # the tower\n\n[endoscope.camera]\nsize_px = [640, 480]\nfocal_px = 500.0\nk2 = 0.1\n";
         std::fs::write(&path, &text).unwrap();
         let name = path.to_str().unwrap();

@@ -5,7 +5,7 @@ use nima_camera::{Ask, Cause, Lack, LeftOut, Offer, PlaceError, Region, Unseen, 
 use crate::language::{told, word};
 
 /// What is missing for a good calibration, and what to do.
-pub(crate) fn camera_cause(cause: &Cause) -> String {
+pub(super) fn camera_cause(cause: &Cause) -> String {
     match cause {
         Cause::TooFew { used, needed } => {
             told!(
@@ -65,7 +65,7 @@ pub(crate) fn camera_cause(cause: &Cause) -> String {
 }
 
 /// Why a view was not used.
-pub(crate) fn left_out(why: LeftOut) -> &'static str {
+pub(super) fn left_out(why: LeftOut) -> &'static str {
     match why {
         LeftOut::Blurred => word("blurred", "unscharf"),
         LeftOut::Repeated => word("at the same place as another", "an derselben Stelle wie eine andere"),
@@ -74,7 +74,7 @@ pub(crate) fn left_out(why: LeftOut) -> &'static str {
 }
 
 /// Why no board is found.
-pub(crate) fn unseen(unseen: Unseen) -> String {
+pub(super) fn unseen(unseen: Unseen) -> String {
     match unseen {
         Unseen::Nothing => word("no board is seen", "keine Tafel zu sehen").to_owned(),
         Unseen::Part { seen, of } => told!(
@@ -89,7 +89,7 @@ pub(crate) fn unseen(unseen: Unseen) -> String {
 }
 
 /// What became of the board in a picture.
-pub(crate) fn offer(offer: Offer) -> &'static str {
+pub(super) fn offer(offer: Offer) -> &'static str {
     match offer {
         Offer::Taken => word("taken", "aufgenommen"),
         Offer::Moving => word("hold it still", "ruhig halten"),
@@ -103,7 +103,7 @@ pub(crate) fn offer(offer: Offer) -> &'static str {
 }
 
 /// The view that is wanted next.
-pub(crate) fn ask(ask: Ask) -> String {
+pub(super) fn ask(ask: Ask) -> String {
     match ask {
         Ask::Flat => word("Hold the board straight before the lens", "Tafel gerade vor das Objektiv halten").to_owned(),
         Ask::Tilted(way) => {
@@ -141,7 +141,7 @@ fn region([column, row]: [usize; 2]) -> &'static str {
 }
 
 /// Why the camera has no place.
-pub(crate) fn place_error(error: PlaceError) -> String {
+pub(super) fn place_error(error: PlaceError) -> String {
     match error {
         PlaceError::TooFew { touched, needed } => told!(
             "{touched} of at least {needed} corners are touched",
@@ -161,7 +161,7 @@ pub(crate) fn place_error(error: PlaceError) -> String {
 }
 
 /// What makes the camera's place useless.
-pub(crate) fn place_lack(lack: &Lack) -> String {
+pub(super) fn place_lack(lack: &Lack) -> String {
     match lack {
         Lack::NotRigid { corner: [column, row], by_m } => told!(
             "corner {} in row {} is {:.1} mm beside the board; touch it again, and do not move the board",

@@ -14,9 +14,11 @@ use nima_recording::store::{Store, utc_of};
 use nima_world::scene::Scene;
 use serde::Serialize;
 
-use super::{DepartmentCommand, MonitorArguments, RecordArguments, RigsArguments, Which};
 use crate::{
-    command::output,
+    command::{
+        department::{DepartmentCommand, MonitorArguments, RecordArguments, RigsArguments, Which},
+        output,
+    },
     console::{
         monitor::{self, Heard, Options, Teller},
         settings::Kept,
@@ -73,7 +75,7 @@ fn folder() -> anyhow::Result<PathBuf> {
 }
 
 /// Who this machine is.
-pub(crate) fn own_identity() -> anyhow::Result<Identity> {
+pub(super) fn own_identity() -> anyhow::Result<Identity> {
     Ok(Identity::load(&folder()?)?)
 }
 

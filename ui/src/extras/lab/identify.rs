@@ -18,7 +18,8 @@ use serde::{
     de::{DeserializeOwned, IntoDeserializer as _, value::Error},
 };
 
-use super::{motion, output};
+use super::motion;
+use crate::command::{output, setup::side};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -27,7 +28,7 @@ pub(super) struct Arguments {
     #[arg(required = true, value_name = "RECORDING")]
     recordings: Vec<PathBuf>,
     /// Which arm of a session, right or left (needed if it has both)
-    #[arg(long, value_name = "ARM", value_parser = motion::side)]
+    #[arg(long, value_name = "ARM", value_parser = side)]
     arm: Option<Side>,
     /// Other column names, with an optional factor: `x=px_mm*0.001`, or of three axes at once: `xyz=px_mm,py_mm,pz_mm*0.001`,
     /// `fxyz=...`. `lx`, `ly`, `lz` or `lxyz` name the leader's own motion, of which the force is then made

@@ -8,16 +8,17 @@ use std::{
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima_files::write_atomically;
+use nima_files::{csv_cell, write_atomically};
 use nima_recording::session::Reader;
 use nima_score::{MEASURES, Measure, Score, TaskFile};
 use nima_session::{objects, plotted, scored};
-use nima_study::csv_cell;
 use nima_world::scene::Scene;
 use serde::Serialize;
 
-use super::{output, stretch::Stretch};
-use crate::recording::SCENE;
+use crate::{
+    command::{output, stretch::Stretch},
+    recording::SCENE,
+};
 
 /// The task of a session in which nobody told of objects.
 const FREE: &str = "name = 'Free'\nkind = 'free'\ntime_limit_s = 1200.0";

@@ -5,6 +5,8 @@ use nima_score::{Score, TaskFile};
 use nima_session::scored::LiveTrial;
 use nima_world::Watched;
 
+use crate::scoring::Scorer;
+
 /// Scores from the first tick in which an arm is engaged.
 #[derive(Debug)]
 pub(crate) struct Scoring {
@@ -49,5 +51,15 @@ impl Scoring {
         self.hear();
         // Without objects nobody tells when the task is done.
         self.trial.end(self.watched.is_none())
+    }
+}
+
+impl Scorer for Scoring {
+    fn tick(&mut self, tick: &Tick) {
+        self.tick(tick);
+    }
+
+    fn end(self: Box<Self>) -> Option<serde_json::Value> {
+        serde_json::to_value((*self).end()?).ok()
     }
 }

@@ -5,8 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 use nima_machine::config::SchedulingClass;
 
-use super::{network, run, setup::Setup};
-use crate::{telling::tell, watching::Watching};
+use super::network;
+use crate::{
+    command::{run, setup::Setup},
+    telling::tell,
+    watching::Watching,
+};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

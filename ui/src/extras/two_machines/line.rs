@@ -1,8 +1,8 @@
 //! The line to the other machine as the loop uses it, and what is told of it.
 
 use crossbeam_channel::{Receiver, Sender, bounded};
+use egui::Ui;
 use nima_machine::{
-    config::RigConfig,
     remote::{Wire, joined},
     rig::Ends,
     runtime::Assembly,
@@ -11,10 +11,14 @@ use nima_network::{
     endpoint::{Control, Endpoint, LinkState},
     figures::{Dropped, Figures},
 };
-use nima_world::scene::Scene;
 use serde::Serialize;
 
-use crate::words::state_in_words;
+use super::{
+    screen::link_ui,
+    text,
+    words::{link_rows, link_trouble, state_in_words},
+};
+use crate::link::{Line, LineDoor};
 
 /// What is told is renewed so often, s.
 const TOLD_EVERY_S: f64 = 0.1;
@@ -23,25 +27,34 @@ const TOLD_EVERY_S: f64 = 0.1;
 const WAITING: usize = 4;
 
 /// One end of the line. The loop's thread drives it.
-pub(crate) struct Line {
+pub(super) struct NetworkLine {
     endpoint: Endpoint,
     here: Ends,
     told: Sender<LineReport>,
     wishes: Receiver<LineWish>,
-    door: LineDoor,
+    door: Channels,
     next_s: f64,
 }
 
-/// What other threads hold of a line.
+/// The ends of the channels that are for another thread.
 #[derive(Clone, Debug)]
-pub(crate) struct LineDoor {
+struct Channels {
     reports: Receiver<LineReport>,
     wishes: Sender<LineWish>,
 }
 
+/// What other threads hold of a line.
+#[derive(Debug)]
+pub(super) struct NetworkDoor {
+    channels: Channels,
+    newest: Option<LineReport>,
+    /// The state that was told last, in words.
+    told: Option<String>,
+}
+
 /// What an operator wants of the follower at the other end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LineWish {
+pub(super) enum LineWish {
     /// Control, which another console has.
     Control,
     /// Control no longer.
@@ -50,73 +63,78 @@ pub(crate) enum LineWish {
     Answer { consents: bool },
 }
 
-impl LineDoor {
-    /// The newest report, if one waits.
-    pub(crate) fn newest(&self) -> Option<LineReport> {
-        self.reports.try_iter().last()
+impl NetworkDoor {
+    /// The newest report, if there was one.
+    pub(super) const fn newest(&self) -> Option<&LineReport> {
+        self.newest.as_ref()
     }
 
     /// Hands a wish to the line. With more than a few waiting it is lost, and the next report shows that nothing has changed.
-    pub(crate) fn wish(&self, wish: LineWish) {
-        self.wishes.try_send(wish).ok();
+    pub(super) fn wish(&self, wish: LineWish) {
+        self.channels.wishes.try_send(wish).ok();
     }
 }
 
-type Open = dyn Fn(&mut RigConfig, &Scene) -> anyhow::Result<Option<Line>>;
-
-/// Opens a line to the same follower again, for a loop that starts anew.
-pub(crate) struct Reopen(Box<Open>);
-
-impl Reopen {
-    /// By this function.
-    pub(crate) fn new(open: impl Fn(&mut RigConfig, &Scene) -> anyhow::Result<Option<Line>> + 'static) -> Self {
-        Self(Box::new(open))
+impl LineDoor for NetworkDoor {
+    fn hear(&mut self) -> Option<String> {
+        let newest = self.channels.reports.try_iter().last()?;
+        self.newest = Some(newest);
+        let words = state_in_words(newest.state);
+        (self.told.as_ref() != Some(&words)).then(|| self.told.insert(words).clone())
     }
 
-    /// The line for this rig, which is changed to what is at this machine.
-    pub(crate) fn open(&self, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Option<Line>> {
-        (self.0)(rig, scene)
+    fn has_reported(&self) -> bool {
+        self.newest.is_some()
     }
-}
 
-impl std::fmt::Debug for Reopen {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Reopen")
+    fn ui(&self, ui: &mut Ui, drives: bool) {
+        link_ui(ui, self, drives);
+    }
+
+    fn trouble(&self) -> Option<[String; 2]> {
+        link_trouble(self.newest?.state)
+    }
+
+    fn has_delivered(&self) -> bool {
+        self.newest.is_some_and(|report| report.figures.counts.delivered > 0)
+    }
+
+    fn question(&self) -> Option<[&'static str; 2]> {
+        let asks = self.newest?.control == Control::HoldsAsked;
+        asks.then(|| [text::CONTROL_ASKED_CAUSE.get(), text::CONTROL_ASKED_CURE.get()])
+    }
+
+    fn rows(&self) -> Vec<[String; 2]> {
+        let rows = self.newest.as_ref().map(link_rows).unwrap_or_default();
+        rows.into_iter().map(|row| [row.name.to_owned(), row.value]).collect()
+    }
+
+    fn figures(&self) -> Option<serde_json::Value> {
+        serde_json::to_value(self.newest.as_ref().map(LinkFigures::from)?).ok()
     }
 }
 
 /// What is told of a line.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LineReport {
-    pub(crate) state: LinkState,
+pub(super) struct LineReport {
+    pub(super) state: LinkState,
     /// Who holds the follower.
-    pub(crate) control: Control,
-    pub(crate) figures: Figures,
-    pub(crate) dropped: Dropped,
+    pub(super) control: Control,
+    pub(super) figures: Figures,
+    pub(super) dropped: Dropped,
 }
 
-impl Line {
+impl NetworkLine {
     /// Over this endpoint, with these devices at this end.
-    pub(crate) fn new(endpoint: Endpoint, here: Ends) -> Self {
+    pub(super) fn new(endpoint: Endpoint, here: Ends) -> Self {
         let (told, reports) = bounded(WAITING);
         let (wish, wishes) = bounded(WAITING);
-        Self { endpoint, here, told, wishes, door: LineDoor { reports, wishes: wish }, next_s: 0.0 }
-    }
-
-    /// Which devices are at this end.
-    pub(crate) const fn here(&self) -> Ends {
-        self.here
+        Self { endpoint, here, told, wishes, door: Channels { reports, wishes: wish }, next_s: 0.0 }
     }
 
     /// What other threads hold of it.
-    pub(crate) fn door(&self) -> LineDoor {
-        self.door.clone()
-    }
-
-    /// The assembly with the other half of its rig at the other end.
-    pub(crate) fn join(self, assembly: Assembly) -> Assembly {
-        let here = self.here;
-        joined(assembly, Box::new(self), here)
+    pub(super) fn network_door(&self) -> NetworkDoor {
+        NetworkDoor { channels: self.door.clone(), newest: None, told: None }
     }
 
     /// One wish in a tick, if one waits.
@@ -146,7 +164,22 @@ impl Line {
     }
 }
 
-impl Wire for Line {
+impl Line for NetworkLine {
+    fn here(&self) -> Ends {
+        self.here
+    }
+
+    fn door(&self) -> Box<dyn LineDoor> {
+        Box::new(self.network_door())
+    }
+
+    fn join(self: Box<Self>, assembly: Assembly) -> Assembly {
+        let here = self.here;
+        joined(assembly, self, here)
+    }
+}
+
+impl Wire for NetworkLine {
     fn send(&mut self, now_s: f64, message: &[u8]) {
         self.endpoint.send(now_s, message);
     }
@@ -161,31 +194,9 @@ impl Wire for Line {
     }
 }
 
-/// Tells a line's changes in words, once each.
-#[derive(Debug, Default)]
-pub(crate) struct LinkNews {
-    told: Option<String>,
-    newest: Option<LineReport>,
-}
-
-impl LinkNews {
-    /// What is new in the reports that wait.
-    pub(crate) fn hear(&mut self, door: &LineDoor) -> Option<String> {
-        let newest = door.newest()?;
-        self.newest = Some(newest);
-        let words = state_in_words(newest.state);
-        (self.told.as_ref() != Some(&words)).then(|| self.told.insert(words).clone())
-    }
-
-    /// The newest report.
-    pub(crate) const fn newest(&self) -> Option<&LineReport> {
-        self.newest.as_ref()
-    }
-}
-
 /// The figures of a line, as they are printed.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct LinkFigures {
+struct LinkFigures {
     /// Whether messages pass.
     open: bool,
     /// Least round trip, s, and how wrong the other clock may be known by it, s.

@@ -1,9 +1,8 @@
-//! Opens the line to another machine for the commands that run a loop.
+//! Opens the line between two machines, at either end.
 
 use std::net::{Ipv4Addr, SocketAddr, ToSocketAddrs as _};
 
 use anyhow::{Context as _, bail};
-use clap::Args;
 use nima_machine::{
     config::RigConfig,
     remote::at_follower,
@@ -14,32 +13,26 @@ use nima_network::{
     keys::{Keys, Peers, PublicKey},
     stream::StreamSettings,
 };
-
 use nima_world::scene::Scene;
 
-use crate::{by_itself::Arm, line::Line};
+use super::line::NetworkLine;
+use crate::{
+    by_itself::Arm,
+    link::{Line, Way},
+};
 
-/// The option of a command whose arm may be at another machine.
-#[derive(Clone, Debug, Default, Args)]
-pub(super) struct ToFollower {
-    /// The arm and its sensor are at this machine, where `nima follower` runs; here are the handle and the screen
-    #[arg(long, value_name = "HOST[:PORT]")]
-    follower: Option<String>,
-}
+/// The way to a machine where `nima follower` runs.
+pub(super) struct Network;
 
-impl ToFollower {
-    /// Where the arm is. A follower that cannot be found is at another machine; opening the line reports it.
-    pub(super) fn arm(&self) -> Arm {
-        match self.follower.as_deref().map(address) {
-            None => Arm::Here,
-            Some(Ok(follower)) if follower.ip().is_loopback() => Arm::Loopback,
-            Some(_) => Arm::Elsewhere,
+impl Way for Network {
+    fn arm(&self, host: &str) -> Arm {
+        match address(host) {
+            Ok(follower) if follower.ip().is_loopback() => Arm::Loopback,
+            _ => Arm::Elsewhere,
         }
     }
 
-    /// Opens the line, if one is asked for; changes the rig to what is here.
-    pub(super) fn open(&self, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Option<Line>> {
-        let Some(host) = &self.follower else { return Ok(None) };
+    fn open(&self, host: &str, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Box<dyn Line>> {
         without_objects(scene)?;
         let follower = address(host)?;
         let (keys, peers) = own_keys()?;
@@ -50,12 +43,12 @@ impl ToFollower {
             bail!("this machine is not paired with {host}: run `nima pair {host}` here and `nima pair --offer` there");
         };
         here(rig, Ends::Leader);
-        open(arms(rig, scene), Role::Console { follower, key }, keys, Ends::Leader).map(Some)
+        open(arms(rig, scene), Role::Console { follower, key }, keys, Ends::Leader)
     }
 }
 
 /// Opens the follower's end at this address; changes the rig to what is here.
-pub(super) fn listen(rig: &mut RigConfig, scene: &Scene, at: SocketAddr) -> anyhow::Result<Line> {
+pub(super) fn listen(rig: &mut RigConfig, scene: &Scene, at: SocketAddr) -> anyhow::Result<Box<dyn Line>> {
     without_objects(scene)?;
     let (keys, mut consoles) = own_keys()?;
     // The same user's console on this machine.
@@ -88,9 +81,9 @@ fn arms(rig: &RigConfig, scene: &Scene) -> usize {
     Side::ALL.into_iter().filter(|side| scene.has(rig, *side)).count()
 }
 
-fn open(arms: usize, role: Role, keys: Keys, ends: Ends) -> anyhow::Result<Line> {
+fn open(arms: usize, role: Role, keys: Keys, ends: Ends) -> anyhow::Result<Box<dyn Line>> {
     let endpoint = Endpoint::open(Config { stream: StreamSettings::of_arms(arms), ..Config::new(role, keys) })?;
-    Ok(Line::new(endpoint, ends))
+    Ok(Box::new(NetworkLine::new(endpoint, ends)))
 }
 
 /// The folder of this machine's key and of the machines that it is paired with.
@@ -117,7 +110,7 @@ pub(super) fn name_of(host: &str) -> &str {
 }
 
 /// The address of a host, with the usual port unless it names one.
-pub(super) fn address(host: &str) -> anyhow::Result<SocketAddr> {
+pub(crate) fn address(host: &str) -> anyhow::Result<SocketAddr> {
     let with_port = host.to_socket_addrs();
     let mut found = with_port.or_else(|_| (host, PORT).to_socket_addrs()).with_context(|| {
         format!(

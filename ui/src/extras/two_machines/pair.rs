@@ -11,8 +11,11 @@ use anyhow::Context as _;
 use clap::Args;
 use nima_network::pairing::{Attempts, Pairing};
 
-use super::{network, output, run::positive_seconds};
-use crate::leaving::Leave;
+use super::network;
+use crate::{
+    command::{output, run::positive_seconds},
+    leaving::Leave,
+};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -3,27 +3,21 @@
 use egui::{Button, RichText, Ui, vec2};
 use nima_network::endpoint::Control;
 
-use crate::{
-    console::{
-        alarms::sentence,
-        live::Live,
-        text, theme,
-        widgets::{figure, small, weak},
-    },
-    line::{LineDoor, LineReport, LineWish},
+use super::{
+    line::{LineReport, LineWish, NetworkDoor},
+    text,
     words::{link_rows, link_trouble},
 };
+use crate::console::{
+    alarms::sentence,
+    theme,
+    widgets::{figure, small},
+};
 
-/// The panel. It sends wishes to the line; who holds a follower is not the loop's matter.
-pub fn link_ui(ui: &mut Ui, live: &Live) {
-    let Some(door) = &live.line_door else {
-        ui.label(text::link::ONE_MACHINE.get());
-        ui.add_space(4.0);
-        ui.label(weak(text::link::HOW_TWO.get()));
-        return;
-    };
-    let Some(report) = &live.line else {
-        ui.label(text::link::NOTHING_YET.get());
+/// What a line does. It sends wishes to the line; who holds a follower is not the loop's matter.
+pub(super) fn link_ui(ui: &mut Ui, door: &NetworkDoor, drives: bool) {
+    let Some(report) = door.newest() else {
+        ui.label(text::NOTHING_YET.get());
         return;
     };
     if let Some([cause, cure]) = link_trouble(report.state) {
@@ -31,7 +25,7 @@ pub fn link_ui(ui: &mut Ui, live: &Live) {
         ui.label(small(sentence(&cure)));
         ui.add_space(4.0);
     }
-    control_ui(ui, report, live.state().permits().drives, door);
+    control_ui(ui, report, drives, door);
     ui.add_space(4.0);
     for row in link_rows(report) {
         figure(ui, row.name, row.value, row.meaning);
@@ -39,43 +33,43 @@ pub fn link_ui(ui: &mut Ui, live: &Live) {
 }
 
 /// Who holds the follower, and the buttons with which it changes hands.
-fn control_ui(ui: &mut Ui, report: &LineReport, drives: bool, door: &LineDoor) {
+fn control_ui(ui: &mut Ui, report: &LineReport, drives: bool, door: &NetworkDoor) {
     let words = match report.control {
         Control::None => return,
-        Control::Holds => text::link::HOLDS.get(),
-        Control::HoldsAsked => text::link::ASKED.get(),
-        Control::Waits => text::link::WAITS.get(),
-        Control::Asks => text::link::ASKS.get(),
-        Control::Denied => text::link::DENIED.get(),
+        Control::Holds => text::HOLDS.get(),
+        Control::HoldsAsked => text::ASKED.get(),
+        Control::Waits => text::WAITS.get(),
+        Control::Asks => text::ASKS.get(),
+        Control::Denied => text::DENIED.get(),
     };
-    ui.label(words).on_hover_text(text::link::CONTROL_HOVER.get());
+    ui.label(words).on_hover_text(text::CONTROL_HOVER.get());
     let size = vec2(ui.available_width(), 28.0);
     let button = |ui: &mut Ui, enabled: bool, words: &str, meaning: &str| {
         ui.add_enabled(enabled, Button::new(words).min_size(size))
             .on_hover_text(meaning)
-            .on_disabled_hover_text(text::link::GIVE_AT_REST.get())
+            .on_disabled_hover_text(text::GIVE_AT_REST.get())
             .clicked()
     };
     match report.control {
         Control::HoldsAsked => {
             // The arm must not change hands while it is driven: it would stop in a fault.
-            if button(ui, !drives, text::link::GIVE.get(), text::link::GIVE_HOVER.get()) {
+            if button(ui, !drives, text::GIVE.get(), text::GIVE_HOVER.get()) {
                 door.wish(LineWish::Answer { consents: true });
             }
             if drives {
-                ui.label(small(text::link::GIVE_AT_REST.get()));
+                ui.label(small(text::GIVE_AT_REST.get()));
             }
-            if button(ui, true, text::link::KEEP.get(), text::link::KEEP_HOVER.get()) {
+            if button(ui, true, text::KEEP.get(), text::KEEP_HOVER.get()) {
                 door.wish(LineWish::Answer { consents: false });
             }
         }
         Control::Waits | Control::Denied => {
-            if button(ui, true, text::link::ASK.get(), text::link::ASK_HOVER.get()) {
+            if button(ui, true, text::ASK.get(), text::ASK_HOVER.get()) {
                 door.wish(LineWish::Control);
             }
         }
         Control::Asks => {
-            if button(ui, true, text::link::WITHDRAW.get(), text::link::WITHDRAW_HOVER.get()) {
+            if button(ui, true, text::WITHDRAW.get(), text::WITHDRAW_HOVER.get()) {
                 door.wish(LineWish::Nothing);
             }
         }
@@ -89,20 +83,19 @@ mod tests {
     use std::time::{Duration, Instant};
 
     use egui_kittest::{Harness, kittest::Queryable as _};
-    use nima_machine::{config::RigConfig, remote::Wire as _, rig::Ends};
+    use nima_machine::{remote::Wire as _, rig::Ends};
     use nima_network::{
         endpoint::{Config, Endpoint, Role},
         keys::{Keys, Peers},
     };
-    use nima_world::scene::Scene;
 
     use super::*;
-    use crate::line::Line;
+    use crate::{extras::two_machines::line::NetworkLine, link::LineDoor as _};
 
     /// A follower and two consoles over loopback.
     struct Three {
         _folder: tempfile::TempDir,
-        ends: [Line; 3],
+        ends: [NetworkLine; 3],
         /// How many of them run: who comes first holds the follower.
         running: usize,
         begun: Instant,
@@ -126,74 +119,59 @@ mod tests {
             let at = follower.address().unwrap();
             let console = |keys| {
                 let role = Role::Console { follower: at, key };
-                Line::new(Endpoint::open(Config::new(role, keys)).unwrap(), Ends::Leader)
+                NetworkLine::new(Endpoint::open(Config::new(role, keys)).unwrap(), Ends::Leader)
             };
-            let ends = [Line::new(follower, Ends::Follower), console(first), console(second)];
+            let ends = [NetworkLine::new(follower, Ends::Follower), console(first), console(second)];
             Self { _folder: folder, ends, running: 2, begun: Instant::now() }
         }
 
         /// Drives those that run until this console's report is as wanted, and shows it in the panel.
-        fn until(&mut self, console: usize, window: &mut Harness<'_, Live>, control: Control) {
-            let doors = self.ends.each_ref().map(Line::door);
-            while window.state().line.is_none_or(|report| report.control != control) {
-                assert!(self.begun.elapsed() < Duration::from_mins(1), "never {control:?}: {:?}", window.state().line);
+        fn until(&mut self, window: &mut Harness<'_, NetworkDoor>, control: Control) {
+            while window.state().newest().is_none_or(|report| report.control != control) {
+                assert!(self.begun.elapsed() < Duration::from_mins(1), "never {control:?}: {:?}", window.state());
                 let now_s = self.begun.elapsed().as_secs_f64();
                 for end in &mut self.ends[..self.running] {
                     end.receive(now_s, &mut |_| {});
                     end.send(now_s, b"payload");
                 }
-                if let Some(report) = doors[console].newest() {
-                    window.state_mut().line = Some(report);
-                }
+                window.state_mut().hear();
                 std::thread::sleep(Duration::from_millis(1));
             }
             window.run_steps(2);
         }
 
-        fn panel(&self, console: usize) -> Harness<'static, Live> {
-            let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
-            live.line_door = Some(self.ends[console].door());
-            shown(live)
+        fn panel(&self, console: usize) -> Harness<'static, NetworkDoor> {
+            let panel = |ui: &mut Ui, door: &mut NetworkDoor| {
+                theme::apply(ui.ctx());
+                link_ui(ui, door, false);
+            };
+            let door = self.ends[console].network_door();
+            Harness::builder().with_size([330.0, 600.0]).build_ui_state(panel, door)
         }
-    }
-
-    fn shown(live: Live) -> Harness<'static, Live> {
-        let panel = |ui: &mut Ui, live: &mut Live| {
-            theme::apply(ui.ctx());
-            link_ui(ui, live);
-        };
-        Harness::builder().with_size([330.0, 600.0]).build_ui_state(panel, live)
     }
 
     #[test]
     fn control_changes_hands_by_a_question_and_consent() {
         let mut three = Three::new();
         let (mut first, mut second) = (three.panel(1), three.panel(2));
-        three.until(1, &mut first, Control::Holds);
+        three.until(&mut first, Control::Holds);
         three.running = 3;
-        three.until(2, &mut second, Control::Waits);
-        second.get_by_label(text::link::ASK.get()).click();
+        three.until(&mut second, Control::Waits);
+        second.get_by_label(text::ASK.get()).click();
         second.run_steps(2);
-        three.until(2, &mut second, Control::Asks);
-        three.until(1, &mut first, Control::HoldsAsked);
-        first.get_by_label(text::link::KEEP.get()).click();
+        three.until(&mut second, Control::Asks);
+        three.until(&mut first, Control::HoldsAsked);
+        first.get_by_label(text::KEEP.get()).click();
         first.run_steps(2);
-        three.until(2, &mut second, Control::Denied);
-        three.until(1, &mut first, Control::Holds);
-        second.get_by_label(text::link::ASK.get()).click();
+        three.until(&mut second, Control::Denied);
+        three.until(&mut first, Control::Holds);
+        second.get_by_label(text::ASK.get()).click();
         second.run_steps(2);
-        three.until(1, &mut first, Control::HoldsAsked);
-        first.get_by_label(text::link::GIVE.get()).click();
+        three.until(&mut first, Control::HoldsAsked);
+        first.get_by_label(text::GIVE.get()).click();
         first.run_steps(2);
-        three.until(2, &mut second, Control::Holds);
-        three.until(1, &mut first, Control::Waits);
+        three.until(&mut second, Control::Holds);
+        three.until(&mut first, Control::Waits);
         first.get_by_label_contains("nother console holds the follower");
-    }
-
-    #[test]
-    fn without_another_machine_the_panel_says_how_there_can_be_one() {
-        let live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
-        let window = shown(live);
-        window.get_by_label(text::link::ONE_MACHINE.get());
     }
 }

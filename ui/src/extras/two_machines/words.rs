@@ -6,11 +6,11 @@ use nima_network::{
     figures::Figures,
 };
 
+use super::line::LineReport;
 use crate::language::{told, word};
-use crate::line::LineReport;
 
 /// The state, a clause without a full stop.
-pub(crate) fn state_in_words(state: LinkState) -> String {
+pub(super) fn state_in_words(state: LinkState) -> String {
     match link_trouble(state) {
         None => word("connected to the other machine", "mit der Gegenstelle verbunden").to_owned(),
         Some([cause, cure]) => format!("{cause}: {cure}"),
@@ -18,7 +18,7 @@ pub(crate) fn state_in_words(state: LinkState) -> String {
 }
 
 /// Why nothing passes, and what to do, clauses without a full stop; `None` if all is well.
-pub(crate) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
+pub(super) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
     let cause = match state {
         LinkState::Open => return None,
         LinkState::Waiting => {
@@ -96,15 +96,15 @@ pub(crate) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
 
 /// A figure of a line.
 #[derive(Clone)]
-pub(crate) struct LinkRow {
-    pub(crate) name: &'static str,
-    pub(crate) value: String,
+pub(super) struct LinkRow {
+    pub(super) name: &'static str,
+    pub(super) value: String,
     /// A sentence.
-    pub(crate) meaning: &'static str,
+    pub(super) meaning: &'static str,
 }
 
 /// The figures of a line, one to a row.
-pub(crate) fn link_rows(report: &LineReport) -> Vec<LinkRow> {
+pub(super) fn link_rows(report: &LineReport) -> Vec<LinkRow> {
     let figures = &report.figures;
     let state = match report.state {
         LinkState::Open => word("connected", "verbunden"),

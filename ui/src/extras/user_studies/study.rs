@@ -17,43 +17,43 @@ use nima_user_study::{
 };
 use nima_world::{Plan, Watched, scene::Scene};
 
-use crate::{leaving::Leave, objects::OfSimulation, recording, scoring::Scoring, words::Remedy as _};
+use crate::{extras::tasks::scoring::Scoring, leaving::Leave, objects::OfSimulation, recording, words::Remedy as _};
 
 /// Names of the ready studies.
-pub(crate) const READY: [&str; 2] = ["paper", "short"];
+pub(super) const READY: [&str; 2] = ["paper", "short"];
 /// The ready study files.
 const STUDIES: [(&str, &str); 2] = [
-    ("paper", include_str!("../../config/studies/paper.toml")),
-    ("short", include_str!("../../config/studies/short.toml")),
+    ("paper", include_str!("../../../../config/studies/paper.toml")),
+    ("short", include_str!("../../../../config/studies/short.toml")),
 ];
 /// Why a trial was broken off that somebody gave up, for the journal.
-pub(crate) const GIVEN_UP: &str = "given up by the operator";
+pub(super) const GIVEN_UP: &str = "given up by the operator";
 /// The same for one that somebody stopped, whose loop ended, or whose window was closed.
-pub(crate) const STOPPED: &str = "stopped by the operator";
-pub(crate) const LOOP_ENDED: &str = "the loop ended";
-pub(crate) const CLOSED: &str = "the console was closed";
-pub(crate) const NOT_STARTED: &str = "the loop did not start";
+pub(super) const STOPPED: &str = "stopped by the operator";
+pub(super) const LOOP_ENDED: &str = "the loop ended";
+pub(super) const CLOSED: &str = "the console was closed";
+pub(super) const NOT_STARTED: &str = "the loop did not start";
 /// The loop engages within this time, s.
 const ENGAGES_S: f64 = 5.0;
 
 /// How a trial went.
-pub(crate) struct Ran {
-    pub(crate) trial: TrialId,
+pub(super) struct Ran {
+    pub(super) trial: TrialId,
     /// Nothing if it was broken off.
-    pub(crate) ending: Option<Ending>,
-    pub(crate) completion_time_s: Option<f64>,
+    pub(super) ending: Option<Ending>,
+    pub(super) completion_time_s: Option<f64>,
     /// Why it was broken off.
-    pub(crate) why: Option<String>,
+    pub(super) why: Option<String>,
 }
 
 /// Reads the ready study file of this name, or a file.
-pub(crate) fn study_file(name: &str) -> anyhow::Result<StudyFile> {
+pub(super) fn study_file(name: &str) -> anyhow::Result<StudyFile> {
     let (path, text) = text("study", name, &STUDIES)?;
     StudyFile::from_toml(&text).with_context(|| path.display().to_string())
 }
 
 /// Everything that is wrong with a study: its file, its scene, and whether its rig allows every condition.
-pub(crate) fn mistakes(file: &StudyFile) -> Vec<String> {
+pub(super) fn mistakes(file: &StudyFile) -> Vec<String> {
     let mut wrong = file.check().err().map_or_else(Vec::new, |Mistakes(wrong)| wrong);
     wrong.extend(scene_of(file).err().map(|error| format!("{error:#}")));
     match RigConfig::load(&file.rig) {
@@ -68,7 +68,7 @@ pub(crate) fn mistakes(file: &StudyFile) -> Vec<String> {
 }
 
 /// Makes the folder of a study.
-pub(crate) fn create(folder: &Path, file: &StudyFile) -> anyhow::Result<Study> {
+pub(super) fn create(folder: &Path, file: &StudyFile) -> anyhow::Result<Study> {
     let scene = scene_of(file)?;
     let rig = RigConfig::load(&file.rig)?;
     for condition in &file.conditions {
@@ -79,7 +79,7 @@ pub(crate) fn create(folder: &Path, file: &StudyFile) -> anyhow::Result<Study> {
 }
 
 /// The scene of a study: with its task, and with so many rings as it asks for.
-pub(crate) fn scene_of(file: &StudyFile) -> anyhow::Result<Scene> {
+pub(super) fn scene_of(file: &StudyFile) -> anyhow::Result<Scene> {
     let mut scene = Scene::load(&file.scene)?;
     if file.task.is_some() {
         scene.task.clone_from(&file.task);
@@ -101,7 +101,7 @@ pub(crate) fn scene_of(file: &StudyFile) -> anyhow::Result<Scene> {
 }
 
 /// The same rig under a condition.
-pub(crate) fn under(mut rig: RigConfig, condition: &Condition) -> Result<RigConfig, ConfigError> {
+pub(super) fn under(mut rig: RigConfig, condition: &Condition) -> Result<RigConfig, ConfigError> {
     rig.delay_s = condition.delay_ms.unwrap_or(0.0) * 1e-3;
     // Without force the cheapest mode computes what the gain then takes away.
     rig.mode = condition.mode.unwrap_or(Mode::Dfr);
@@ -112,7 +112,7 @@ pub(crate) fn under(mut rig: RigConfig, condition: &Condition) -> Result<RigConf
 }
 
 /// The hand of the scene, with other random sequences in each trial.
-pub(crate) fn plain_hand(study: &Study, participant: &str) -> anyhow::Result<Hand> {
+pub(super) fn plain_hand(study: &Study, participant: &str) -> anyhow::Result<Hand> {
     let scene = scene_in(study)?;
     // Trials and interruptions, so that a repetition is not the same.
     let of = study.state().progress(participant).map_or(0, |one| u64::from(one.interruptions));
@@ -122,7 +122,7 @@ pub(crate) fn plain_hand(study: &Study, participant: &str) -> anyhow::Result<Han
 }
 
 /// Trials that a participant has made, practice included; all, and since the last break.
-pub(crate) fn made(study: &Study, participant: &str) -> (u32, u32) {
+pub(super) fn made(study: &Study, participant: &str) -> (u32, u32) {
     let progress = study.state().progress(participant);
     progress.map_or((0, 0), |one| ((one.practice_s.len() + one.trials.len()) as u32, one.since_break()))
 }
@@ -132,12 +132,12 @@ fn scene_in(study: &Study) -> anyhow::Result<Scene> {
 }
 
 /// The scene file of a study.
-pub(crate) fn scene_file(study: &Study) -> PathBuf {
+pub(super) fn scene_file(study: &Study) -> PathBuf {
     study.folder().join("scene.toml")
 }
 
 /// The scene for a trial on this rig, with this hand and its random sequences, and its task.
-pub(crate) fn scene_for(study: &Study, rig: &RigConfig, hand: &Hand) -> anyhow::Result<(Scene, TaskFile)> {
+pub(super) fn scene_for(study: &Study, rig: &RigConfig, hand: &Hand) -> anyhow::Result<(Scene, TaskFile)> {
     let mut scene = scene_in(study)?;
     (scene.hand.pace, scene.hand.tremor_m, scene.seed) = (hand.pace, hand.tremor_m, hand.seed);
     scene.hand.intended_n = hand.intended_n;
@@ -146,7 +146,7 @@ pub(crate) fn scene_for(study: &Study, rig: &RigConfig, hand: &Hand) -> anyhow::
 }
 
 /// Writes down how a trial ended; `why` it was broken off, if it was.
-pub(crate) fn close(
+pub(super) fn close(
     study: &mut Study,
     running: Running,
     why: Option<String>,
@@ -170,13 +170,13 @@ pub(crate) fn close(
 }
 
 /// Why a trial was broken off by a fault, for the journal.
-pub(crate) fn ended_by(fault: Fault) -> String {
+pub(super) fn ended_by(fault: Fault) -> String {
     format!("the loop ended in a fault: {}", fault.cause())
 }
 
 /// Runs the trial that comes next, in the simulated rig on the virtual clock, by a simulated hand. `what` it was, it tells; under which
 /// condition it does not.
-pub(crate) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, leave: &Leave) -> anyhow::Result<Ran> {
+pub(super) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, leave: &Leave) -> anyhow::Result<Ran> {
     let rig = RigConfig::load(&study.plan().rig)?;
     if !rig.has_simulated_hand() {
         bail!("rig \"{}\" has devices, which need the real clock: --virtual is for simulated rigs", rig.name);
@@ -221,7 +221,7 @@ pub(crate) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, lea
 
 impl Ran {
     /// In words, without the condition; and without the result, unless it is shown.
-    pub(crate) fn in_words(&self, shows_result: bool) -> String {
+    pub(super) fn in_words(&self, shows_result: bool) -> String {
         let Self { trial, ending, completion_time_s, why } = self;
         let what = if trial.phase == Phase::Practice { "practice trial" } else { "trial" };
         let how = match (ending, completion_time_s, why) {
@@ -236,6 +236,6 @@ impl Ran {
 }
 
 /// What comes next, for a sentence.
-pub(crate) fn next_in_words(step: &Step) -> String {
+pub(super) fn next_in_words(step: &Step) -> String {
     format!("next: {step}")
 }

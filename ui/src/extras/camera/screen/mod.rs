@@ -27,16 +27,13 @@ use self::{
     tip::{Marker, Tip},
 };
 use super::{
-    Binding, Saving,
-    frame::{Frame, Step, Wish, Wizard},
-};
-use crate::{
-    console::{
-        text::{self, camera as texts},
-        widgets::card,
-    },
     lens::{FoundPlace, changes, undone},
-    words::camera as words,
+    text as texts, words,
+};
+use crate::console::{
+    text,
+    widgets::card,
+    wizards::{Binding, Frame, Saving, Step, Wish, Wizard},
 };
 
 const STEPS: [Step; 5] = [
@@ -44,7 +41,7 @@ const STEPS: [Step; 5] = [
     Step { name: texts::STEP_VIEWS, meaning: texts::STEP_VIEWS_HOVER },
     Step { name: texts::STEP_LENS, meaning: texts::STEP_LENS_HOVER },
     Step { name: texts::STEP_TOUCH, meaning: texts::STEP_TOUCH_HOVER },
-    Step { name: text::wizards::STEP_SAVE, meaning: texts::STEP_SAVE_HOVER },
+    Step { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_IN_RIG_HOVER },
 ];
 const CHECK: usize = 0;
 const VIEWS: usize = 1;
@@ -121,21 +118,6 @@ impl Default for CameraWizard {
 }
 
 impl CameraWizard {
-    /// The newest picture of the endoscope.
-    pub(super) fn see(&mut self, picture: Option<(u64, Arc<Picture>)>, ctx: &egui::Context) {
-        if self.detector.is_none() {
-            self.detector = Detector::new(ctx);
-        }
-        let (Some(detector), Ok(board)) = (&mut self.detector, board_of(&self.corners, self.square_mm)) else { return };
-        let found = detector.take();
-        if let Some(picture) = picture {
-            detector.show(picture, board);
-        }
-        if let Some(found) = found.filter(|found| found.board == board) {
-            self.take(found);
-        }
-    }
-
     fn take(&mut self, Found { picture, board, sight }: Found) {
         let size_px = picture.size_px;
         self.fresh = Some(picture);
@@ -311,6 +293,20 @@ impl Wizard for CameraWizard {
         self.tip.note(tick.t_s, tick.tip_m);
         if self.frame.step == TOUCH && self.base.is_some() {
             self.marker.note(tick.t_s, tick.view.world_from_n());
+        }
+    }
+
+    fn see(&mut self, picture: Option<(u64, Arc<Picture>)>, ctx: &egui::Context) {
+        if self.detector.is_none() {
+            self.detector = Detector::new(ctx);
+        }
+        let (Some(detector), Ok(board)) = (&mut self.detector, board_of(&self.corners, self.square_mm)) else { return };
+        let found = detector.take();
+        if let Some(picture) = picture {
+            detector.show(picture, board);
+        }
+        if let Some(found) = found.filter(|found| found.board == board) {
+            self.take(found);
         }
     }
 

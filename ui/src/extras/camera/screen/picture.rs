@@ -4,7 +4,10 @@ use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInf
 use nima_camera::{CELLS, Coverage, Sight};
 use nima_endoscope::{Board, Picture};
 
-use crate::console::{double_buffer::DoubleBuffer, text::camera as texts, theme, widgets::fitting};
+use crate::{
+    console::{double_buffer::DoubleBuffer, theme, widgets::fitting},
+    extras::camera::text as texts,
+};
 
 /// Width of the map, points.
 pub(super) const MAP_WIDTH: f32 = 190.0;

@@ -10,7 +10,6 @@ use super::{
 };
 use crate::{
     console::{
-        text::camera as texts,
         theme,
         widgets::{card, figure, small},
         wizards::{
@@ -19,7 +18,7 @@ use crate::{
             report::verdict_line,
         },
     },
-    words::camera as words,
+    extras::camera::{text as texts, words},
 };
 
 /// Widest picture, points: with the map beside it, and what is to be done above it, it fits a window of 1280 x 720.

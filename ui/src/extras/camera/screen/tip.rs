@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use nalgebra::{Isometry3, Vector3};
-use nima_camera::steadied;
+use nima_endoscope::steadied;
 
 /// Time between two places that are kept, s, and how long they are, s.
 const STEP_S: f64 = 0.01;

@@ -4,7 +4,10 @@
 use egui::{Rect, Sense, Stroke, Ui, pos2, vec2};
 use nima_study::stability_map::{StabilityMap, Verdict};
 
-use crate::console::{live::Live, text, theme, widgets::small};
+use crate::{
+    console::{live::Live, theme, widgets::small},
+    extras::lab::text,
+};
 
 const HEIGHT: f32 = 8.0;
 /// Number of segments of the strip.
@@ -14,20 +17,18 @@ const PARTS: u32 = 60;
 ///
 /// In a scope of its own: what it shows changes with the first contact, and what stands below must keep its identity, or
 /// a slider would slip from the hand in that moment.
-pub(super) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
+pub(in crate::extras::lab) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     ui.scope(|ui| strip_ui(ui, live, rail, limit));
 }
 
 fn strip_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     let Some(map) = StabilityMap::committed() else { return };
     if !StabilityMap::has(live.mode()) {
-        ui.label(small(text::feedback::STABLE_GAIN_UNMEASURED.get()))
-            .on_hover_text(text::feedback::STABLE_GAIN_HOVER.get());
+        ui.label(small(text::STABLE_GAIN_UNMEASURED.get())).on_hover_text(text::STABLE_GAIN_HOVER.get());
         return;
     }
     let Some(n_m) = live.stiffness_n_m() else {
-        ui.label(small(text::feedback::STABLE_GAIN_UNKNOWN.get()))
-            .on_hover_text(text::feedback::STABLE_GAIN_HOVER.get());
+        ui.label(small(text::STABLE_GAIN_UNKNOWN.get())).on_hover_text(text::STABLE_GAIN_HOVER.get());
         return;
     };
     let (mode, delay_s) = (live.mode(), live.delay_s());
@@ -55,7 +56,7 @@ fn strip_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     }
     let greatest = map.greatest_stable_gain(mode, delay_s, n_m);
     let now = map.at(mode, live.gain(), delay_s, n_m);
-    let words = text::feedback::stable_up_to(now, greatest, n_m);
-    response.on_hover_text(text::feedback::STABLE_GAIN_HOVER.get());
-    ui.label(small(words)).on_hover_text(text::feedback::STABLE_GAIN_HOVER.get());
+    let words = text::stable_up_to(now, greatest, n_m);
+    response.on_hover_text(text::STABLE_GAIN_HOVER.get());
+    ui.label(small(words)).on_hover_text(text::STABLE_GAIN_HOVER.get());
 }

@@ -14,8 +14,11 @@ use nima_machine::config::RigConfig;
 use nima_study::tradeoff::{Choice, Method, Plan, Point, Source, SourceFigures, Study, SweepError, sweep};
 
 use super::{tradeoff_apply::Apply, tradeoff_plot::plot_ui};
-use crate::console::{live::Live, outbox::Outbox, text, widgets::small};
-use crate::words::{mode_meaning, mode_name, three_digits};
+use crate::{
+    console::{live::Live, outbox::Outbox, panels::Tile, text::calibrations, widgets::small},
+    extras::lab::text,
+    words::{mode_meaning, mode_name, three_digits},
+};
 
 /// Duration of the scene on which it is measured, s.
 const SCENE_S: f64 = 6.0;
@@ -23,7 +26,7 @@ const BUTTON: egui::Vec2 = vec2(120.0, 30.0);
 
 /// State of the panel.
 #[derive(Debug, Default)]
-pub struct TradeoffState {
+pub(in crate::extras::lab) struct Tradeoff {
     job: Option<Job>,
     measured: Option<SourceFigures>,
     selected: Option<usize>,
@@ -74,22 +77,10 @@ pub(super) fn plan(live: &Live) -> Plan {
     Plan::quick(rig.settings())
 }
 
-impl TradeoffState {
-    /// Figures of the last sweep.
-    pub fn figures(&self) -> Option<&SourceFigures> {
-        self.measured.as_ref()
-    }
-
+impl Tradeoff {
     /// Shows a message to the operator.
-    pub fn tell(&mut self, message: impl Into<String>) {
+    fn tell(&mut self, message: impl Into<String>) {
         self.message = message.into();
-    }
-
-    /// Requests a running sweep to stop.
-    pub fn cancel(&self) {
-        if let Some(job) = &self.job {
-            job.cancel.store(true, Ordering::Relaxed);
-        }
     }
 
     fn take_in(&mut self) {
@@ -101,29 +92,52 @@ impl TradeoffState {
                 self.measured = Some(figures);
                 self.message.clear();
             }
-            Some(Err(SweepError::Cancelled)) => self.tell(text::tradeoff::CANCELLED.get()),
+            Some(Err(SweepError::Cancelled)) => self.tell(text::CANCELLED.get()),
             Some(Err(error)) => self.tell(error.to_string()),
-            Some(Ok(_)) | None => self.tell(text::tradeoff::FAILED.get()),
+            Some(Ok(_)) | None => self.tell(text::FAILED.get()),
         }
     }
 }
 
-impl Drop for TradeoffState {
+impl Drop for Tradeoff {
     fn drop(&mut self) {
-        self.cancel();
+        self.stop();
+    }
+}
+
+impl Tile for Tradeoff {
+    fn ui(&mut self, ui: &mut Ui, live: &Live, outbox: &mut Outbox) -> Option<RigConfig> {
+        tradeoff_ui(ui, live, self, outbox)
+    }
+
+    fn restarted(&mut self, outcome: Result<(), String>) {
+        self.tell(match outcome {
+            Ok(()) => text::APPLIED_BY_RESTART.get().to_owned(),
+            Err(reason) => text::not_applied(&reason),
+        });
+    }
+
+    fn stop(&self) {
+        if let Some(job) = &self.job {
+            job.cancel.store(true, Ordering::Relaxed);
+        }
+    }
+
+    fn is_measured(&self) -> bool {
+        self.measured.is_some()
     }
 }
 
 /// The panel. Returns a rig if the operator applies a point that the running loop cannot change to: the loop must then
 /// be restarted with it.
-pub fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState, outbox: &mut Outbox) -> Option<RigConfig> {
+fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut Tradeoff, outbox: &mut Outbox) -> Option<RigConfig> {
     state.take_in();
     measure_ui(ui, live, state);
     if !state.message.is_empty() {
         ui.label(small(state.message.clone()));
     }
     let Some(figures) = &state.measured else {
-        ui.label(small(text::tradeoff::NOT_MEASURED.get()));
+        ui.label(small(text::NOT_MEASURED.get()));
         return None;
     };
     if let Some(clicked) = plot_ui(ui, figures, state.selected) {
@@ -134,14 +148,14 @@ pub fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState, outbox: 
     apply_ui(ui, live, &point, state, outbox)
 }
 
-fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
+fn measure_ui(ui: &mut Ui, live: &Live, state: &mut Tradeoff) {
     let Some(job) = &state.job else {
-        let meaning = text::tradeoff::MEASURE_HOVER.get();
-        let button = Button::new(text::tradeoff::MEASURE.get()).min_size(vec2(ui.available_width(), 30.0));
+        let meaning = text::MEASURE_HOVER.get();
+        let button = Button::new(text::MEASURE.get()).min_size(vec2(ui.available_width(), 30.0));
         if ui.add(button).on_hover_text(meaning).clicked() {
             match Job::start(live) {
                 Ok(job) => state.job = Some(job),
-                Err(error) => state.tell(text::tradeoff::not_started(&error)),
+                Err(error) => state.tell(text::not_started(&error)),
             }
         }
         return;
@@ -151,11 +165,11 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
         let width = (ui.available_width() - BUTTON.x - 8.0).max(60.0);
         let bar = ui.add(ProgressBar::new(share).desired_width(width).text(format!("{:.0} %", 100.0 * share)));
         bar.widget_info(|| {
-            let words = text::tradeoff::measured(100.0 * share);
+            let words = text::measured(100.0 * share);
             egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, words)
         });
-        let cancel = ui.add(Button::new(text::tradeoff::CANCEL.get()).min_size(BUTTON));
-        if cancel.on_hover_text(text::tradeoff::CANCEL_HOVER.get()).clicked() {
+        let cancel = ui.add(Button::new(text::CANCEL.get()).min_size(BUTTON));
+        if cancel.on_hover_text(text::CANCEL_HOVER.get()).clicked() {
             job.cancel.store(true, Ordering::Relaxed);
         }
     });
@@ -163,7 +177,7 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
 
 /// The points of the Pareto front, cheapest first, each a button.
 fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) {
-    ui.label(small(text::tradeoff::FRONT.get())).on_hover_text(text::tradeoff::FRONT_HOVER.get());
+    ui.label(small(text::FRONT.get())).on_hover_text(text::FRONT_HOVER.get());
     for index in front(figures) {
         let point = &figures.points[index];
         let row = Button::selectable(*selected == Some(index), format!("{}: {}", name(point), figures_of(point)));
@@ -173,21 +187,15 @@ fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) 
     }
 }
 
-fn apply_ui(
-    ui: &mut Ui,
-    live: &Live,
-    point: &Point,
-    state: &mut TradeoffState,
-    outbox: &mut Outbox,
-) -> Option<RigConfig> {
+fn apply_ui(ui: &mut Ui, live: &Live, point: &Point, state: &mut Tradeoff, outbox: &mut Outbox) -> Option<RigConfig> {
     let mode = point.choice.method.mode()?;
     let apply = Apply::of(live, mode, &point.choice);
     let restart = matches!(apply, Apply::Restart(_));
     // After a restart the loop is idle, so it must not be a way out of a stop or a fault.
-    let closed = text::calibrations::closed(live.state()).filter(|_| restart);
+    let closed = calibrations::closed(live.state()).filter(|_| restart);
     let size = vec2(ui.available_width(), 30.0);
-    let button = ui.add_enabled(closed.is_none(), Button::new(text::tradeoff::APPLY.get()).min_size(size));
-    let note = if restart { text::tradeoff::APPLY_BY_RESTART.get() } else { text::tradeoff::APPLY_AT_ONCE.get() };
+    let button = ui.add_enabled(closed.is_none(), Button::new(text::APPLY.get()).min_size(size));
+    let note = if restart { text::APPLY_BY_RESTART.get() } else { text::APPLY_AT_ONCE.get() };
     ui.label(small(format!("{}. {note}", name(point))));
     let clicked = button
         .on_hover_text(format!("{}\n{}\n{note}", words(point), mode_meaning(mode)))
@@ -200,7 +208,7 @@ fn apply_ui(
         Apply::Restart(rig) => return Some(*rig),
         Apply::AtOnce(commands) => commands.into_iter().for_each(|command| outbox.push(command)),
     }
-    state.tell(text::tradeoff::applied(&name(point)));
+    state.tell(text::applied(&name(point)));
     None
 }
 
@@ -234,9 +242,9 @@ fn figures_of(point: &Point) -> String {
 
 /// Hover text of a point.
 pub(super) fn words(point: &Point) -> String {
-    let front = if point.pareto { text::tradeoff::ON_FRONT.get() } else { "" };
+    let front = if point.pareto { text::ON_FRONT.get() } else { "" };
     let [median_us, p99_us, error_n, ratio] =
         [point.cost_us.p50, point.cost_us.p99, point.error, point.ratio].map(three_digits);
-    let figures = text::tradeoff::point(&name(point), [&median_us, &p99_us], point.choice.delay_ms, [&error_n, &ratio]);
+    let figures = text::point(&name(point), [&median_us, &p99_us], point.choice.delay_ms, [&error_n, &ratio]);
     figures + front
 }

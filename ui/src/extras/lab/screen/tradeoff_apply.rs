@@ -69,7 +69,7 @@ mod tests {
     use nima_world::{World, scene::Scene};
 
     use super::*;
-    use crate::console::panels::tradeoff::{name, plan};
+    use crate::extras::lab::screen::tradeoff::{name, plan};
 
     const SIDE: Side = Side::Right;
     /// Passes of each for a cost that other work disturbs little.

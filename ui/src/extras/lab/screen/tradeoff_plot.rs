@@ -9,7 +9,8 @@ use nima_study::tradeoff::{Point, SourceFigures};
 
 use super::tradeoff::words;
 use crate::{
-    console::{text, theme, widgets::still},
+    console::{theme, widgets::still},
+    extras::lab::text,
     words::{mode_name, three_digits},
 };
 
@@ -25,12 +26,10 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
     let near = |at: PlotPoint| nearest(points, &shown, &range, at);
     let plot = still(Plot::new("trade-off"))
         .height(HEIGHT)
-        .custom_x_axes(vec![
-            AxisHints::new_x().label(text::tradeoff::TIME_AXIS.get()).formatter(|mark, _| plain(mark.value)),
-        ])
+        .custom_x_axes(vec![AxisHints::new_x().label(text::TIME_AXIS.get()).formatter(|mark, _| plain(mark.value))])
         .custom_y_axes(vec![
             AxisHints::new_y()
-                .label(text::tradeoff::error_axis(&figures.unit))
+                .label(text::error_axis(&figures.unit))
                 .min_thickness(48.0)
                 .formatter(|mark, _| plain(mark.value)),
         ])
@@ -62,7 +61,7 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
             );
         }
     });
-    let described = text::tradeoff::plot(shown.len());
+    let described = text::plot(shown.len());
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described.clone()));
     let clicked = response.response.clicked().then(|| response.response.interact_pointer_pos()).flatten()?;
     near(response.transform.value_from_position(clicked))

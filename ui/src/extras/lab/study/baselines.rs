@@ -22,7 +22,7 @@ const SCENE_S: f64 = 20.0;
 const DELAYS_MS: [f64; 4] = [10.0, 50.0, 100.0, 300.0];
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::extras::lab) struct Arguments {
     #[command(flatten)]
     sources: Sources,
     /// One-way delay of the link in ms; may be given several times (default: 10, 50, 100 and 300)

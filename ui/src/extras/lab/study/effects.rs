@@ -7,7 +7,7 @@ use super::Asked;
 use crate::command::run::positive_seconds;
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::extras::lab) struct Arguments {
     /// Scenes, by name or file; may be repeated (default: all that are built in)
     #[arg(long, value_name = "SCENE")]
     scene: Vec<String>,

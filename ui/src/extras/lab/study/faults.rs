@@ -3,10 +3,11 @@
 use clap::Args;
 use nima_study::faults::Options;
 
-use super::{super::run::positive_seconds, Asked};
+use super::Asked;
+use crate::command::run::positive_seconds;
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Faults {
+pub(in crate::extras::lab) struct Faults {
     /// Number of moments at which each fault is injected while engaged, 1 to 20
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
     moments: u32,

@@ -6,7 +6,7 @@ use nima_study::gates::Options;
 use super::Asked;
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Gates {
+pub(in crate::extras::lab) struct Gates {
     /// Number of requests, up to 1e12
     #[arg(long, value_name = "N", default_value = "1e8", value_parser = requests)]
     requests: u64,

@@ -7,7 +7,7 @@ use super::{Asked, clocks::Clocks};
 
 #[derive(Debug, Args)]
 #[expect(clippy::struct_field_names, reason = "the name of the option")]
-pub(in crate::command) struct Hands {
+pub(in crate::extras::lab) struct Hands {
     /// Hands of each kind on each clock
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     hands: u64,

@@ -28,7 +28,7 @@ use std::{
 use clap::{Args, Subcommand};
 use nima_study::{Experiment, Findings as _};
 
-use super::output;
+use crate::command::output;
 
 /// Arguments that describe the experiment.
 pub(super) trait Asked: Args {

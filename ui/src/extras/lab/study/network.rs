@@ -7,7 +7,7 @@ use nima_study::network::{Extent, Options};
 use super::{Asked, clocks::Clocks};
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Network {
+pub(in crate::extras::lab) struct Network {
     /// Six short cells, in seconds
     #[arg(long, conflicts_with = "full")]
     quick: bool,

@@ -6,7 +6,7 @@ use nima_study::passivity::Options;
 use super::{Asked, clocks::Clocks};
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Passivity {
+pub(in crate::extras::lab) struct Passivity {
     #[command(flatten)]
     clocks: Clocks,
 }

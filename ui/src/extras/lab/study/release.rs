@@ -6,7 +6,7 @@ use nima_study::release::Options;
 use super::{Asked, clocks::Clocks};
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Release {
+pub(in crate::extras::lab) struct Release {
     #[command(flatten)]
     clocks: Clocks,
 }

@@ -10,7 +10,7 @@ use nima_recording::csv::Mapping;
 use nima_study::tradeoff::Source;
 use nima_world::scene::Scene;
 
-use super::super::motion;
+use crate::{command::setup::side, extras::lab::motion};
 
 /// Rate of a scene, Hz.
 pub(super) const RATE_HZ: f64 = 1000.0;
@@ -21,7 +21,7 @@ pub(super) struct Sources {
     #[arg(long, value_name = "FILE", num_args = 1..)]
     recording: Vec<PathBuf>,
     /// Which arm of the sessions, right or left (needed where one has both)
-    #[arg(long, value_name = "ARM", value_parser = motion::side)]
+    #[arg(long, value_name = "ARM", value_parser = side)]
     arm: Option<Side>,
     /// Other column names in the recordings, with an optional factor: `x=px_mm*0.001`
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]

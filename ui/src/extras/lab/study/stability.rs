@@ -6,7 +6,7 @@ use nima_study::stability::Options;
 use super::Asked;
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Stability {
+pub(in crate::extras::lab) struct Stability {
     /// Ticks of the run that tests for numerical drift, about 3 µs each
     #[arg(long, value_name = "N", default_value_t = 1_000_000)]
     ticks: u64,

@@ -6,7 +6,7 @@ use nima_study::stability_map::Options;
 use super::Asked;
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct StabilityMap;
+pub(in crate::extras::lab) struct StabilityMap;
 
 impl Asked for StabilityMap {
     type Experiment = Options;

@@ -22,11 +22,11 @@ use nima_machine::config::SchedulingClass;
 use nima_study::{Experiment, Findings};
 use serde::{Deserialize, Serialize};
 
-use super::{super::run::positive_seconds, Asked};
-use crate::telling::tell;
+use super::Asked;
+use crate::{command::run::positive_seconds, telling::tell};
 
 #[derive(Clone, Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::extras::lab) struct Arguments {
     /// Length of each case, s
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = positive_seconds)]
     seconds: f64,
@@ -91,7 +91,7 @@ struct Scheduling {
 }
 
 #[derive(Debug, Serialize)]
-pub(in crate::command) struct Case {
+pub(super) struct Case {
     beside: Beside,
     /// Scheduling class that was requested.
     asked: SchedulingClass,
@@ -104,7 +104,7 @@ pub(in crate::command) struct Case {
 /// All cases.
 #[derive(Debug, Serialize)]
 #[serde(transparent)]
-pub(in crate::command) struct Cases(Vec<Case>);
+pub(in crate::extras::lab) struct Cases(Vec<Case>);
 
 impl Asked for Arguments {
     type Experiment = Self;

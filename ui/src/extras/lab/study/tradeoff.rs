@@ -24,7 +24,7 @@ const SCENE_S: f64 = 10.0;
 const QUICK_SCENE_S: f64 = 6.0;
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::extras::lab) struct Arguments {
     #[command(flatten)]
     sources: Sources,
     #[command(flatten)]
@@ -38,7 +38,7 @@ pub(in crate::command) struct Arguments {
 }
 
 /// The sweep over all sources; a signal ends it within milliseconds.
-pub(in crate::command) struct Tradeoff {
+pub(in crate::extras::lab) struct Tradeoff {
     plan: Plan,
     sources: Vec<Source>,
     inputs: Vec<PathBuf>,

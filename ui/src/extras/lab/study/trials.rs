@@ -8,7 +8,7 @@ use nima_study::trials::Trials;
 use super::Asked;
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::extras::lab) struct Arguments {
     /// The table (CSV): a row per trial with `participant`, `condition`, if known `trial`, and a column per measure
     #[arg(value_name = "TRIALS.csv")]
     table: PathBuf,

@@ -8,10 +8,11 @@ use nima_machine::rig::Side;
 use nima_recording::tip_force::MOST_ROWS;
 use nima_study::validation::{Options, isolation::ROWS, paper};
 
-use super::{super::motion, Asked, Results, clocks::Clocks};
+use super::{Asked, Results, clocks::Clocks};
+use crate::{command::setup::side, extras::lab::motion};
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Validation {
+pub(in crate::extras::lab) struct Validation {
     /// Seed of the simulated rig and of the training
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -33,7 +34,7 @@ pub(in crate::command) struct Validation {
     #[arg(long, value_name = "FILE", requires = "paper")]
     recording: Vec<PathBuf>,
     /// Which arm of the sessions, right or left (needed where one has both)
-    #[arg(long, value_name = "ARM", value_parser = motion::side, requires = "recording")]
+    #[arg(long, value_name = "ARM", value_parser = side, requires = "recording")]
     arm: Option<Side>,
     /// Other column names in the recordings, with an optional factor: `x=px_mm*0.001`
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]", requires = "recording")]

@@ -7,7 +7,7 @@ use nima_recording::store::utc_now;
 use nima_user_study::Study;
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::extras::user_studies) struct Arguments {
     /// The folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,

@@ -1,9 +1,10 @@
-//! `nima user-study`: a study from its file to the last questionnaire. A file for each subcommand in `user_study/`.
+//! `nima user-study`: a study from its file to the last questionnaire. A file for each subcommand.
 
 mod exclude;
 mod new;
 mod next;
 mod note;
+pub(super) mod report;
 mod simulate;
 mod status;
 mod table;

@@ -7,11 +7,11 @@ use serde_json::json;
 
 use crate::{
     command::output,
-    user_study::{create, study_file},
+    extras::user_studies::study::{create, study_file},
 };
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::extras::user_studies) struct Arguments {
     /// Study: `paper`, `short`, or a TOML file
     #[arg(value_name = "STUDY")]
     file: String,

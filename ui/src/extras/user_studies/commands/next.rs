@@ -10,12 +10,12 @@ use serde_json::json;
 
 use crate::{
     command::output,
+    extras::user_studies::study::{next_in_words, plain_hand, run_virtual},
     leaving::Leave,
-    user_study::{next_in_words, plain_hand, run_virtual},
 };
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::extras::user_studies) struct Arguments {
     /// The folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,

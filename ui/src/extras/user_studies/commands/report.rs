@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use nima_user_study::Study;
 
-use super::output;
-use crate::study_report;
+use crate::command::output;
+use crate::extras::user_studies::report;
 
 #[derive(Debug, Args)]
-pub(super) struct Arguments {
+pub(in crate::extras::user_studies) struct Arguments {
     /// The folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
@@ -21,10 +21,10 @@ pub(super) struct Arguments {
     all: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+pub(in crate::extras::user_studies) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Arguments { study, out, all } = arguments;
     let study = Study::read(study)?;
     let out = out.clone().unwrap_or_else(|| study.folder().join("report"));
-    let page = study_report::write(&study, &out, *all)?;
+    let page = report::write(&study, &out, *all)?;
     output::line(&format!("written: {}", page.display()))
 }

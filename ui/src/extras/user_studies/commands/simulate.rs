@@ -9,12 +9,12 @@ use nima_user_study::{Step, Study, simulated::Person};
 
 use crate::{
     command::output,
+    extras::user_studies::study::{made, run_virtual},
     leaving::Leave,
-    user_study::{made, run_virtual},
 };
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::extras::user_studies) struct Arguments {
     /// The folder of the study, in which no real person has taken part
     #[arg(value_name = "DIR")]
     study: PathBuf,

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::command::output;
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::extras::user_studies) struct Arguments {
     /// The folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,

@@ -10,7 +10,7 @@ use nima_user_study::{Study, Table};
 use crate::command::output;
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::extras::user_studies) struct Arguments {
     /// The folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,

@@ -10,7 +10,7 @@ use serde_json::json;
 use crate::{command::output, telling::tell};
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::extras::user_studies) struct Arguments {
     /// The folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,

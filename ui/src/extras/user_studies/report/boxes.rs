@@ -3,7 +3,8 @@
 use std::{collections::BTreeMap, fmt::Write as _};
 
 use nima_analysis::Summary;
-use nima_study::{picture::COLOURS, trials::Table};
+use nima_charts::COLOURS;
+use nima_study::trials::Table;
 
 use crate::report::{html::escape, plots::step};
 

@@ -28,14 +28,14 @@ use crate::{
     },
 };
 
-pub(crate) const PAGE: &str = "report.html";
+pub(super) const PAGE: &str = "report.html";
 const TRIALS: &str = "trials.csv";
 const QUESTIONNAIRES: &str = "questionnaires.csv";
 /// Scores of questionnaires that are compared; the single scales of the NASA-TLX are in the table alone.
 const SCORES: [&str; 4] = ["nasa_tlx_weighted", "nasa_tlx_raw", "sus", "realism"];
 
 /// Writes the report of a study into a folder, which is made if it is missing; gives the page.
-pub(crate) fn write(study: &Study, out: &Path, all: bool) -> anyhow::Result<PathBuf> {
+pub(super) fn write(study: &Study, out: &Path, all: bool) -> anyhow::Result<PathBuf> {
     let journal = study.folder().join(nima_user_study::JOURNAL);
     output::folder(out, &[PAGE, TRIALS, QUESTIONNAIRES], &[&journal])?;
     let (trials, questionnaires) = (study.trials(), study.questionnaires());

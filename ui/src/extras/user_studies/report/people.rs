@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use nima_charts::{Axis, Chart, Series, Style, svg};
 use nima_score::{LearningCurve, Shape, Standing};
-use nima_study::picture::{Axis, Chart, Series, Style, svg};
 use nima_user_study::{Answers, Exclusion, Learning, Study, Table};
 
 use crate::report::html::{digits, escape, table};

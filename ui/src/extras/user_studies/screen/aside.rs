@@ -14,10 +14,10 @@ use crate::{
     console::{
         opener,
         start::Looked,
-        text, theme,
+        theme,
         widgets::{card, small},
     },
-    study_report,
+    extras::user_studies::{report, text},
 };
 
 /// The folder of the report in that of the study.
@@ -54,7 +54,7 @@ impl Aside {
                 self.opened.forget();
                 self.report.begin(&ctx, move || {
                     let study = Study::read(&folder).map_err(|error| error.to_string())?;
-                    study_report::write(&study, &folder.join(REPORT), false).map_err(|error| format!("{error:#}"))
+                    report::write(&study, &folder.join(REPORT), false).map_err(|error| format!("{error:#}"))
                 });
             }
             let told = self.report.found().map(|found| match found {
@@ -118,7 +118,7 @@ impl Aside {
 
 /// The report that was written last.
 fn written_before(study: &Study) -> Option<PathBuf> {
-    let page = study.folder().join(REPORT).join(study_report::PAGE);
+    let page = study.folder().join(REPORT).join(report::PAGE);
     page.is_file().then_some(page)
 }
 

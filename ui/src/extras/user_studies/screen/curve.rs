@@ -4,9 +4,12 @@ use egui::{Label, Ui};
 use egui_plot::{AxisHints, Line, MarkerShape, Plot, PlotBounds, PlotPoints, Points};
 use nima_user_study::Learning;
 
-use crate::console::{
-    text, theme,
-    widgets::{small, still, weak},
+use crate::{
+    console::{
+        theme,
+        widgets::{small, still, weak},
+    },
+    extras::user_studies::text,
 };
 
 const HEIGHT: f32 = 190.0;

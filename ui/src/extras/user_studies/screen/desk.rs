@@ -5,10 +5,13 @@ use nima_machine::config::RigConfig;
 use nima_recording::store::utc_now;
 use nima_user_study::{Step, Study, StudyError};
 
-use super::{Wish, aside::Aside, column, curve::curve_ui, field_ui, questions, rest, trial::Trial};
-use crate::console::{
-    text, theme,
-    widgets::{card, next_button, small, weak},
+use super::{Leaves, aside::Aside, column, curve::curve_ui, field_ui, questions, rest, trial::Trial};
+use crate::{
+    console::{
+        theme,
+        widgets::{card, next_button, small, weak},
+    },
+    extras::user_studies::text,
 };
 
 /// Widths of the columns of participants and of the study.
@@ -17,7 +20,7 @@ const ASIDE: f32 = 300.0;
 
 /// Who moves the instruments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::console) enum Hand {
+pub(super) enum Hand {
     /// The participant, from the screen.
     Mouse,
     /// The simulation; marked as simulated.
@@ -30,7 +33,7 @@ pub(in crate::console) enum Hand {
 
 impl Hand {
     /// Nobody takes part.
-    pub(in crate::console) const fn is_simulated(self) -> bool {
+    pub(super) const fn is_simulated(self) -> bool {
         matches!(self, Self::Simulated | Self::Emulated)
     }
 
@@ -55,8 +58,8 @@ enum Page {
 
 /// An open study.
 #[derive(Debug)]
-pub(in crate::console) struct Desk {
-    pub(in crate::console) study: Study,
+pub(super) struct Desk {
+    pub(super) study: Study,
     /// The participant whose next step it is.
     chosen: String,
     hand: Hand,
@@ -64,7 +67,7 @@ pub(in crate::console) struct Desk {
     /// Answers that were not submitted yet.
     sheet: Option<questions::Sheet>,
     /// What was done last, or why it was not.
-    pub(in crate::console) told: Option<String>,
+    pub(super) told: Option<String>,
     note: String,
     reason: String,
     /// The trial that is to be left out; the participant without one.
@@ -95,7 +98,7 @@ impl Desk {
     }
 
     /// Writes down how a trial ended. The loop must have ended.
-    pub(in crate::console) fn finish(&mut self, trial: Trial) {
+    pub(super) fn finish(&mut self, trial: Trial) {
         let (words, notes) = trial.close(&mut self.study);
         for note in notes {
             self.study.note(Some(&self.chosen), &note, &utc_now()).ok();
@@ -104,7 +107,7 @@ impl Desk {
     }
 
     /// Draws the page; `closed` is why no trial can begin now.
-    pub(super) fn ui(&mut self, ui: &mut Ui, closed: Option<&'static str>, starting: bool) -> Option<Wish> {
+    pub(super) fn ui(&mut self, ui: &mut Ui, closed: Option<&'static str>, starting: bool) -> Option<Leaves> {
         match &self.page {
             Page::Desk => self.desk_ui(ui, closed, starting),
             Page::Rest(rest) => {
@@ -149,7 +152,7 @@ impl Desk {
         self.page = Page::Sheet;
     }
 
-    fn desk_ui(&mut self, ui: &mut Ui, closed: Option<&'static str>, starting: bool) -> Option<Wish> {
+    fn desk_ui(&mut self, ui: &mut Ui, closed: Option<&'static str>, starting: bool) -> Option<Leaves> {
         let mut wish = None;
         let room = ui.available_size();
         ui.horizontal_top(|ui| {
@@ -165,7 +168,7 @@ impl Desk {
             column(ui, "study", vec2(ASIDE, room.y), |ui| {
                 let close = Button::new(text::studies::CLOSE.get()).min_size(vec2(ui.available_width(), 36.0));
                 if ui.add_enabled(!starting, close).on_hover_text(text::studies::CLOSE_HOVER.get()).clicked() {
-                    wish = Some(Wish::Closed);
+                    wish = Some(Leaves::Closed);
                 }
                 ui.add_space(theme::GAP);
                 let Self { study, aside, .. } = self;
@@ -193,7 +196,7 @@ impl Desk {
         }
     }
 
-    fn step_ui(&mut self, ui: &mut Ui, closed: Option<&'static str>, starting: bool) -> Option<Wish> {
+    fn step_ui(&mut self, ui: &mut Ui, closed: Option<&'static str>, starting: bool) -> Option<Leaves> {
         let participant = self.study.plan().participant(&self.chosen).ok()?.clone();
         let step = self.study.next(&self.chosen).ok()?;
         let mut begun = false;
@@ -222,10 +225,10 @@ impl Desk {
         if begun { self.begin(&step) } else { None }
     }
 
-    fn begin(&mut self, step: &Step) -> Option<Wish> {
+    fn begin(&mut self, step: &Step) -> Option<Leaves> {
         self.told = None;
         match step {
-            Step::Practice { .. } | Step::Trial { .. } => return Some(Wish::Trial(self.chosen.clone(), self.hand)),
+            Step::Practice { .. } | Step::Trial { .. } => return Some(Leaves::Trial(self.chosen.clone(), self.hand)),
             Step::Break { least_s } => self.page = Page::Rest(rest::Rest::begin(*least_s)),
             Step::Questionnaire { .. } => self.ask(),
             Step::Running { .. } | Step::Done { .. } => {}

@@ -10,7 +10,7 @@ use nima_user_study::{
 use nima_world::scene::Scene;
 
 use super::list::folder_of;
-use crate::{console::text, user_study};
+use crate::extras::user_studies::{study, text};
 
 /// A study file as the form has it. Parts that are switched off keep their figures.
 #[derive(Debug)]
@@ -92,12 +92,12 @@ fn usual_practice() -> Practice {
 impl Draft {
     /// A ready study; `None` if there is none of this name.
     pub(super) fn of(ready: &'static str) -> Option<Self> {
-        let file = user_study::study_file(ready).ok()?;
+        let file = study::study_file(ready).ok()?;
         let place = |name: &Option<String>| {
             name.as_ref().and_then(|name| file.conditions.iter().position(|condition| condition.name == *name))
         };
         let practice = file.practice.clone().unwrap_or_else(usual_practice);
-        let task = user_study::scene_of(&file).ok().and_then(|scene| scene.task);
+        let task = study::scene_of(&file).ok().and_then(|scene| scene.task);
         let own = file.task.is_some().then(|| Place::of(&file.scene, file.task.clone())).flatten();
         let scenes: Vec<Place> =
             own.into_iter().chain(Scene::names().filter_map(|name| Place::of(name, None))).collect();
@@ -143,7 +143,7 @@ impl Draft {
         self.measures = place.measures();
         (self.takes_few, self.file.task) = (false, place.task);
         self.file.scene = place.of;
-        self.task = user_study::scene_of(&self.file()).ok().and_then(|scene| scene.task);
+        self.task = study::scene_of(&self.file()).ok().and_then(|scene| scene.task);
         let known = |key: &String| self.measures.iter().any(|measure| measure.key == *key);
         self.file.secondary.retain(known);
         self.file.exclusion.retain(|rule| known(&rule.measure));
@@ -220,13 +220,13 @@ pub(super) fn with_mode(condition: &mut Condition, mode: Mode) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::user_study::{READY, mistakes};
+    use crate::extras::user_studies::study::{READY, mistakes};
 
     #[test]
     fn a_ready_study_that_nobody_changed_is_what_its_file_says() {
         for ready in READY {
             let draft = Draft::of(ready).unwrap();
-            assert_eq!(draft.file(), user_study::study_file(ready).unwrap());
+            assert_eq!(draft.file(), study::study_file(ready).unwrap());
             assert_eq!(mistakes(&draft.file()), [""; 0]);
         }
     }

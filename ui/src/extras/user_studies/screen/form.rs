@@ -14,10 +14,13 @@ use super::{
 };
 use crate::{
     console::{
-        text, theme,
+        theme,
         widgets::{card, next_button, small, weak},
     },
-    user_study::{self, READY},
+    extras::user_studies::{
+        study::{self, READY},
+        text,
+    },
     words::{mode_meaning, mode_name},
 };
 
@@ -101,11 +104,11 @@ impl Form {
     /// All that is wrong is told at once.
     fn make(&mut self, data: &Path) -> Option<Done> {
         let file = self.draft.file();
-        self.told = user_study::mistakes(&file);
+        self.told = study::mistakes(&file);
         if !self.told.is_empty() {
             return None;
         }
-        match user_study::create(&self.draft.place(data), &file) {
+        match study::create(&self.draft.place(data), &file) {
             Ok(study) => Some(Done::Made(Box::new(study))),
             Err(error) => {
                 self.told = vec![format!("{error:#}")];

@@ -7,9 +7,12 @@ use nima_recording::store::utc_now;
 use nima_user_study::{Step, Study};
 
 use super::{column, field_ui};
-use crate::console::{
-    text, theme,
-    widgets::{card, next_button, small, weak},
+use crate::{
+    console::{
+        theme,
+        widgets::{card, next_button, small, weak},
+    },
+    extras::user_studies::text,
 };
 
 /// The folder of studies among the user's data.

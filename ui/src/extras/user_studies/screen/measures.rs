@@ -7,9 +7,9 @@ use super::{
     draft::{Draft, Known},
     form::{seconds_ui, whole_ui},
 };
-use crate::console::{
-    text,
-    widgets::{card, small, weak},
+use crate::{
+    console::widgets::{card, small, weak},
+    extras::user_studies::text,
 };
 
 /// Width of the lists of measures that open, points.

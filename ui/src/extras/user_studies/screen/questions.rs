@@ -5,12 +5,15 @@ use nima_user_study::{
     Answers, Label as Letter, PAIRS, Questionnaire, REALISM_ITEM, Ratings, SUS_ITEMS, TLX_SCALES, TlxScale,
 };
 
-use crate::console::{
-    alarms::sentence,
-    text, theme,
-    widgets::{next_button, small, weak},
+use crate::{
+    console::{
+        alarms::sentence,
+        theme,
+        widgets::{next_button, small, weak},
+    },
+    extras::user_studies::text,
+    language::Text,
 };
-use crate::language::Text;
 
 /// Width of a rating's line.
 const SLIDER: f32 = 420.0;

@@ -4,9 +4,12 @@ use std::time::{Duration, Instant};
 
 use egui::{Align, Button, Layout, RichText, Ui, vec2};
 
-use crate::console::{
-    text, theme,
-    widgets::{next_button, small, weak},
+use crate::{
+    console::{
+        theme,
+        widgets::{next_button, small, weak},
+    },
+    extras::user_studies::text,
 };
 
 /// The clock on the screen goes on so often.

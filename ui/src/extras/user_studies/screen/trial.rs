@@ -17,7 +17,7 @@ use nima_session::{
 use nima_user_study::{Phase, Progress, Running, Study, TrialId};
 use nima_world::{Plan, Watched};
 
-use super::Hand;
+use super::desk::Hand;
 use crate::{
     console::{
         alarms,
@@ -25,14 +25,18 @@ use crate::{
         chain,
         live::Live,
         outbox::Outbox,
+        page::{Broken, Run},
         scene3d::{Look, SceneView, scene_ui},
-        text, theme,
+        text::top_bar,
+        theme,
         widgets::weak,
+    },
+    extras::{
+        tasks::scoring::Scoring,
+        user_studies::{study, text},
     },
     objects::OfSimulation,
     pictures, recording,
-    scoring::Scoring,
-    user_study,
 };
 
 /// Height of the line above the field.
@@ -40,8 +44,8 @@ const HEAD: f32 = 64.0;
 
 /// A trial that has begun.
 #[derive(Debug)]
-pub(in crate::console) struct Trial {
-    pub(in crate::console) participant: String,
+pub(super) struct Trial {
+    participant: String,
     running: Running,
     task: TaskFile,
     hand: Hand,
@@ -67,7 +71,7 @@ enum Over {
 }
 
 impl Trial {
-    pub(in crate::console) fn new(participant: &str, running: Running, task: TaskFile, hand: Hand, of: u32) -> Self {
+    pub(super) fn new(participant: &str, running: Running, task: TaskFile, hand: Hand, of: u32) -> Self {
         Self {
             participant: participant.to_owned(),
             running,
@@ -83,17 +87,84 @@ impl Trial {
         }
     }
 
-    /// What who watches a study may know of it: who makes it, and its number; not under which condition.
-    pub(in crate::console) fn name(&self) -> String {
+    /// It is broken off, if it is not over yet.
+    fn break_off_because(&mut self, why: &str) {
+        self.over.get_or_insert_with(|| Over::Broken(why.to_owned()));
+    }
+
+    /// Whether nothing more happens in it.
+    pub(super) const fn is_over(&self) -> bool {
+        self.over.is_some()
+    }
+
+    /// The instruments are moved from the screen.
+    pub(super) fn is_by_mouse(&self) -> bool {
+        self.hand == Hand::Mouse
+    }
+
+    /// Writes down how it ended; gives that in words, and what must be noted besides. The loop must have ended.
+    pub(super) fn close(self, study: &mut Study) -> (String, Vec<String>) {
+        let Self { participant, running, scoring, recorder, over, lost, .. } = self;
+        let trial = running.trial();
+        let mut notes = Vec::new();
+        if let Some(Err(error)) = recorder.map(Recorder::finish) {
+            notes.push(text::studies::record_failed(&chain(&error)));
+        }
+        if lost > 0 {
+            notes.push(text::studies::note_lost(trial, lost));
+        }
+        let why = match over {
+            Some(Over::Done) => None,
+            Some(Over::Broken(why)) => Some(why),
+            None => Some(study::CLOSED.to_owned()),
+        };
+        let closed = study::close(study, running, why, scoring);
+        let shows = study.state().progress(&participant).is_none_or(Progress::shows_result);
+        let words = closed.map_or_else(|error| error.to_string(), |ran| alarms::sentence(&ran.in_words(shows)));
+        (words, notes)
+    }
+
+    fn head_ui(&mut self, ui: &mut Ui, live: &Live) {
+        ui.horizontal_centered(|ui| {
+            ui.vertical(|ui| {
+                ui.add_space(4.0);
+                ui.label(RichText::new(&self.task.name).font(theme::strong(17.0)));
+                ui.label(weak(text::studies::trial(self.running.trial(), self.of, self.running.label())));
+            });
+            ui.add_space(24.0);
+            let elapsed_s = self.scoring.as_ref().map_or(0.0, Scoring::elapsed_s);
+            let clock = text::studies::time_of(elapsed_s, self.task.time_limit_s);
+            ui.label(RichText::new(clock).font(theme::strong(22.0)));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let words = if self.is_asked { text::studies::GIVE_UP_NOW.get() } else { text::studies::GIVE_UP.get() };
+                let button = Button::selectable(self.is_asked, words).frame_when_inactive(true);
+                let button = ui.add_enabled(self.over.is_none(), button.min_size(vec2(150.0, 36.0)));
+                if button.on_hover_text(text::studies::GIVE_UP_HOVER.get()).clicked() {
+                    if self.is_asked {
+                        self.break_off_because(study::GIVEN_UP);
+                    }
+                    self.is_asked = true;
+                }
+                ui.add_space(12.0);
+                ui.add(Label::new(state_words(live)).wrap());
+            });
+        });
+    }
+}
+
+impl Run for Trial {
+    fn participant(&self) -> &str {
+        &self.participant
+    }
+
+    fn name(&self) -> String {
         let TrialId { phase, number, attempt } = self.running.trial();
         let practice = if phase == Phase::Practice { " practice" } else { "" };
         let again = if attempt > 1 { format!(" attempt {attempt}") } else { String::new() };
         format!("{}{practice} {number}{again}", self.participant)
     }
 
-    /// Starts its loop, recorded where the study wants it, and for `audiences`, who must not learn its condition; in simulated time if there is
-    /// a `speed`.
-    pub(in crate::console) fn start(
+    fn start(
         &mut self,
         plan: &Plan,
         speed: Option<f64>,
@@ -123,90 +194,32 @@ impl Trial {
         Ok((handle, watched))
     }
 
-    /// Takes the next tick of a side.
-    pub(in crate::console) fn tick(&mut self, tick: &Tick) {
+    fn tick(&mut self, tick: &Tick) {
         let Some(scoring) = self.scoring.as_mut().filter(|_| self.over.is_none()) else { return };
         let before = self.newest[tick.side.index()].replace(tick.index);
         self.lost += before.map_or(0, |before| tick.index.saturating_sub(before + 1));
         scoring.tick(tick);
         self.over = match tick.state {
-            LoopState::Faulted(fault) => Some(Over::Broken(user_study::ended_by(fault))),
-            LoopState::Stopped => Some(Over::Broken(user_study::STOPPED.to_owned())),
+            LoopState::Faulted(fault) => Some(Over::Broken(study::ended_by(fault))),
+            LoopState::Stopped => Some(Over::Broken(study::STOPPED.to_owned())),
             _ => scoring.is_over().then_some(Over::Done),
         };
     }
 
-    /// It is broken off, if it is not over yet.
-    pub(in crate::console) fn break_off(&mut self, why: &str) {
-        self.over.get_or_insert_with(|| Over::Broken(why.to_owned()));
+    fn break_off(&mut self, why: Broken) {
+        self.break_off_because(match why {
+            Broken::Closed => study::CLOSED,
+            Broken::LoopEnded => study::LOOP_ENDED,
+            Broken::NotStarted => study::NOT_STARTED,
+        });
     }
 
-    /// Whether nothing more happens in it.
-    pub(in crate::console) const fn is_over(&self) -> bool {
-        self.over.is_some()
-    }
-
-    /// The instruments are moved from the screen.
-    pub(in crate::console) fn is_by_mouse(&self) -> bool {
-        self.hand == Hand::Mouse
-    }
-
-    /// Writes down how it ended; gives that in words, and what must be noted besides. The loop must have ended.
-    pub(super) fn close(self, study: &mut Study) -> (String, Vec<String>) {
-        let Self { participant, running, scoring, recorder, over, lost, .. } = self;
-        let trial = running.trial();
-        let mut notes = Vec::new();
-        if let Some(Err(error)) = recorder.map(Recorder::finish) {
-            notes.push(text::studies::record_failed(&chain(&error)));
-        }
-        if lost > 0 {
-            notes.push(text::studies::note_lost(trial, lost));
-        }
-        let why = match over {
-            Some(Over::Done) => None,
-            Some(Over::Broken(why)) => Some(why),
-            None => Some(user_study::CLOSED.to_owned()),
-        };
-        let closed = user_study::close(study, running, why, scoring);
-        let shows = study.state().progress(&participant).is_none_or(Progress::shows_result);
-        let words = closed.map_or_else(|error| error.to_string(), |ran| alarms::sentence(&ran.in_words(shows)));
-        (words, notes)
-    }
-
-    /// The participant's screen, below the top bar.
-    pub(in crate::console) fn ui(&mut self, ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Outbox) {
+    fn ui(&mut self, ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Outbox) {
         view.look = Look::Endoscope;
         view.figures = false;
         let frame = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 6));
         Panel::top("trial").exact_size(HEAD).resizable(false).frame(frame).show(ui, |ui| self.head_ui(ui, live));
         CentralPanel::no_frame().show(ui, |ui| scene_ui(ui, live, view, outbox));
-    }
-
-    fn head_ui(&mut self, ui: &mut Ui, live: &Live) {
-        ui.horizontal_centered(|ui| {
-            ui.vertical(|ui| {
-                ui.add_space(4.0);
-                ui.label(RichText::new(&self.task.name).font(theme::strong(17.0)));
-                ui.label(weak(text::studies::trial(self.running.trial(), self.of, self.running.label())));
-            });
-            ui.add_space(24.0);
-            let elapsed_s = self.scoring.as_ref().map_or(0.0, Scoring::elapsed_s);
-            let clock = text::studies::time_of(elapsed_s, self.task.time_limit_s);
-            ui.label(RichText::new(clock).font(theme::strong(22.0)));
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let words = if self.is_asked { text::studies::GIVE_UP_NOW.get() } else { text::studies::GIVE_UP.get() };
-                let button = Button::selectable(self.is_asked, words).frame_when_inactive(true);
-                let button = ui.add_enabled(self.over.is_none(), button.min_size(vec2(150.0, 36.0)));
-                if button.on_hover_text(text::studies::GIVE_UP_HOVER.get()).clicked() {
-                    if self.is_asked {
-                        self.break_off(user_study::GIVEN_UP);
-                    }
-                    self.is_asked = true;
-                }
-                ui.add_space(12.0);
-                ui.add(Label::new(state_words(live)).wrap());
-            });
-        });
     }
 }
 
@@ -217,8 +230,8 @@ fn state_words(live: &Live) -> &'static str {
         LoopState::Stopped | LoopState::Faulted(_) => text::studies::STATE_STOPPED.get(),
         LoopState::Idle => text::studies::STATE_IDLE.get(),
         LoopState::Ready => text::studies::STATE_HOLD.get(),
-        LoopState::Clutched => text::top_bar::CLUTCHED_MEANING.get(),
-        LoopState::Disconnected => text::top_bar::DISCONNECTED_MEANING.get(),
+        LoopState::Clutched => top_bar::CLUTCHED_MEANING.get(),
+        LoopState::Disconnected => top_bar::DISCONNECTED_MEANING.get(),
         LoopState::Engaged if live.scene.is_searched() => text::studies::KEYS_SEARCH.get(),
         LoopState::Engaged => "",
     }

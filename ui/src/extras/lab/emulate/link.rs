@@ -13,10 +13,7 @@ use nima_network::{
 use serde::Deserialize;
 
 use super::Endpoint;
-use crate::{
-    command::{network::address, output},
-    leaving::Leave,
-};
+use crate::{command::output, extras::two_machines::network::address, leaving::Leave};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]

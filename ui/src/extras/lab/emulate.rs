@@ -19,10 +19,9 @@ use clap::Args;
 use nima_world::emulators::{ALONE, EmulatedFault, Serving, Settings};
 use serde::Serialize;
 
-use super::output;
 #[cfg(unix)]
-use super::setup::default_scene;
-use crate::{leaving::Leave, telling::tell};
+use crate::command::setup::default_scene;
+use crate::{command::output, leaving::Leave, telling::tell};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

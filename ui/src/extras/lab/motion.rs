@@ -41,8 +41,3 @@ fn is_session(path: &Path) -> bool {
     };
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap")) || begins_so()
 }
-
-/// An arm, as it is named on the command line.
-pub(super) fn side(text: &str) -> Result<Side, String> {
-    Side::ALL.into_iter().find(|side| side.word() == text).ok_or_else(|| "give right or left".to_owned())
-}

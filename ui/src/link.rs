@@ -6,12 +6,10 @@ use egui::Ui;
 use nima_machine::{config::RigConfig, rig::Ends, runtime::Assembly};
 use nima_world::scene::Scene;
 
-use crate::by_itself::Arm;
-
 /// How a machine with the arm is reached.
 pub(crate) trait Way: Sync {
-    /// Where the arm of this host is. A host that cannot be found is another machine; opening the line reports it.
-    fn arm(&self, host: &str) -> Arm;
+    /// Whether this host is this machine. One that cannot be found is another machine; opening the line reports it.
+    fn is_loopback(&self, host: &str) -> bool;
 
     /// Opens the line to this host, and changes the rig to what is at this machine.
     fn open(&self, host: &str, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Box<dyn Line>>;

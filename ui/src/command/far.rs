@@ -12,7 +12,7 @@ use crate::{
 
 /// Where the arm is.
 #[derive(Clone, Debug, Default, Args)]
-pub(super) struct ToFollower {
+pub(crate) struct ToFollower {
     /// The arm and its sensor are at this machine, where `nima follower` runs; here are the handle and the screen
     #[arg(long, value_name = "HOST[:PORT]")]
     follower: Option<String>,
@@ -22,7 +22,8 @@ impl ToFollower {
     /// Where the arm is.
     pub(super) fn arm(&self) -> Arm {
         let Some(host) = &self.follower else { return Arm::Here };
-        extras::part(Extra::way).map_or(Arm::Elsewhere, |way| way.arm(host))
+        let is_loopback = extras::part(Extra::way).is_some_and(|way| way.is_loopback(host));
+        if is_loopback { Arm::Loopback } else { Arm::Elsewhere }
     }
 
     /// Opens the line, if one is asked for; changes the rig to what is here.

@@ -61,49 +61,49 @@ const TRUTH_HZ: u32 = 200;
 #[expect(clippy::struct_excessive_bools, reason = "switches of a command")]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    setup: Setup,
+    pub(crate) setup: Setup,
     /// Seconds to run (default: until Ctrl-C; 60 with --virtual)
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
-    seconds: Option<f64>,
+    pub(crate) seconds: Option<f64>,
     /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,
     /// kalman, autoregressive (default: the rig's)
     #[arg(long)]
-    mode: Option<Mode>,
+    pub(crate) mode: Option<Mode>,
     /// One-way delay of the link in ms (default: the rig's)
     #[arg(long, value_name = "D", allow_negative_numbers = true)]
-    delay_ms: Option<f64>,
+    pub(crate) delay_ms: Option<f64>,
     /// Let the force on each axis depend on the motion of all axes (matched and best; slower)
     #[arg(long)]
-    cross_talk: bool,
+    pub(crate) cross_talk: bool,
     /// Compute every mode and compare their errors (default: only the mode that is rendered, beside delayed reflection)
     #[arg(long)]
-    compare: bool,
+    pub(crate) compare: bool,
     /// Run on a virtual clock, as fast as this computer can
     #[arg(long = "virtual", conflicts_with_all = ["live", "share", "igtl", "lsl", "follower"])]
-    virtual_clock: bool,
+    pub(crate) virtual_clock: bool,
     #[command(flatten)]
-    late: Late,
+    pub(crate) late: Late,
     /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
     #[arg(long, value_name = "CLASS")]
-    scheduling: Option<SchedulingClass>,
+    pub(crate) scheduling: Option<SchedulingClass>,
     /// Record the session into a new file, from which `nima replay` repeats it bit for bit
     #[arg(long, value_name = "FILE.mcap")]
-    record: Option<PathBuf>,
+    pub(crate) record: Option<PathBuf>,
     /// Go on in this new file when that one can no longer be written: best on another disk
     #[arg(long, value_name = "FILE.mcap", requires = "record")]
-    second_place: Option<PathBuf>,
+    pub(crate) second_place: Option<PathBuf>,
     #[command(flatten)]
-    watching: Watching,
+    pub(crate) watching: Watching,
     #[command(flatten)]
-    network: ToFollower,
+    pub(crate) network: ToFollower,
     /// Print the results as one JSON object
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
 }
 
 /// Late ticks of the virtual clock.
 #[derive(Debug, Default, Args)]
-struct Late {
+pub(crate) struct Late {
     /// When the ticks of the virtual clock wake: perfect, quiet or busy (as recorded on such a computer), late-PERCENT (this fraction is
     /// 0.5 to 4 ms late), stall-MS (a pause about once a second)
     #[arg(long, value_name = "NAME", default_value_t, requires = "virtual_clock")]
@@ -118,18 +118,6 @@ impl Arguments {
     fn virtual_clock(&self) -> Option<VirtualClock> {
         let Late { clock: profile, clock_seed: seed } = self.late;
         self.virtual_clock.then_some(VirtualClock { profile, seed })
-    }
-
-    /// Of the machine with the arm: what is rendered, and how, is the console's.
-    pub(crate) fn of_follower(
-        setup: Setup,
-        seconds: Option<f64>,
-        scheduling: Option<SchedulingClass>,
-        record: Option<PathBuf>,
-        watching: Watching,
-        json: bool,
-    ) -> Self {
-        Self { setup, seconds, scheduling, record, watching, json, ..Self::default() }
     }
 }
 

@@ -27,7 +27,7 @@ pub mod monitor;
 pub(crate) mod opener;
 pub mod outbox;
 pub(crate) mod overview;
-pub(crate) mod page;
+pub mod page;
 mod palette;
 pub mod panels;
 pub(crate) mod past;

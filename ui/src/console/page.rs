@@ -14,7 +14,7 @@ use nima_world::{Plan, scene::Scene};
 use super::{app::Started, live::Live, outbox::Outbox, scene3d::SceneView, start::Choice};
 
 /// A page of the window.
-pub(crate) trait Page: Debug {
+pub trait Page: Debug {
     /// Name and purpose on the button that opens it.
     fn name(&self) -> [&'static str; 2];
 
@@ -53,7 +53,7 @@ pub(crate) trait Page: Debug {
 }
 
 /// A run of a page, with a loop of its own.
-pub(crate) trait Run {
+pub trait Run {
     /// Who moves the instruments.
     fn participant(&self) -> &str;
 
@@ -80,7 +80,7 @@ pub(crate) trait Run {
 
 /// Why a run was broken off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Broken {
+pub enum Broken {
     /// The window was closed.
     Closed,
     /// The loop ended.
@@ -90,38 +90,38 @@ pub(crate) enum Broken {
 }
 
 /// What a page is drawn from.
-pub(crate) struct Room<'a> {
+pub struct Room<'a> {
     /// The user's data.
-    pub(crate) folder: Option<&'a Path>,
+    pub folder: Option<&'a Path>,
     /// Folders elsewhere that were opened before.
-    pub(crate) known: &'a mut Vec<PathBuf>,
+    pub known: &'a mut Vec<PathBuf>,
     /// Why no run can begin now.
-    pub(crate) closed: Option<&'static str>,
+    pub closed: Option<&'static str>,
     /// The arm is at another machine.
-    pub(crate) is_over_a_line: bool,
+    pub is_over_a_line: bool,
     /// A rig is being started.
-    pub(crate) is_starting: bool,
+    pub is_starting: bool,
 }
 
 /// What the machine was given back with: what ran before.
 #[derive(Debug)]
-pub(crate) struct Closed(pub(crate) Option<Choice>);
+pub struct Closed(pub Option<Choice>);
 
 /// How the window stands.
-pub(crate) struct Now<'a> {
+pub struct Now<'a> {
     /// What runs.
-    pub(crate) running: &'a Choice,
+    pub running: &'a Choice,
     /// The loop has ended, by itself or because the process was asked to end.
-    pub(crate) ended: Option<Broken>,
+    pub ended: Option<Broken>,
     /// A stop or a fault is latched.
-    pub(crate) is_latched: bool,
+    pub is_latched: bool,
     /// A rig is being started.
-    pub(crate) is_starting: bool,
+    pub is_starting: bool,
 }
 
 /// What a page wants of the window.
 #[derive(Debug)]
-pub(crate) enum Wish {
+pub enum Wish {
     /// This rig and scene in place of what runs.
     Start(Choice),
     /// The run that [`Page::prepare`] prepares.
@@ -131,11 +131,11 @@ pub(crate) enum Wish {
 }
 
 /// A run that is to begin.
-pub(crate) struct Prepared {
+pub struct Prepared {
     /// Its rig; `None` if that rig does not allow it, whose reason nobody must learn.
-    pub(crate) rig: Option<RigConfig>,
+    pub rig: Option<RigConfig>,
     /// Its scene.
-    pub(crate) scene: Scene,
+    pub scene: Scene,
     /// The instruments are moved from the screen.
-    pub(crate) is_by_mouse: bool,
+    pub is_by_mouse: bool,
 }

@@ -30,7 +30,6 @@ pub(crate) use channels::{channel_group, channel_name, marker};
 pub(crate) use commands::operation;
 pub(crate) use disk::disk_full_in;
 pub(crate) use events::event;
-pub(crate) use faults::trouble_of;
 pub(crate) use findings::finding_words;
 pub(crate) use frames::{axes_words, cause, phase};
 pub(crate) use gates::gate_words;

@@ -7,7 +7,7 @@
 mod attend;
 pub(crate) mod checks;
 mod correspondence;
-mod frame;
+pub(crate) mod frame;
 mod frames;
 mod gravity;
 pub(crate) mod pictures;
@@ -43,7 +43,7 @@ pub use frames::{FrameCalibration, FrameKept, FrameSaving, FrameWizard, Kind, Su
 pub use gravity::GravityWizard;
 pub use tip_force::TipForceWizard;
 
-pub(crate) use frame::{Frame, Step, Wish, Wizard};
+pub(crate) use frame::Wizard;
 
 use self::frame::wizard_ui;
 use super::{scene3d::side_name, theme, widgets::small};

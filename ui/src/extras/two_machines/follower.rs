@@ -38,7 +38,8 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: Arguments) -> anyhow::Result<()> {
     let at = network::listening(arguments.listen.as_deref())?;
     let Arguments { setup, seconds, scheduling, record, watching, json, .. } = arguments;
-    let run = run::Arguments::of_follower(setup, seconds, scheduling, record, watching, json);
+    // What is rendered, and how, is the console's.
+    let run = run::Arguments { setup, seconds, scheduling, record, watching, json, ..run::Arguments::default() };
     run::run_with(&run, |rig, scene| {
         let line = network::listen(rig, scene, at)?;
         tell(format_args!("the follower listens at {at}"));

@@ -16,20 +16,14 @@ use nima_network::{
 use nima_world::scene::Scene;
 
 use super::line::NetworkLine;
-use crate::{
-    by_itself::Arm,
-    link::{Line, Way},
-};
+use crate::link::{Line, Way};
 
 /// The way to a machine where `nima follower` runs.
 pub(super) struct Network;
 
 impl Way for Network {
-    fn arm(&self, host: &str) -> Arm {
-        match address(host) {
-            Ok(follower) if follower.ip().is_loopback() => Arm::Loopback,
-            _ => Arm::Elsewhere,
-        }
+    fn is_loopback(&self, host: &str) -> bool {
+        address(host).is_ok_and(|follower| follower.ip().is_loopback())
     }
 
     fn open(&self, host: &str, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Box<dyn Line>> {

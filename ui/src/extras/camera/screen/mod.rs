@@ -33,7 +33,10 @@ use super::{
 use crate::console::{
     text,
     widgets::card,
-    wizards::{Binding, Frame, Saving, Step, Wish, Wizard},
+    wizards::{
+        Binding, Saving, Wizard,
+        frame::{Frame, Step, Wish},
+    },
 };
 
 const STEPS: [Step; 5] = [

@@ -1,5 +1,7 @@
 //! The bridges to other programs: `OpenIGTLink`, and marks over the Lab Streaming Layer.
 
+mod words;
+
 use std::{net::SocketAddr, path::Path, time::Duration};
 
 use nima_bridges::{
@@ -16,8 +18,9 @@ use crate::{
     recording::PROGRAM,
     telling::tell,
     watching::{INSTALLED, Server, Show, Shown},
-    words::{Remedy as _, trouble_of},
+    words::Remedy as _,
 };
+use words::trouble_of;
 
 /// The extra.
 pub(super) struct Bridges;

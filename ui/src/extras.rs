@@ -34,6 +34,7 @@ use crate::{
     },
     link::Way,
     scoring::Scorer,
+    truth::Comparison,
     watching::{Server, Show},
 };
 
@@ -102,9 +103,12 @@ pub(crate) trait Extra: Sync {
         None
     }
 
-    /// Whether it has the command that emulates the devices of a rig.
-    fn emulates(&self) -> bool {
-        false
+    /// Called once, before any command runs.
+    fn begin(&self) {}
+
+    /// Compares forces with the true ones, which the command `emulate` of this extra tells.
+    fn comparison(&self) -> Option<Box<dyn Comparison>> {
+        None
     }
 
     /// The wizard of the endoscope's camera.
@@ -140,7 +144,14 @@ pub(crate) fn part<T>(mut offered: impl FnMut(&'static dyn Extra) -> Option<T>) 
 
 /// Whether this build can emulate the devices of a rig.
 pub(crate) fn emulates() -> bool {
-    BUILT.iter().any(|extra| extra.emulates())
+    part(Extra::comparison).is_some()
+}
+
+/// Lets every extra begin, before any command runs.
+pub(crate) fn begin() {
+    for extra in BUILT {
+        extra.begin();
+    }
 }
 
 /// The command line with the commands of the extras.
@@ -165,4 +176,33 @@ pub(crate) fn not_built(what: &str, feature: &str) -> anyhow::Error {
     anyhow::anyhow!(
         "this build has no {what}; build it with `cargo build --release --locked -p nima-console --features {feature}`"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[derive(Debug, clap::Parser)]
+    struct Own {
+        #[command(subcommand)]
+        command: OwnCommand,
+    }
+
+    #[derive(Debug, Subcommand)]
+    enum OwnCommand {
+        Calibrate,
+    }
+
+    /// A build without an extra can only name the feature of a command that is listed.
+    #[test]
+    fn every_command_of_an_extra_is_listed() {
+        let line = commands(Own::command());
+        let own = line.get_subcommands().filter(|command| command.get_name() != "calibrate");
+        let below = line.find_subcommand("calibrate").unwrap().get_subcommands();
+        let mut known: Vec<&str> = own.chain(below).map(clap::Command::get_name).collect();
+        known.sort_unstable();
+        assert_eq!(known, COMMANDS.map(|(command, _)| command));
+    }
 }

@@ -16,5 +16,6 @@ mod recording;
 mod report;
 mod scoring;
 pub mod telling;
+mod truth;
 mod watching;
 mod words;

@@ -18,7 +18,6 @@ pub(crate) mod setup;
 mod shells;
 pub(crate) mod stretch;
 mod train;
-pub(crate) mod truth;
 
 use std::process::ExitCode;
 
@@ -113,7 +112,7 @@ pub fn main() -> ExitCode {
         // --help and --version.
         Err(error) => error.exit(),
     };
-    nima_world::emulated::provide_handles();
+    extras::begin();
     let result = extras::part(|extra| extra.run(&given)).unwrap_or_else(|| run_own(&given));
     match result {
         Ok(()) => ExitCode::SUCCESS,

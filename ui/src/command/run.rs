@@ -23,7 +23,7 @@ use nima_machine::{
 };
 use nima_recording::store::WristId;
 use nima_session::outlet::Destination;
-use nima_world::{Plan, Watched, emulated::TipError, scene::Scene};
+use nima_world::{Plan, Watched, scene::Scene};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -33,23 +33,18 @@ use self::{
     status::{StatusLine, Troubles},
     words::in_words,
 };
-use super::{
-    ending::Reasons,
-    far::ToFollower,
-    output,
-    setup::Setup,
-    truth::{self, Comparison},
-};
+use super::{ending::Reasons, far::ToFollower, output, setup::Setup};
 use crate::{
     by_itself::{self, Arm, Starter},
     console::in_force::InForce,
     emulators::Emulators,
-    extras,
+    extras::{self, Extra},
     leaving::Leave,
     link::{Line, LineDoor},
     objects::OfSimulation,
     scoring::Scorer,
     telling::tell,
+    truth::{self, Comparison},
     watching::Watching,
     words::{Remedy as _, drift as drift_in_words},
 };
@@ -176,7 +171,7 @@ pub(crate) fn run_with(
         engaging: Engaging::left_to_others(plan.engage || !by_itself),
         reasons: Reasons::default(),
         emulators,
-        comparison: Comparison::default(),
+        comparison: extras::part(Extra::comparison),
         lacking: None,
         line: line.as_ref().map(|line| line.door()),
         scorer: None,
@@ -207,7 +202,6 @@ pub(crate) fn run_with(
     };
     let recorded = recording.end();
     drop(start.emulators.take());
-    let tip_error = start.comparison.figures();
     summary.explain(|fault| [fault.cause(), fault.cure()]);
     let drift = start.in_force.drift();
     let score = start.scorer.take().and_then(Scorer::end);
@@ -217,7 +211,7 @@ pub(crate) fn run_with(
         }
         output::json(&Told {
             summary: &summary,
-            tip_error,
+            tip_error: start.comparison.as_ref().map(|comparison| comparison.figures()).unwrap_or_default(),
             recorded: recorded.as_ref().ok().and_then(Option::as_ref),
             link: start.line.as_ref().and_then(|line| line.figures()),
             score,
@@ -228,8 +222,9 @@ pub(crate) fn run_with(
         let kept = recorded.as_ref().ok().and_then(Option::as_ref).map_or_else(String::new, Recorded::in_words);
         let rows = start.line.as_ref().map(|line| line.rows()).unwrap_or_default();
         let link = rows.iter().fold(String::new(), |all, [name, value]| all + "\n" + name + ": " + value);
+        let tip_error = start.comparison.as_ref().map_or_else(String::new, |comparison| comparison.in_words());
         let is_measured = start.line.as_ref().is_some_and(|line| line.has_reported());
-        output::line(&(in_words(&plan, &summary, is_measured) + &truth::in_words(&tip_error) + &bias + &link + &kept))?;
+        output::line(&(in_words(&plan, &summary, is_measured) + &tip_error + &bias + &link + &kept))?;
     }
     recorded?;
     // Without its calibrations an emulated rig does what it can, and has said what it lacks.
@@ -243,7 +238,7 @@ struct Told<'a> {
     #[serde(flatten)]
     summary: &'a Summary,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    tip_error: Vec<TipError>,
+    tip_error: Vec<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     recorded: Option<&'a Recorded>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -258,7 +253,8 @@ struct Start {
     engaging: Engaging,
     reasons: Reasons,
     emulators: Option<Emulators>,
-    comparison: Comparison,
+    /// Of forces with the true ones, in a build with emulators.
+    comparison: Option<Box<dyn Comparison>>,
     /// What was told to be missing.
     lacking: Option<String>,
     /// To the machine with the other half of the rig.
@@ -287,8 +283,8 @@ impl Start {
 
     /// Compares the forces at the tips with the true ones, where they are known.
     fn compare(&mut self) {
-        if let Some(emulators) = &self.emulators {
-            self.comparison.know(emulators.known());
+        if let (Some(emulators), Some(comparison)) = (&self.emulators, &mut self.comparison) {
+            comparison.hear(&mut emulators.told());
         }
     }
 
@@ -339,7 +335,9 @@ fn on_the_real_clock(
         let seen_s = truth::now_s();
         handle.drain_ticks(|tick| {
             newest = Some(*tick);
-            start.comparison.tick(tick, seen_s);
+            if let Some(comparison) = &mut start.comparison {
+                comparison.tick(tick, seen_s);
+            }
             command = start.watch(tick).or(command);
         });
         handle.drain_events(|event| {

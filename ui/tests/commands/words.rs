@@ -99,7 +99,9 @@ fn every_sentence_is_in_the_text_modules() {
     sources(&root, &mut files);
     let shown = of_extras("screen");
     assert!(shown.len() >= 4, "{shown:?}");
-    shown.iter().for_each(|path| sources(path, &mut files));
+    for path in &shown {
+        sources(path, &mut files);
+    }
     files.sort();
     let mut wrong = Vec::new();
     for path in &files {
@@ -124,7 +126,9 @@ fn every_sentence_is_in_the_text_modules() {
 fn constants() -> Vec<(String, [String; 2])> {
     let mut files = Vec::new();
     sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src/console/text"), &mut files);
-    of_extras("text").iter().for_each(|path| sources(path, &mut files));
+    for path in of_extras("text") {
+        sources(&path, &mut files);
+    }
     let mut constants = Vec::new();
     for path in files {
         let source = std::fs::read_to_string(path).unwrap();

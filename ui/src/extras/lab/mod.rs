@@ -6,11 +6,15 @@ mod motion;
 mod screen;
 mod study;
 mod text;
+mod truth;
 
 use clap::{ArgMatches, Subcommand};
 
 use super::{Extra, given};
-use crate::console::panels::{StripUi, Tile};
+use crate::{
+    console::panels::{StripUi, Tile},
+    truth::Comparison,
+};
 
 /// The extra.
 pub(super) struct Lab;
@@ -40,8 +44,12 @@ impl Extra for Lab {
         })
     }
 
-    fn emulates(&self) -> bool {
-        true
+    fn begin(&self) {
+        nima_world::emulated::provide_handles();
+    }
+
+    fn comparison(&self) -> Option<Box<dyn Comparison>> {
+        Some(Box::new(truth::TipComparison::default()))
     }
 
     fn tradeoff(&self) -> Option<fn() -> Box<dyn Tile>> {

@@ -10,7 +10,7 @@ use crate::scoring::Scorer;
 /// Scores from the first tick in which an arm is engaged.
 #[derive(Debug)]
 pub(crate) struct Scoring {
-    trial: LiveTrial,
+    pub(in crate::extras) trial: LiveTrial,
     watched: Option<Watched>,
 }
 
@@ -24,16 +24,6 @@ impl Scoring {
     pub(crate) fn tick(&mut self, tick: &Tick) {
         self.hear();
         self.trial.tick(tick);
-    }
-
-    /// Whether the task is done, or its time is over: what follows does not count.
-    pub(crate) fn is_over(&self) -> bool {
-        self.trial.is_over()
-    }
-
-    /// Time since the first tick in which an arm was engaged, s.
-    pub(crate) fn elapsed_s(&self) -> f64 {
-        self.trial.elapsed_s()
     }
 
     fn hear(&mut self) {

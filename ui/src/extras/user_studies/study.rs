@@ -204,7 +204,7 @@ pub(super) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, lea
         if let LoopState::Faulted(found) = tick.state {
             fault.get_or_insert(found);
         }
-        (scoring.is_over() || fault.is_some() || leave.is_asked()).then_some(Command::Shutdown)
+        (scoring.trial.is_over() || fault.is_some() || leave.is_asked()).then_some(Command::Shutdown)
     };
     runtime::run_virtual(Assembly { tap, ..assembly }, task.time_limit_s + ENGAGES_S, each);
     recorder.map_or(Ok(()), |mut recorder| {

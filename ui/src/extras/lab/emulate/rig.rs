@@ -12,13 +12,7 @@ use nima_world::{
     scene::Scene,
 };
 
-use crate::{
-    command::{
-        output,
-        truth::{Known, now_s},
-    },
-    telling::tell,
-};
+use crate::{command::output, extras::lab::truth::Known, telling::tell, truth::now_s};
 
 pub(super) fn run(rig: &str, scene: &str, until_input_ends: bool) -> anyhow::Result<()> {
     let rig = RigConfig::load(rig)?;

@@ -132,7 +132,7 @@ impl Trial {
                 ui.label(weak(text::studies::trial(self.running.trial(), self.of, self.running.label())));
             });
             ui.add_space(24.0);
-            let elapsed_s = self.scoring.as_ref().map_or(0.0, Scoring::elapsed_s);
+            let elapsed_s = self.scoring.as_ref().map_or(0.0, |scoring| scoring.trial.elapsed_s());
             let clock = text::studies::time_of(elapsed_s, self.task.time_limit_s);
             ui.label(RichText::new(clock).font(theme::strong(22.0)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -202,7 +202,7 @@ impl Run for Trial {
         self.over = match tick.state {
             LoopState::Faulted(fault) => Some(Over::Broken(study::ended_by(fault))),
             LoopState::Stopped => Some(Over::Broken(study::STOPPED.to_owned())),
-            _ => scoring.is_over().then_some(Over::Done),
+            _ => scoring.trial.is_over().then_some(Over::Done),
         };
     }
 

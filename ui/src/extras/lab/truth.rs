@@ -1,13 +1,9 @@
-//! The loop's force at the tip beside the true one, which the emulators tell from their own process.
+//! Compares the loop's force at the tip with the true one.
 //!
 //! The two processes share the time of day: it says which tick belongs to a true force. A tick is never seen before it was made, so
 //! the smallest difference between the time of day and the loop's time is how the two clocks stand.
 
-use std::{
-    collections::VecDeque,
-    fmt::Write as _,
-    time::{SystemTime, UNIX_EPOCH},
-};
+use std::{collections::VecDeque, fmt::Write as _};
 
 use nalgebra::Vector3;
 use nima_machine::{
@@ -17,6 +13,8 @@ use nima_machine::{
 use nima_world::emulated::{DoubtShares, TipError, TipErrors};
 use serde::{Deserialize, Serialize};
 
+use crate::truth::Comparison;
+
 /// Ticks of a side that are kept for the truth about them: two seconds at 1 kHz.
 const KEPT: usize = 2000;
 /// A true force is compared with a tick at most this far from it, s.
@@ -24,23 +22,18 @@ const NEAR_S: f64 = 0.002;
 
 /// The true force at a tip.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(crate) struct Known {
+pub(super) struct Known {
     /// The side.
-    pub(crate) truth: Side,
+    pub(super) truth: Side,
     /// Time of day, s since 1970.
-    pub(crate) at_s: f64,
+    pub(super) at_s: f64,
     /// Force of the tissue on the tip, N (`world`).
-    pub(crate) tip_n: [f64; 3],
-}
-
-/// The time of day, s since 1970.
-pub(crate) fn now_s() -> f64 {
-    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64())
+    pub(super) tip_n: [f64; 3],
 }
 
 /// Compares ticks with what is known about them.
 #[derive(Debug)]
-pub(super) struct Comparison {
+pub(super) struct TipComparison {
     errors: TipErrors,
     recent: [VecDeque<Tick>; SIDES],
     waiting: VecDeque<Known>,
@@ -48,7 +41,7 @@ pub(super) struct Comparison {
     began_s: f64,
 }
 
-impl Default for Comparison {
+impl Default for TipComparison {
     fn default() -> Self {
         Self {
             errors: TipErrors::default(),
@@ -59,19 +52,9 @@ impl Default for Comparison {
     }
 }
 
-impl Comparison {
-    /// Adds a tick that is seen at this time of day, s.
-    pub(super) fn tick(&mut self, tick: &Tick, seen_s: f64) {
-        self.began_s = self.began_s.min(seen_s - tick.t_s);
-        let recent = &mut self.recent[tick.side.index()];
-        if recent.len() == KEPT {
-            recent.pop_front();
-        }
-        recent.push_back(*tick);
-    }
-
+impl TipComparison {
     /// Adds what is known, and compares what can be compared by now.
-    pub(super) fn know(&mut self, known: impl Iterator<Item = Known>) {
+    fn know(&mut self, known: impl Iterator<Item = Known>) {
         self.waiting.extend(known);
         while let Some(known) = self.waiting.front().copied() {
             let (recent, t_s) = (&self.recent[known.truth.index()], known.at_s - self.began_s);
@@ -87,15 +70,33 @@ impl Comparison {
             }
         }
     }
+}
 
-    /// The figures.
-    pub(super) fn figures(&self) -> Vec<TipError> {
-        self.errors.figures()
+impl Comparison for TipComparison {
+    fn tick(&mut self, tick: &Tick, seen_s: f64) {
+        self.began_s = self.began_s.min(seen_s - tick.t_s);
+        let recent = &mut self.recent[tick.side.index()];
+        if recent.len() == KEPT {
+            recent.pop_front();
+        }
+        recent.push_back(*tick);
+    }
+
+    fn hear(&mut self, told: &mut dyn Iterator<Item = String>) {
+        self.know(told.filter_map(|line| serde_json::from_str(&line).ok()));
+    }
+
+    fn figures(&self) -> Vec<serde_json::Value> {
+        self.errors.figures().iter().filter_map(|error| serde_json::to_value(error).ok()).collect()
+    }
+
+    fn in_words(&self) -> String {
+        in_words(&self.errors.figures())
     }
 }
 
 /// The figures as a table.
-pub(super) fn in_words(figures: &[TipError]) -> String {
+fn in_words(figures: &[TipError]) -> String {
     if figures.is_empty() {
         return String::new();
     }
@@ -154,7 +155,7 @@ mod tests {
         const BEGAN_S: f64 = 1.7e9;
         let ticks = ticks();
         let compared = |late_s: f64| {
-            let mut comparison = Comparison::default();
+            let mut comparison = TipComparison::default();
             for (index, tick) in ticks.iter().enumerate() {
                 // Ticks are seen up to 5 ms after they were made, and the truth comes before the tick that it is about.
                 let known =
@@ -163,7 +164,7 @@ mod tests {
                 comparison.tick(tick, BEGAN_S + tick.t_s + 1e-3 * (index % 6) as f64);
             }
             comparison.know(std::iter::empty());
-            comparison.figures()
+            comparison.errors.figures()
         };
         let engaged = ticks.iter().filter(|tick| tick.state == LoopState::Engaged).count() as u64;
         let figures = compared(0.0);

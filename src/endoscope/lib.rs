@@ -34,6 +34,7 @@ mod reel;
 #[cfg(feature = "h264")]
 mod rtsp;
 mod source;
+mod steady;
 pub mod time_code;
 mod tone;
 mod trouble;
@@ -51,5 +52,6 @@ pub use judge::{FROZEN, LATE, Standing, Wrong};
 pub use plugged::{PluggedCamera, plugged_cameras};
 pub use reel::{Glimpse, Reel, ReelEnd};
 pub use source::{Compressed, Format, Source};
+pub use steady::steadied;
 pub use tone::Tone;
 pub use trouble::Trouble;

@@ -11,5 +11,5 @@ mod settings;
 
 pub use input::{CONFIG_MAX, Input, MODEL_MAX, TABLE_MAX, open_file, open_table, read, read_text};
 pub use output::{check_output, copy_atomically, write_atomically, write_private};
-pub use quote::{PASSAGE, QUOTE, quoted, shortened};
+pub use quote::{PASSAGE, QUOTE, csv_cell, quoted, shortened};
 pub use settings::{Misfit, from_table, from_toml};

@@ -30,6 +30,11 @@ pub fn shortened(text: &str, most: usize) -> String {
     short
 }
 
+/// A cell of a CSV file, quoted where it needs that.
+pub fn csv_cell(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

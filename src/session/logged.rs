@@ -2,8 +2,8 @@
 //!
 //! A session has it beside the English text: another text, without names or in another language, is made from the value.
 
+use nima_core::task::Event as Happening;
 use nima_machine::{messages::Event, runtime::Operation};
-use nima_score::Event as Happening;
 
 use crate::codec::{Put, Sink, Source, Take, Wrong, choice, number, take_number};
 

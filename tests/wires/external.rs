@@ -17,11 +17,11 @@ use nima_machine::{
     messages::{Command, Event, LoopState, Tick},
     runtime::Handle,
 };
+use nima_simulation::{Plan, scene::Scene};
 use nima_testing::{
     real_time::{alone, judged, too_busy},
     unjudged,
 };
-use nima_simulation::{Plan, scene::Scene};
 
 /// Time limit for the force after a program has died, s.
 const GONE_S: f64 = 0.020;

@@ -14,7 +14,7 @@ use std::{
 use anyhow::{Context as _, bail};
 use nima_machine::rig::{SIDES, Settings, Side};
 
-use crate::{command::truth::Known, console::reader::Reader};
+use crate::{console::reader::Reader, extras};
 
 /// Before they serve, emulators of arms search a starting pose.
 const READY_WITHIN: Duration = Duration::from_mins(1);
@@ -42,6 +42,9 @@ impl Emulators {
         devices: Option<&Settings>,
     ) -> anyhow::Result<Option<Self>> {
         let Some(devices) = devices.filter(|devices| devices.emulated) else { return Ok(None) };
+        if !extras::emulates() {
+            return Err(extras::not_built("emulated devices", "lab"));
+        }
         let mut command = Command::new(program);
         command.args(["emulate", "rig", "--rig", rig, "--scene", scene, "--until-input-ends"]);
         // Ctrl-C is for the loop only, which ends in order and then ends the emulators.
@@ -87,9 +90,9 @@ impl Emulators {
         write(&self.input, &format!("truth {rate_hz}"));
     }
 
-    /// The true forces that were told since the last call.
-    pub(crate) fn known(&self) -> impl Iterator<Item = Known> {
-        self.told.iter().flat_map(Receiver::try_iter).filter_map(|line| serde_json::from_str(&line).ok())
+    /// What they told since the last call, line by line.
+    pub(crate) fn told(&self) -> impl Iterator<Item = String> {
+        self.told.iter().flat_map(Receiver::try_iter)
     }
 }
 

@@ -1,9 +1,8 @@
 //! The endoscope's pictures on their way into a session.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use nima_bridges::igtl::{Image, Pictures};
-use nima_endoscope::{Address, Compressed, Feed, Format, Glimpse, Reel, ReelEnd, Standing, jpeg};
+use nima_endoscope::{Address, Compressed, Feed, Format, Reel, ReelEnd, Standing};
 use nima_machine::config::RigConfig;
 use nima_session::{
     pictures::{Coding, PictureSource, Taken},
@@ -36,27 +35,6 @@ pub(crate) fn are_recorded(rig: &RigConfig) -> bool {
 pub(crate) fn film(recorder: &Recorder, rig: &RigConfig, reel: &Reel) {
     if are_recorded(rig) {
         recorder.film(Box::new(OfEndoscope(reel.end())));
-    }
-}
-
-/// Hands the newest picture of a reel to a bridge, as pixels.
-#[derive(Debug)]
-pub(crate) struct OfReel(Glimpse);
-
-impl OfReel {
-    pub(crate) fn new(reel: &Reel) -> Self {
-        Self(reel.glimpse())
-    }
-}
-
-impl Pictures for OfReel {
-    fn newest(&mut self, is_wanted: bool) -> Option<(Image, Duration)> {
-        let Compressed { bytes, arrived, .. } = self.0.take(is_wanted).filter(|_| is_wanted)?;
-        // A damaged one is left out; the next one comes soon.
-        let jpeg::Picture { size_px, rgba } = jpeg::decode(&bytes).ok()?;
-        let [width, height] = size_px.map(u16::try_from);
-        let pixels = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
-        Some((Image { size_px: [width.ok()?, height.ok()?], colours: 3, pixels }, arrived.elapsed()))
     }
 }
 

@@ -1,52 +1,14 @@
-//! The score of a run in a scene with a task.
+//! The score of a run in a scene with a task. What counts is an extra.
+
+use std::fmt::Debug;
 
 use nima_machine::messages::Tick;
-use nima_score::{Score, TaskFile, scored::LiveTrial};
-use nima_simulation::Watched;
 
-/// Scores from the first tick in which an arm is engaged.
-#[derive(Debug)]
-pub(crate) struct Scoring {
-    trial: LiveTrial,
-    watched: Option<Watched>,
-}
-
-impl Scoring {
-    /// For this task; `watched` tells what happens to the objects.
-    pub(crate) fn new(task: &TaskFile, watched: Option<Watched>) -> Self {
-        Self { trial: LiveTrial::new(task), watched }
-    }
-
+/// Scores a run.
+pub(crate) trait Scorer: Debug {
     /// Takes the next tick of a side.
-    pub(crate) fn tick(&mut self, tick: &Tick) {
-        self.hear();
-        self.trial.tick(tick);
-    }
+    fn tick(&mut self, tick: &Tick);
 
-    /// Whether the task is done, or its time is over: what follows does not count.
-    pub(crate) fn is_over(&self) -> bool {
-        self.trial.is_over()
-    }
-
-    /// Time since the first tick in which an arm was engaged, s.
-    pub(crate) fn elapsed_s(&self) -> f64 {
-        self.trial.elapsed_s()
-    }
-
-    fn hear(&mut self) {
-        let Some(watched) = &self.watched else { return };
-        for moment in watched.moments() {
-            self.trial.opening(moment.t_s, moment.opening_rad);
-        }
-        for happening in watched.happenings() {
-            self.trial.happening(&happening);
-        }
-    }
-
-    /// The score, if anything was engaged.
-    pub(crate) fn end(mut self) -> Option<Score> {
-        self.hear();
-        // Without objects nobody tells when the task is done.
-        self.trial.end(self.watched.is_none())
-    }
+    /// The score as it is printed, if anything was engaged.
+    fn end(self: Box<Self>) -> Option<serde_json::Value>;
 }

@@ -1,18 +1,19 @@
-//! `--live`, `--share`, `--igtl` and `--lsl`: others watch while it happens. The first two in programs that were built with the features `live` and
-//! `department`.
+//! `--live`, `--share`, `--igtl` and `--lsl`: others watch while it happens, through extras.
 
-mod bridges;
-
-use std::{net::SocketAddr, path::PathBuf};
+use std::{
+    net::SocketAddr,
+    path::{Path, PathBuf},
+};
 
 use clap::Args;
 use nima_endoscope::Reel;
 use nima_session::outlet::Audience;
 use nima_simulation::Plan;
 
-#[cfg(any(feature = "live", feature = "department"))]
-use crate::telling::tell;
+use crate::extras;
 
+/// In place of a file: the library that is installed.
+pub(crate) const INSTALLED: &str = "liblsl";
 const LIVE_HELP: &str =
     "Let Foxglove and PlotJuggler watch at this address (without one: 127.0.0.1:8765, from this computer only)";
 const SHARE_HELP: &str =
@@ -29,12 +30,43 @@ pub(crate) struct Watching {
     share: Option<SocketAddr>,
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1, default_missing_value = "127.0.0.1:18944", help = IGTL_HELP)]
     igtl: Option<SocketAddr>,
-    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = bridges::INSTALLED, help = LSL_HELP)]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = INSTALLED, help = LSL_HELP)]
     lsl: Option<PathBuf>,
 }
 
+/// How others watch at an address.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Show {
+    /// Foxglove and `PlotJuggler`.
+    Live,
+    /// The department.
+    Share,
+    /// `OpenIGTLink` clients.
+    Igtl,
+}
+
+impl Show {
+    /// The option that asks for it, and the feature that builds it.
+    const fn names(self) -> [&'static str; 2] {
+        match self {
+            Self::Live => ["`--live`", "live"],
+            Self::Share => ["`--share`", "department"],
+            Self::Igtl => ["`--igtl`", "bridges"],
+        }
+    }
+
+    fn start(self, at: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
+        let [option, feature] = self.names();
+        extras::part(|extra| extra.server(self, at)).unwrap_or_else(|| Err(extras::not_built(option, feature)))
+    }
+}
+
+fn marks_by(library: &Path) -> anyhow::Result<Box<dyn Server>> {
+    extras::part(|extra| extra.marks(library)).unwrap_or_else(|| Err(extras::not_built("`--lsl`", "bridges")))
+}
+
 /// One of those who let others watch.
-trait Server: std::fmt::Debug {
+pub(crate) trait Server: std::fmt::Debug {
     /// For the recorder of the next session, of this plan; the endoscope's pictures of it come through this reel.
     fn audience(&self, plan: &Plan, reel: &Reel) -> Box<dyn Audience>;
     /// The same for a trial of a blind study, which is called this: who watches must not learn its condition. `None`: it is not shown.
@@ -64,9 +96,9 @@ pub(crate) struct Servers(Vec<Box<dyn Server>>);
 impl Watching {
     /// Starts the servers that are asked for.
     pub(crate) fn start(&self) -> anyhow::Result<Servers> {
-        let lsl = self.lsl.as_deref().map(bridges::marks_by);
-        let servers = [self.live.map(live_at), self.share.map(share_at), self.igtl.map(bridges::igtl_at), lsl];
-        Ok(Servers(servers.into_iter().flatten().collect::<anyhow::Result<_>>()?))
+        let places = [(self.live, Show::Live), (self.share, Show::Share), (self.igtl, Show::Igtl)];
+        let servers = places.into_iter().filter_map(|(at, show)| Some(show.start(at?)));
+        Ok(Servers(servers.chain(self.lsl.as_deref().map(marks_by)).collect::<anyhow::Result<_>>()?))
     }
 }
 
@@ -97,55 +129,6 @@ impl Servers {
     }
 }
 
-#[cfg(feature = "live")]
-impl Server for nima_live::Server {
-    fn audience(&self, _: &Plan, _: &Reel) -> Box<dyn Audience> {
-        self.audience()
-    }
-
-    fn shown(&self) -> Shown {
-        Shown { at: format!("ws://{}", self.address()), watchers: self.viewers() }
-    }
-}
-
-#[cfg(feature = "live")]
-fn live_at(address: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
-    let server = nima_live::Server::start(address, crate::recording::PROGRAM)?;
-    tell(format_args!("nima: live at ws://{}: open a Foxglove WebSocket connection to it", server.address()));
-    Ok(Box::new(server))
-}
-
-#[cfg(not(feature = "live"))]
-fn live_at(_: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
-    anyhow::bail!(
-        "this program was built without live viewing; build it with `cargo build --release --locked -p nima-console --features live`"
-    )
-}
-
-#[cfg(feature = "department")]
-impl Server for nima_department::Share {
-    fn audience(&self, _: &Plan, _: &Reel) -> Box<dyn Audience> {
-        self.audience()
-    }
-
-    fn shown(&self) -> Shown {
-        Shown { at: format!("{} ({})", self.address(), self.name()), watchers: self.watchers() }
-    }
-}
-
-#[cfg(feature = "department")]
-fn share_at(address: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
-    let own = crate::command::department::own_identity()?;
-    let share = nima_department::Share::start(&own, address, !address.ip().is_loopback())?;
-    tell(format_args!("nima: shared with department {} as {} at {}", own.department, share.name(), share.address()));
-    Ok(Box::new(share))
-}
-
-#[cfg(not(feature = "department"))]
-fn share_at(_: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
-    anyhow::bail!(crate::command::department::NO_DEPARTMENT)
-}
-
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigConfig;
@@ -156,8 +139,7 @@ mod tests {
     /// It would show forces as they are rendered, and with them the condition.
     #[test]
     fn a_trial_of_a_blind_study_is_not_shown_by_openigtlink() {
-        let server = bridges::igtl_at("127.0.0.1:0".parse().unwrap()).unwrap();
-        let servers = Servers(vec![server]);
+        let servers = Servers(vec![Show::Igtl.start("127.0.0.1:0".parse().unwrap()).unwrap()]);
         let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("rings").unwrap());
         let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
         assert!(servers.blind_audiences(&plan, "P03 4").is_empty());

@@ -3,7 +3,7 @@
 //! [`find`] finds a [`Board`](nima_endoscope::Board) in a grey picture, whole, with its corners to some hundredths of a pixel, or says what it
 //! lacks ([`Unseen`]). [`Session`] takes the views that a calibration needs and says which is wanted next. [`calibrate`] finds the lens (Zhang
 //! 2000, refined by Levenberg and Marquardt's method) with as many terms as pay on held-out views, and judges it. [`place`] finds where the
-//! camera is from corners of the board that the instrument's tip has touched, and [`steadied`] where a marker on it is. No file, thread,
+//! camera is from corners of the board that the instrument's tip has touched. No file, thread,
 //! clock or window.
 #![warn(missing_docs)]
 
@@ -20,7 +20,6 @@ mod refine;
 mod report;
 mod saddle;
 mod session;
-mod steady;
 #[cfg(test)]
 mod tests;
 
@@ -32,4 +31,3 @@ pub use grey::Grey;
 pub use place::{Lack, PlaceError, Placed, Touch, board_pose, place};
 pub use report::{Cause, Deviations, LeftOut, Report};
 pub use session::{Ask, Offer, Session, Way};
-pub use steady::steadied;

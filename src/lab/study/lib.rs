@@ -13,7 +13,6 @@ pub mod hands;
 pub mod network;
 mod pair;
 pub mod passivity;
-pub mod picture;
 pub mod reference;
 pub mod release;
 pub mod replay;
@@ -27,11 +26,6 @@ pub mod validation;
 use std::{error::Error, path::PathBuf};
 
 use serde::Serialize;
-
-/// A cell of a CSV file, quoted where it needs that.
-pub fn csv_cell(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
-}
 
 /// A measurement with its options.
 pub trait Experiment {

@@ -47,7 +47,7 @@ choice!(Command {
     21 => Task { 0: side: Side, 1: act: Act },
 });
 
-choice!(nima_score::Event {
+choice!(nima_core::task::Event {
     0 => Begun {},
     1 => Ended {},
     2 => Aborted {},

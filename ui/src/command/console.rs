@@ -10,7 +10,7 @@ use clap::Args;
 use nima_machine::config::SchedulingClass;
 use nima_simulation::Plan;
 
-use super::{network::ToFollower, output, setup::Setup};
+use super::{far::ToFollower, output, setup::Setup};
 use crate::language::Language;
 use crate::{
     by_itself::{self, Starter},
@@ -19,7 +19,8 @@ use crate::{
         wizards::Which,
     },
     emulators::Emulators,
-    line::Reopen,
+    extras::{self, Extra},
+    link::Reopen,
     telling::tell,
     watching::Watching,
 };
@@ -77,6 +78,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if arguments.calibrate == Some(Which::Camera) && extras::part(Extra::camera_wizard).is_none() {
+        return Err(extras::not_built("calibration of the camera", "camera"));
+    }
     let outputs = [&arguments.screenshot, &arguments.summary, &arguments.frames];
     for out in outputs.into_iter().flatten() {
         output::check(out, &[arguments.setup.rig(), arguments.setup.scene()].map(Path::new))?;

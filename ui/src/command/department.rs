@@ -1,26 +1,14 @@
-//! `nima department`: rigs that others may watch and record. In programs that were built with the feature `department`.
-
-#[cfg(feature = "department")]
-mod engine;
+//! `nima department`: rigs that others may watch and record. The extra of this name does it.
 
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
 use super::run::positive_seconds;
-use crate::console::roles::Role;
-use crate::language::Language;
-
-/// Told by a program without it.
-#[cfg(not(feature = "department"))]
-pub(crate) const NO_DEPARTMENT: &str = "this program was built without sharing; build it with \
-`cargo build --release --locked -p nima-console --features department`";
-
-#[cfg(feature = "department")]
-pub(crate) use engine::own_identity;
+use crate::{console::roles::Role, extras, language::Language};
 
 #[derive(Debug, Subcommand)]
-pub(super) enum DepartmentCommand {
+pub(crate) enum DepartmentCommand {
     /// Create a department on this machine, which issues the certificates
     Create {
         /// Its name: letters, digits and -
@@ -51,13 +39,13 @@ pub(super) enum DepartmentCommand {
 }
 
 #[derive(Debug, Args)]
-pub(super) struct RigsArguments {
+pub(crate) struct RigsArguments {
     /// Ask this address instead of the local network; may be repeated
     #[arg(long, value_name = "HOST[:PORT]")]
-    at: Vec<String>,
+    pub(crate) at: Vec<String>,
     /// Print the list as one JSON object
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
 }
 
 /// The views of a window that can do nothing to its rig.
@@ -71,50 +59,45 @@ fn watching_role(word: &str) -> Result<Role, String> {
 
 /// A rig at another machine.
 #[derive(Debug, Args)]
-struct Which {
+pub(crate) struct Which {
     /// Its name, if several are shared in the local network
-    rig: Option<String>,
+    pub(crate) rig: Option<String>,
     /// Its address; without one it is looked for in the local network
     #[arg(long, value_name = "HOST[:PORT]")]
-    at: Option<String>,
+    pub(crate) at: Option<String>,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct MonitorArguments {
+pub(crate) struct MonitorArguments {
     #[command(flatten)]
-    which: Which,
+    pub(crate) which: Which,
     /// Start in this view: surgeon or technician
     #[arg(long, value_name = "ROLE", default_value = "surgeon", value_parser = watching_role)]
-    role: Role,
+    pub(crate) role: Role,
     /// Language of the window: en or de (default: the one of the console on this computer)
     #[arg(long, value_name = "LANGUAGE", hide_possible_values = true)]
-    language: Option<Language>,
+    pub(crate) language: Option<Language>,
     /// Close after this many seconds
     #[arg(long, visible_alias = "seconds", value_name = "S", value_parser = positive_seconds)]
-    exit_after: Option<f64>,
+    pub(crate) exit_after: Option<f64>,
     /// Save a screenshot (PNG) just before closing; needs --exit-after
     #[arg(long, value_name = "FILE", requires = "exit_after")]
-    screenshot: Option<PathBuf>,
+    pub(crate) screenshot: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct RecordArguments {
+pub(crate) struct RecordArguments {
     #[command(flatten)]
-    which: Which,
+    pub(crate) which: Which,
     /// Folder for the session files
     #[arg(long, value_name = "DIR")]
-    into: PathBuf,
+    pub(crate) into: PathBuf,
     /// Seconds to record (default: until Ctrl-C)
     #[arg(long, value_name = "S", value_parser = positive_seconds)]
-    seconds: Option<f64>,
+    pub(crate) seconds: Option<f64>,
 }
 
-#[cfg(feature = "department")]
 pub(super) fn run(command: &DepartmentCommand) -> anyhow::Result<()> {
-    engine::run(command)
-}
-
-#[cfg(not(feature = "department"))]
-pub(super) fn run(_: &DepartmentCommand) -> anyhow::Result<()> {
-    anyhow::bail!(NO_DEPARTMENT)
+    extras::part(|extra| extra.department(command))
+        .unwrap_or_else(|| Err(extras::not_built("department", "department")))
 }

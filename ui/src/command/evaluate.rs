@@ -6,9 +6,9 @@ use std::{
 };
 
 use clap::{Args, Subcommand};
+use nima_charts::{Axis, Chart, Series, Style, svg};
 use nima_core::tip_force::Estimator;
 use nima_recording::tip_force::{DataSet, Selection, load_model};
-use nima_study::picture::{Axis, Chart, Series, Style, svg};
 use nima_training::{Evaluation, Part, evaluate};
 
 use super::output;

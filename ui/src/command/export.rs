@@ -24,7 +24,7 @@ use nima_session::{
 };
 use nima_simulation::scene::Scene;
 
-use super::{motion, output, stretch::Stretch};
+use super::{output, setup::side, stretch::Stretch};
 use crate::{
     leaving::Leave,
     recording::{PROGRAM, RIG, SCENE, WORDS, toml_file},
@@ -48,7 +48,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     stretch: Stretch,
     /// Which arm comes into the table, right or left (needed if the session has both)
-    #[arg(long, value_name = "ARM", value_parser = motion::side)]
+    #[arg(long, value_name = "ARM", value_parser = side)]
     arm: Option<Side>,
     /// Leave out what tells who recorded it, where and when (.mcap only)
     #[arg(long)]

@@ -5,36 +5,29 @@ mod check;
 mod console;
 pub(crate) mod department;
 mod devices;
-mod emulate;
 mod ending;
 mod evaluate;
 mod export;
-mod follower;
-mod identify;
-mod motion;
-mod network;
+mod far;
 pub(crate) mod output;
-mod pair;
 mod replay;
 mod report;
-mod run;
-mod score;
+pub(crate) mod run;
 mod sessions;
-mod setup;
+pub(crate) mod setup;
 mod shells;
-mod stretch;
-mod study;
-mod study_report;
+pub(crate) mod stretch;
 mod train;
-pub(crate) mod truth;
-mod user_study;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{
+    ArgMatches, CommandFactory as _, Parser, Subcommand,
+    error::{ContextKind, ContextValue},
+};
 use nima_files::shortened;
 
-use crate::telling::tell;
+use crate::{extras, telling::tell};
 
 /// Exit code for "no window can be opened" (`EX_UNAVAILABLE`): the start script falls back to `nima run` on it.
 const NO_WINDOW: u8 = 69;
@@ -53,10 +46,6 @@ enum Command {
     Console(console::Arguments),
     /// Run the same control loop without a window, then print its timing and errors
     Run(run::Arguments),
-    /// Run the arm and its sensor here for a console at another machine (`nima console --follower HOST`)
-    Follower(follower::Arguments),
-    /// Pair this machine with another one, once, by a code that both show
-    Pair(pair::Arguments),
     /// Replay a recorded session through the same loop and compare every tick, or change one thing in it
     Replay(replay::Arguments),
     /// Write a recorded session as a table, or a stretch of it as a session of its own
@@ -65,31 +54,17 @@ enum Command {
     Sessions(sessions::Arguments),
     /// Write a page that tells what happened in recorded sessions, when, and what went wrong
     Report(report::Arguments),
-    /// Score recorded sessions: time, path, speed, smoothness, force of each hand; also as a table of trials
-    Score(score::Arguments),
-    /// Identify impedance on a recording, sample by sample, from past data only
-    Identify(identify::Arguments),
     /// Rigs of a department: certificates, which are shared, watch and record them from other machines
     #[command(subcommand, arg_required_else_help = false)]
     Department(department::DepartmentCommand),
     /// List connected devices and test them; for each failure, print its cause and what to do
     Devices(devices::Arguments),
-    /// Emulate devices on their real interfaces (serial port, network, HID)
-    Emulate(emulate::Arguments),
     /// Calibrate from a file, or a whole emulated rig; prints errors on held-out data and a verdict
     #[command(subcommand, arg_required_else_help = false)]
     Calibrate(calibrate::CalibrateCommand),
     /// Check whether a rig is ready for the day; keeps a record, and fails if it is not
     #[command(subcommand, arg_required_else_help = false)]
     Check(check::CheckCommand),
-    /// Run an experiment and print its results
-    #[command(subcommand, arg_required_else_help = false)]
-    Study(study::StudyCommand),
-    /// Run a user study: orders, blind conditions, trials, questionnaires
-    #[command(subcommand, arg_required_else_help = false)]
-    UserStudy(user_study::UserStudyCommand),
-    /// Analyse a user study: one page with tables and pictures, the tables as CSV, and a script for R
-    StudyReport(study_report::Arguments),
     /// Train models from data
     #[command(subcommand, arg_required_else_help = false)]
     Train(train::TrainCommand),
@@ -102,8 +77,19 @@ enum Command {
     Man(shells::ManArguments),
 }
 
+/// The command line with what this build adds to it.
+fn command_line() -> clap::Command {
+    extras::commands(Cli::command())
+}
+
 /// Reports invalid arguments in one line, without the usage text.
 fn usage(error: &clap::Error) -> ExitCode {
+    if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
+        && let Some(words) = extras::absent_command(name)
+    {
+        tell(format_args!("nima: {words}"));
+        return ExitCode::FAILURE;
+    }
     let text = error.to_string();
     let complaint = text.lines().take_while(|line| !line.starts_with("Usage:")).collect::<Vec<_>>().join(" ");
     let complaint = one_line(&complaint);
@@ -120,38 +106,14 @@ fn one_line(text: &str) -> String {
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let command = match Cli::try_parse() {
-        Ok(cli) => cli.command.unwrap_or_else(|| Command::Console(console::Arguments::default())),
+    let given = match command_line().try_get_matches() {
+        Ok(given) => given,
         Err(error) if error.use_stderr() => return usage(&error),
         // --help and --version.
         Err(error) => error.exit(),
     };
-    nima_emulation::emulated::provide_handles();
-    nima_score::provide_tasks();
-    let result = match command {
-        Command::Console(arguments) => console::run(&arguments),
-        Command::Run(arguments) => run::run(&arguments),
-        Command::Follower(arguments) => follower::run(arguments),
-        Command::Pair(arguments) => pair::run(&arguments),
-        Command::Replay(arguments) => replay::run(&arguments),
-        Command::Export(arguments) => export::run(&arguments),
-        Command::Sessions(arguments) => sessions::run(&arguments),
-        Command::Report(arguments) => report::run(&arguments),
-        Command::Score(arguments) => score::run(&arguments),
-        Command::Identify(arguments) => identify::run(&arguments),
-        Command::Department(command) => department::run(&command),
-        Command::Devices(arguments) => devices::run(&arguments),
-        Command::Emulate(arguments) => emulate::run(&arguments),
-        Command::Calibrate(calibrate) => calibrate::run(&calibrate),
-        Command::Check(check) => check::run(&check),
-        Command::Study(study) => study::run(&study),
-        Command::UserStudy(study) => user_study::run(&study),
-        Command::StudyReport(arguments) => study_report::run(&arguments),
-        Command::Train(train) => train::run(&train),
-        Command::Evaluate(evaluate) => evaluate::run(&evaluate),
-        Command::Completions(arguments) => shells::completions(&arguments),
-        Command::Man(arguments) => shells::man(&arguments),
-    };
+    extras::begin();
+    let result = extras::part(|extra| extra.run(&given)).unwrap_or_else(|| run_own(&given));
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -166,5 +128,26 @@ pub fn main() -> ExitCode {
             tell(format_args!("nima: {line}"));
             ExitCode::FAILURE
         }
+    }
+}
+
+/// Runs a command that every build has.
+fn run_own(given: &ArgMatches) -> anyhow::Result<()> {
+    let command = extras::given(given).transpose()?;
+    match command.unwrap_or_else(|| Command::Console(console::Arguments::default())) {
+        Command::Console(arguments) => console::run(&arguments),
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
+        Command::Sessions(arguments) => sessions::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
+        Command::Department(command) => department::run(&command),
+        Command::Devices(arguments) => devices::run(&arguments),
+        Command::Calibrate(calibrate) => calibrate::run(&calibrate),
+        Command::Check(check) => check::run(&check),
+        Command::Train(train) => train::run(&train),
+        Command::Evaluate(evaluate) => evaluate::run(&evaluate),
+        Command::Completions(arguments) => shells::completions(&arguments),
+        Command::Man(arguments) => shells::man(&arguments),
     }
 }

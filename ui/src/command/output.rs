@@ -9,12 +9,12 @@ use anyhow::Context as _;
 use serde::Serialize;
 
 /// Prints one JSON object on stdout. A closed pipe is not an error.
-pub(super) fn json(value: &impl Serialize) -> anyhow::Result<()> {
+pub(crate) fn json(value: &impl Serialize) -> anyhow::Result<()> {
     line(&serde_json::to_string_pretty(value)?)
 }
 
 /// Prints a line on stdout. A closed pipe is not an error.
-pub(super) fn line(text: &str) -> anyhow::Result<()> {
+pub(crate) fn line(text: &str) -> anyhow::Result<()> {
     match writeln!(io::stdout().lock(), "{text}") {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),
@@ -22,12 +22,12 @@ pub(super) fn line(text: &str) -> anyhow::Result<()> {
 }
 
 /// A number as a field of a table, behind its comma; empty for one that is not known.
-pub(super) fn cell(number: f64) -> String {
+pub(crate) fn cell(number: f64) -> String {
     if number.is_finite() { format!(",{number}") } else { ",".to_owned() }
 }
 
 /// Checks before the work that `out` can be written and is not one of the input files.
-pub(super) fn check(out: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
+pub(crate) fn check(out: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
     nima_files::check_output(out, inputs).with_context(|| format!("cannot write {}", out.display()))
 }
 

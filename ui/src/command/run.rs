@@ -14,7 +14,6 @@ use std::{
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_core::{calibration::gravity::Drift, impedance::Mode};
-use nima_emulation::emulated::TipError;
 use nima_endoscope::Reel;
 use nima_machine::{
     config::{RigConfig, SchedulingClass},
@@ -23,10 +22,10 @@ use nima_machine::{
     runtime::{self, Assembly, ClockProfile, Summary, Tap, VirtualClock},
 };
 use nima_recording::store::WristId;
-use nima_score::{Score, TaskError, TaskFile};
 use nima_session::outlet::Destination;
 use nima_simulation::{Plan, Watched, scene::Scene};
 use serde::Serialize;
+use serde_json::Value;
 
 use self::{
     engaging::Engaging,
@@ -34,24 +33,20 @@ use self::{
     status::{StatusLine, Troubles},
     words::in_words,
 };
-use super::{
-    ending::Reasons,
-    network::ToFollower,
-    output,
-    setup::Setup,
-    truth::{self, Comparison},
-};
+use super::{ending::Reasons, far::ToFollower, output, setup::Setup};
 use crate::{
     by_itself::{self, Arm, Starter},
     console::in_force::InForce,
     emulators::Emulators,
+    extras::{self, Extra},
     leaving::Leave,
-    line::{Line, LinkFigures, LinkNews},
+    link::{Line, LineDoor},
     objects::OfSimulation,
-    scoring::Scoring,
+    scoring::Scorer,
     telling::tell,
+    truth::{self, Comparison},
     watching::Watching,
-    words::{Remedy as _, drift as drift_in_words, link_rows},
+    words::{Remedy as _, drift as drift_in_words},
 };
 
 /// True forces at the tips that emulators tell in a second.
@@ -59,51 +54,51 @@ const TRUTH_HZ: u32 = 200;
 
 #[derive(Debug, Default, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "switches of a command")]
-pub(super) struct Arguments {
+pub(crate) struct Arguments {
     #[command(flatten)]
-    setup: Setup,
+    pub(crate) setup: Setup,
     /// Seconds to run (default: until Ctrl-C; 60 with --virtual)
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
-    seconds: Option<f64>,
+    pub(crate) seconds: Option<f64>,
     /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,
     /// kalman, autoregressive (default: the rig's)
     #[arg(long)]
-    mode: Option<Mode>,
+    pub(crate) mode: Option<Mode>,
     /// One-way delay of the link in ms (default: the rig's)
     #[arg(long, value_name = "D", allow_negative_numbers = true)]
-    delay_ms: Option<f64>,
+    pub(crate) delay_ms: Option<f64>,
     /// Let the force on each axis depend on the motion of all axes (matched and best; slower)
     #[arg(long)]
-    cross_talk: bool,
+    pub(crate) cross_talk: bool,
     /// Compute every mode and compare their errors (default: only the mode that is rendered, beside delayed reflection)
     #[arg(long)]
-    compare: bool,
+    pub(crate) compare: bool,
     /// Run on a virtual clock, as fast as this computer can
     #[arg(long = "virtual", conflicts_with_all = ["live", "share", "igtl", "lsl", "follower"])]
-    virtual_clock: bool,
+    pub(crate) virtual_clock: bool,
     #[command(flatten)]
-    late: Late,
+    pub(crate) late: Late,
     /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
     #[arg(long, value_name = "CLASS")]
-    scheduling: Option<SchedulingClass>,
+    pub(crate) scheduling: Option<SchedulingClass>,
     /// Record the session into a new file, from which `nima replay` repeats it bit for bit
     #[arg(long, value_name = "FILE.mcap")]
-    record: Option<PathBuf>,
+    pub(crate) record: Option<PathBuf>,
     /// Go on in this new file when that one can no longer be written: best on another disk
     #[arg(long, value_name = "FILE.mcap", requires = "record")]
-    second_place: Option<PathBuf>,
+    pub(crate) second_place: Option<PathBuf>,
     #[command(flatten)]
-    watching: Watching,
+    pub(crate) watching: Watching,
     #[command(flatten)]
-    network: ToFollower,
+    pub(crate) network: ToFollower,
     /// Print the results as one JSON object
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
 }
 
 /// Late ticks of the virtual clock.
 #[derive(Debug, Default, Args)]
-struct Late {
+pub(crate) struct Late {
     /// When the ticks of the virtual clock wake: perfect, quiet or busy (as recorded on such a computer), late-PERCENT (this fraction is
     /// 0.5 to 4 ms late), stall-MS (a pause about once a second)
     #[arg(long, value_name = "NAME", default_value_t, requires = "virtual_clock")]
@@ -119,22 +114,10 @@ impl Arguments {
         let Late { clock: profile, clock_seed: seed } = self.late;
         self.virtual_clock.then_some(VirtualClock { profile, seed })
     }
-
-    /// Of the machine with the arm: what is rendered, and how, is the console's.
-    pub(super) fn of_follower(
-        setup: Setup,
-        seconds: Option<f64>,
-        scheduling: Option<SchedulingClass>,
-        record: Option<PathBuf>,
-        watching: Watching,
-        json: bool,
-    ) -> Self {
-        Self { setup, seconds, scheduling, record, watching, json, ..Self::default() }
-    }
 }
 
 /// A finite number of seconds above zero.
-pub(super) fn positive_seconds(text: &str) -> Result<f64, String> {
+pub(crate) fn positive_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds > 0.0 && seconds <= 1e7 => Ok(seconds),
         _ => Err("give a number of seconds above 0".to_owned()),
@@ -146,9 +129,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 /// The same with the line to another machine that `open` gives, which changes the rig to what is at this one.
-pub(super) fn run_with(
+pub(crate) fn run_with(
     arguments: &Arguments,
-    open: impl FnOnce(&mut RigConfig, &Scene) -> anyhow::Result<Option<Line>>,
+    open: impl FnOnce(&mut RigConfig, &Scene) -> anyhow::Result<Option<Box<dyn Line>>>,
 ) -> anyhow::Result<()> {
     let (mut rig, scene) = arguments.setup.load()?;
     rig.mode = arguments.mode.unwrap_or(rig.mode);
@@ -161,7 +144,7 @@ pub(super) fn run_with(
         bail!("rig \"{}\" has devices, which need the real clock: remove --virtual", rig.name);
     }
     let line = open(&mut rig, &scene)?;
-    let here = line.as_ref().map_or(Ends::Both, Line::here);
+    let here = line.as_ref().map_or(Ends::Both, |line| line.here());
     let leave = arguments.setup.leave()?;
     // The emulators of the whole rig are the follower's.
     let emulated = rig.devices.as_ref().filter(|_| here.have_follower());
@@ -188,10 +171,10 @@ pub(super) fn run_with(
         engaging: Engaging::left_to_others(plan.engage || !by_itself),
         reasons: Reasons::default(),
         emulators,
-        comparison: Comparison::default(),
+        comparison: extras::part(Extra::comparison),
         lacking: None,
-        link: LinkNews::default(),
-        scoring: None,
+        line: line.as_ref().map(|line| line.door()),
+        scorer: None,
     };
     if !plan.may_engage() {
         bail!(
@@ -219,34 +202,29 @@ pub(super) fn run_with(
     };
     let recorded = recording.end();
     drop(start.emulators.take());
-    let tip_error = start.comparison.figures();
     summary.explain(|fault| [fault.cause(), fault.cure()]);
     let drift = start.in_force.drift();
-    let score = start.scoring.take().and_then(Scoring::end);
+    let score = start.scorer.take().and_then(Scorer::end);
     if arguments.json {
         if let Some(drift @ Drift::Moved { .. }) = drift {
             tell(format_args!("warning: the bias of the wrist sensor has {}", drift_in_words(drift)));
         }
         output::json(&Told {
             summary: &summary,
-            tip_error,
+            tip_error: start.comparison.as_ref().map(|comparison| comparison.figures()).unwrap_or_default(),
             recorded: recorded.as_ref().ok().and_then(Option::as_ref),
-            link: start.link.newest().map(LinkFigures::from),
-            score: score.as_ref(),
+            link: start.line.as_ref().and_then(|line| line.figures()),
+            score,
         })?;
     } else {
         let bias =
             drift.map_or_else(String::new, |drift| format!("\nbias of the wrist sensor: {}", drift_in_words(drift)));
         let kept = recorded.as_ref().ok().and_then(Option::as_ref).map_or_else(String::new, Recorded::in_words);
-        let rows = start.link.newest().map(link_rows).unwrap_or_default();
-        let link = rows.iter().fold(String::new(), |all, row| all + "\n" + row.name + ": " + &row.value);
-        output::line(
-            &(in_words(&plan, &summary, start.link.newest().is_some())
-                + &truth::in_words(&tip_error)
-                + &bias
-                + &link
-                + &kept),
-        )?;
+        let rows = start.line.as_ref().map(|line| line.rows()).unwrap_or_default();
+        let link = rows.iter().fold(String::new(), |all, [name, value]| all + "\n" + name + ": " + value);
+        let tip_error = start.comparison.as_ref().map_or_else(String::new, |comparison| comparison.in_words());
+        let is_measured = start.line.as_ref().is_some_and(|line| line.has_reported());
+        output::line(&(in_words(&plan, &summary, is_measured) + &tip_error + &bias + &link + &kept))?;
     }
     recorded?;
     // Without its calibrations an emulated rig does what it can, and has said what it lacks.
@@ -260,13 +238,13 @@ struct Told<'a> {
     #[serde(flatten)]
     summary: &'a Summary,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    tip_error: Vec<TipError>,
+    tip_error: Vec<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     recorded: Option<&'a Recorded>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    link: Option<LinkFigures>,
+    link: Option<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    score: Option<&'a Score>,
+    score: Option<Value>,
 }
 
 /// Engages after the bias of the wrist sensor has been checked, whatever the result.
@@ -275,12 +253,14 @@ struct Start {
     engaging: Engaging,
     reasons: Reasons,
     emulators: Option<Emulators>,
-    comparison: Comparison,
+    /// Of forces with the true ones, in a build with emulators.
+    comparison: Option<Box<dyn Comparison>>,
     /// What was told to be missing.
     lacking: Option<String>,
-    link: LinkNews,
+    /// To the machine with the other half of the rig.
+    line: Option<Box<dyn LineDoor>>,
     /// In a scene with a task.
-    scoring: Option<Scoring>,
+    scorer: Option<Box<dyn Scorer>>,
 }
 
 impl Start {
@@ -290,17 +270,16 @@ impl Start {
         plan: &Plan,
         mut watched: Option<Watched>,
         recording: &Recording,
-    ) -> Result<(), TaskError> {
+    ) -> anyhow::Result<()> {
         if let Some(watched) = watched.as_mut().and_then(Watched::another) {
             recording.watch(OfSimulation::source(plan, watched));
         }
-        let task = plan.scene.task.as_ref().map(TaskFile::of).transpose()?;
-        self.scoring = task.map(|task| Scoring::new(&task, watched));
+        self.scorer = extras::part(|extra| extra.scorer(plan, &mut watched)).transpose()?;
         Ok(())
     }
 
     fn watch(&mut self, tick: &Tick) -> Option<Command> {
-        self.scoring.iter_mut().for_each(|scoring| scoring.tick(tick));
+        self.scorer.iter_mut().for_each(|scorer| scorer.tick(tick));
         self.in_force.watch(tick);
         self.reasons.watch(tick);
         let known = !self.in_force.is_waiting() && self.in_force.uncalibrated().is_none();
@@ -310,8 +289,8 @@ impl Start {
 
     /// Compares the forces at the tips with the true ones, where they are known.
     fn compare(&mut self) {
-        if let Some(emulators) = &self.emulators {
-            self.comparison.know(emulators.known());
+        if let (Some(emulators), Some(comparison)) = (&self.emulators, &mut self.comparison) {
+            comparison.hear(&mut emulators.told());
         }
     }
 
@@ -337,7 +316,7 @@ impl Start {
 
 fn on_the_real_clock(
     plan: &Plan,
-    (tap, line): (Option<Tap>, Option<Line>),
+    (tap, line): (Option<Tap>, Option<Box<dyn Line>>),
     start: &mut Start,
     recording: &mut Recording,
     leave: &Leave,
@@ -346,7 +325,6 @@ fn on_the_real_clock(
     let (assembly, watched) = plan.watched_assembly()?;
     start.watch_objects(plan, watched, recording)?;
     let assembly = Assembly { tap, ..assembly };
-    let door = line.as_ref().map(Line::door);
     let handle = runtime::start(match line {
         Some(line) => line.join(assembly),
         None => assembly,
@@ -363,7 +341,9 @@ fn on_the_real_clock(
         let seen_s = truth::now_s();
         handle.drain_ticks(|tick| {
             newest = Some(*tick);
-            start.comparison.tick(tick, seen_s);
+            if let Some(comparison) = &mut start.comparison {
+                comparison.tick(tick, seen_s);
+            }
             command = start.watch(tick).or(command);
         });
         handle.drain_events(|event| {
@@ -375,7 +355,7 @@ fn on_the_real_clock(
         for words in recording.news() {
             status.tell(&words);
         }
-        if let Some(words) = door.as_ref().and_then(|door| start.link.hear(door)) {
+        if let Some(words) = start.line.as_mut().and_then(|line| line.hear()) {
             status.tell(&words);
         }
         troubles.look(&handle, &status);

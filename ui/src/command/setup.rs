@@ -1,7 +1,10 @@
 //! Arguments of every command that runs the loop: rig and scene.
 
 use clap::Args;
-use nima_machine::config::{ConfigError, Ranges, RigConfig};
+use nima_machine::{
+    config::{ConfigError, Ranges, RigConfig},
+    rig::Side,
+};
 use nima_simulation::scene::Scene;
 
 use crate::{
@@ -10,7 +13,7 @@ use crate::{
 };
 
 #[derive(Debug, Args)]
-pub(super) struct Setup {
+pub(crate) struct Setup {
     /// Rig: built-in name or TOML file
     #[arg(long, value_name = "RIG", default_value = "simulated")]
     rig: String,
@@ -88,7 +91,12 @@ impl Setup {
 }
 
 /// The scene of a rig, by its name or path, for which none was given.
-pub(super) fn default_scene(rig: &str) -> &'static str {
+pub(crate) fn default_scene(rig: &str) -> &'static str {
     // A rig that cannot be loaded is refused when it is.
     RigConfig::load(rig).map_or("peg_transfer", |rig| Scene::default_for(&rig))
+}
+
+/// An arm, as it is named on the command line.
+pub(crate) fn side(word: &str) -> Result<Side, String> {
+    Side::ALL.into_iter().find(|side| side.word() == word).ok_or_else(|| "give right or left".to_owned())
 }

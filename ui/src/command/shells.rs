@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use clap::{Args, Command, CommandFactory as _};
+use clap::{Args, Command};
 use clap_complete::Shell;
 
-use super::{Cli, output};
+use super::{command_line, output};
 
 const NAME: &str = "nima";
 
@@ -25,13 +25,13 @@ pub(super) struct ManArguments {
 
 pub(super) fn completions(arguments: &CompletionsArguments) -> anyhow::Result<()> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Cli::command(), NAME, &mut script);
+    clap_complete::generate(arguments.shell, &mut command_line(), NAME, &mut script);
     output::line(String::from_utf8_lossy(&script).trim_end())
 }
 
 pub(super) fn man(arguments: &ManArguments) -> anyhow::Result<()> {
     // `help` repeats what the pages say.
-    let mut command = Cli::command().disable_help_subcommand(true);
+    let mut command = command_line().disable_help_subcommand(true);
     command.build();
     std::fs::create_dir_all(&arguments.folder)
         .with_context(|| format!("cannot create the folder {}", arguments.folder.display()))?;

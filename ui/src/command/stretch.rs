@@ -8,7 +8,7 @@ use nima_recording::session::Reader;
 use nima_session::plotted;
 
 #[derive(Clone, Copy, Debug, Default, Args)]
-pub(super) struct Stretch {
+pub(crate) struct Stretch {
     /// Where to begin, in seconds since the session began
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     from: Option<f64>,
@@ -27,12 +27,12 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 impl Stretch {
     /// Whether less than the whole session was asked for.
-    pub(super) const fn is_asked(&self) -> bool {
+    pub(crate) const fn is_asked(&self) -> bool {
         self.from.is_some() || self.to.is_some()
     }
 
     /// Its times, s since the session began, after a look whether this session, whose end may be in `last`, has them.
-    pub(super) fn of(&self, session: &Path, reader: &Reader, last: &Reader) -> anyhow::Result<Range<f64>> {
+    pub(crate) fn of(&self, session: &Path, reader: &Reader, last: &Reader) -> anyhow::Result<Range<f64>> {
         let Self { from, to } = self;
         let begin_ns = plotted::beginning_ns(reader)?;
         let (first_ns, last_ns) = (reader.statistics().times_ns.0, last.statistics().times_ns.1);

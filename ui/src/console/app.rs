@@ -7,11 +7,11 @@ mod connecting;
 mod listing;
 mod opening;
 mod pace;
+mod paging;
 mod reaching;
 mod reviewing;
 mod seen;
 mod starting;
-mod studying;
 mod views;
 
 use std::{
@@ -44,6 +44,7 @@ use super::{
     live::Live,
     menu,
     outbox::Outbox,
+    page::Page,
     palette::Palette,
     panels::{ForcesState, TopBarState, top_bar_ui},
     past::{Past, list::List},
@@ -54,7 +55,6 @@ use super::{
     sessions::Sessions,
     settings::Kept,
     start::{Choice, StartPage},
-    studies::Studies,
     theme,
     undo::History,
     wizards::Wizards,
@@ -63,7 +63,8 @@ use crate::language::{self, Language};
 use crate::{
     console::text,
     emulators::Emulators,
-    line::{Line, Reopen},
+    extras::{self, Extra},
+    link::{Line, Reopen},
     objects::{self, OfSimulation},
 };
 use checking::Checking;
@@ -110,8 +111,8 @@ pub struct ConsoleApp {
     checking: Checking,
     listing: Listing,
     list: List,
-    /// User studies.
-    studies: Studies,
+    /// The page of an extra that may hold the machine.
+    page: Option<Box<dyn Page>>,
     /// A recorded session that is on the screen instead of the machine.
     past: Option<Past>,
     in_force: InForce,
@@ -138,7 +139,11 @@ pub struct ConsoleApp {
 }
 
 /// Starts the loop of a plan, recorded if sessions are.
-pub(crate) fn start_recorded(plan: &Plan, sessions: &mut Sessions, line: Option<Line>) -> Result<Started, StartError> {
+pub(crate) fn start_recorded(
+    plan: &Plan,
+    sessions: &mut Sessions,
+    line: Option<Box<dyn Line>>,
+) -> Result<Started, StartError> {
     let (assembly, mut watched) = plan.watched_assembly()?;
     let assembly = Assembly { tap: sessions.begin(plan), ..assembly };
     if let Some(watched) = watched.as_mut().and_then(Watched::another) {
@@ -188,7 +193,7 @@ impl ConsoleApp {
             checking: Checking::default(),
             listing: Listing::default(),
             list: List::default(),
-            studies: Studies::default(),
+            page: extras::part(Extra::page).map(|page| page()),
             past: None,
             watched: None,
             read: None,
@@ -226,7 +231,7 @@ impl ConsoleApp {
         let (wizards, in_force, diary) = (&mut self.wizards, &mut self.in_force, &mut self.diary);
         let eyes = &mut self.panels.eyes;
         let (calibrated, mut check) = (in_force.side(), self.checking.run_mut());
-        let mut trial = self.studies.trial.as_mut();
+        let mut run = self.page.as_mut().and_then(|page| page.run_mut());
         self.live.take_in(door, |news| {
             if let Some(check) = &mut check {
                 check.take(news);
@@ -237,9 +242,9 @@ impl ConsoleApp {
             }
             in_force.watch(tick);
             eyes.note(tick);
-            match &mut trial {
+            match &mut run {
                 // The diary has the mode.
-                Some(trial) => trial.tick(tick),
+                Some(run) => run.tick(tick),
                 None if tick.side == Side::Right => diary.tick(tick),
                 None => {}
             }
@@ -272,15 +277,16 @@ impl ConsoleApp {
             })?,
             None => None,
         };
-        let line_door = line.as_ref().map(Line::door);
+        let door = line.as_ref().map(|line| line.door());
         self.in_force.bind(&rig, &scene);
         let calibrations = self.in_force.calibrations(&rig);
         let rig = self.in_force.with_checked(rig);
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
-        let started = match (&mut self.studies.trial, self.simulated_speed) {
-            (Some(trial), speed) => {
-                let audiences = self.sessions.blind_audiences(&plan, &trial.name());
-                trial.start(&plan, speed, (self.sessions.reel(), audiences))
+        let run = self.page.as_mut().and_then(|page| page.run_mut());
+        let started = match (run, self.simulated_speed) {
+            (Some(run), speed) => {
+                let audiences = self.sessions.blind_audiences(&plan, &run.name());
+                run.start(&plan, speed, (self.sessions.reel(), audiences))
             }
             (None, Some(speed)) => nima_simulation::start_watched(&plan, speed).map_err(|error| error.to_string()),
             (None, None) => start_recorded(&plan, &mut self.sessions, line).map_err(|error| error.to_string()),
@@ -289,7 +295,7 @@ impl ConsoleApp {
         let rough_edges = self.live.rough_edges;
         self.live = Live::new(rig, scene);
         self.live.rough_edges = rough_edges;
-        self.live.line_door = line_door;
+        self.live.line = door;
         self.panels.forces = ForcesState::default();
         self.history.adopt();
         self.panels.devices.begin_anew();
@@ -305,11 +311,10 @@ impl ConsoleApp {
 
     /// Applies the choice of the trade-off panel.
     fn apply_tradeoff(&mut self, rig: RigConfig) {
-        let told = match self.restart(rig, self.live.scene.clone()) {
-            Ok(()) => text::tradeoff::APPLIED_BY_RESTART.get().to_owned(),
-            Err(reason) => text::tradeoff::not_applied(&reason),
-        };
-        self.panels.tradeoff.tell(told);
+        let outcome = self.restart(rig, self.live.scene.clone());
+        if let Some(tradeoff) = &mut self.panels.tradeoff {
+            tradeoff.restarted(outcome);
+        }
     }
 
     fn layout(&mut self, ui: &mut Ui) {
@@ -320,7 +325,7 @@ impl ConsoleApp {
                 Reach::Cannot(why) => Some(why),
                 Reach::Can | Reach::Absent => None,
             };
-            self.top_bar.participant = self.studies.trial.as_ref().map(|trial| trial.participant.clone());
+            self.top_bar.participant = self.run().map(|run| run.participant().to_owned());
             self.top_bar.asked = self.checking.ask();
             self.top_bar.past = self.past.is_some();
             self.top_bar.can_undo = [self.history.can_undo(), self.history.can_redo()];
@@ -360,7 +365,7 @@ impl eframe::App for ConsoleApp {
         self.take_in();
         self.ask();
         self.go_on_checking();
-        self.go_on_studying();
+        self.go_on_with_page();
     }
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
@@ -393,7 +398,7 @@ impl eframe::App for ConsoleApp {
         if self.past.is_some() {
             self.outbox.only_stop();
         }
-        if self.live.line_door.is_some() {
+        if self.live.line.is_some() {
             self.outbox.without_delay();
         }
         self.outbox.flush(self.door.as_ref().map(Door::handle));
@@ -413,8 +418,10 @@ impl eframe::App for ConsoleApp {
         if let Some(gl) = gl {
             self.panels.scene.destroy(gl);
         }
-        self.panels.tradeoff.cancel();
-        self.leave_study();
+        if let Some(tradeoff) = &self.panels.tradeoff {
+            tradeoff.stop();
+        }
+        self.leave_page();
         self.write_figures();
         if let (Some(gl), Some(surface)) = (gl, &self.surface) {
             surface.destroy(gl);

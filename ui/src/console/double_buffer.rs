@@ -6,14 +6,14 @@ use nima_endoscope::Picture;
 /// Two textures, of which one is shown while the other is written: where the processor draws, a frame before may still be read by its threads, and
 /// would show parts of both pictures.
 #[derive(Default)]
-pub(in crate::console) struct DoubleBuffer {
+pub(crate) struct DoubleBuffer {
     textures: [Option<TextureHandle>; 2],
     front: usize,
 }
 
 impl DoubleBuffer {
     /// Uploads a picture, which is shown from now on.
-    pub(in crate::console) fn upload(&mut self, ctx: &Context, name: &str, picture: &Picture) {
+    pub(crate) fn upload(&mut self, ctx: &Context, name: &str, picture: &Picture) {
         let image = ColorImage::from_rgba_premultiplied(picture.size_px, &picture.rgba);
         self.front = 1 - self.front;
         let back = &mut self.textures[self.front];
@@ -24,7 +24,7 @@ impl DoubleBuffer {
     }
 
     /// What is shown; `None` before the first picture.
-    pub(in crate::console) fn id(&self) -> Option<TextureId> {
+    pub(crate) fn id(&self) -> Option<TextureId> {
         self.textures[self.front].as_ref().map(TextureHandle::id)
     }
 }

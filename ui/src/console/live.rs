@@ -24,11 +24,7 @@ use nima_machine::{
 use nima_session::objects::Objects;
 use nima_simulation::{Training, scene::Scene};
 
-use crate::{
-    line::{LineDoor, LineReport},
-    objects::training,
-    words::link_trouble,
-};
+use crate::{link::LineDoor, objects::training};
 
 use super::{
     activity::Activity,
@@ -62,9 +58,9 @@ const BLOCKS_KEPT: usize = 40;
 const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
 
 /// A line that carries nothing, as a device that is missing: behind the last place of a roster.
-fn missing_line(line: &LineReport) -> Option<Missing> {
-    let [cause, cure] = link_trouble(line.state)?;
-    let was_there = line.figures.counts.delivered > 0;
+fn missing_line(line: &dyn LineDoor) -> Option<Missing> {
+    let [cause, cure] = line.trouble()?;
+    let was_there = line.has_delivered();
     Some(Missing { place: DEVICES_MAX, name: text::link::LINK.get().to_owned(), was_there, cause, cure })
 }
 
@@ -155,10 +151,8 @@ pub struct Live {
     pub devices_then: Vec<(DeviceName, Standing)>,
     /// Health of the devices, in the same order.
     pub healths: Healths,
-    /// What was last told of the line to the machine with the arm, if it is at another one.
-    pub(crate) line: Option<LineReport>,
-    /// Where that is told, and what is wanted of it; there is one as long as the arm is at another machine.
-    pub(crate) line_door: Option<LineDoor>,
+    /// The line to the machine with the arm, as long as that is another one.
+    pub(crate) line: Option<Box<dyn LineDoor>>,
     /// What the devices have delivered in the last seconds, oldest first.
     pub blocks: VecDeque<Box<Gauges>>,
     /// Number of such blocks since the loop began.
@@ -214,7 +208,6 @@ impl Live {
             engage_closed: None,
             roster: Roster::new(),
             line: None,
-            line_door: None,
             devices_then: Vec::new(),
             healths: Healths::default(),
             blocks: VecDeque::with_capacity(BLOCKS_KEPT + 1),
@@ -380,7 +373,7 @@ impl Live {
 
     /// What is wanted and does not deliver: the line to the other machine, then devices in the order of the roster.
     pub fn missing(&self) -> impl Iterator<Item = Missing> {
-        self.line.iter().filter_map(missing_line).chain(self.missing_devices())
+        self.line.as_deref().and_then(missing_line).into_iter().chain(self.missing_devices())
     }
 
     fn missing_devices(&self) -> impl Iterator<Item = Missing> {
@@ -415,7 +408,7 @@ impl Live {
             stop_is_stuck,
             bias_moved_n: self.bias_moved_n,
             is_unchecked: self.is_unchecked,
-            control: self.line.map(|line| line.control),
+            question: self.line.as_ref().and_then(|line| line.question()),
             unrecorded,
         }
     }

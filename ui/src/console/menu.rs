@@ -147,7 +147,7 @@ fn picture_ui(ui: &mut Ui, settings: &mut Settings) -> Option<Action> {
 fn panels_ui(ui: &mut Ui, layout: &Layout) -> Option<Action> {
     let mut wanted = None;
     ui.label(text::menu::PANELS.get()).on_hover_text(text::menu::PANELS_HOVER.get());
-    for pair in Panel::ALL.chunks(2) {
+    for pair in Panel::built().collect::<Vec<_>>().chunks(2) {
         ui.horizontal(|ui| {
             for panel in pair {
                 let open = layout.is_open(*panel);

@@ -14,7 +14,7 @@ pub mod deadlines;
 pub mod desk;
 pub mod diary;
 pub mod door;
-mod double_buffer;
+pub(crate) mod double_buffer;
 pub mod eyes;
 pub mod frames;
 pub mod help;
@@ -24,9 +24,10 @@ mod keys;
 pub mod live;
 mod menu;
 pub mod monitor;
-mod opener;
+pub(crate) mod opener;
 pub mod outbox;
 pub(crate) mod overview;
+pub mod page;
 mod palette;
 pub mod panels;
 pub(crate) mod past;
@@ -42,7 +43,6 @@ pub(crate) mod sessions;
 pub mod settings;
 pub mod start;
 pub mod stiffness;
-pub(crate) mod studies;
 pub mod text;
 pub mod theme;
 mod undo;
@@ -61,7 +61,7 @@ use start::Choice;
 pub use app::ConsoleApp;
 
 use crate::language::{self, Language};
-use crate::line::{LineDoor, Reopen};
+use crate::link::{LineDoor, Reopen};
 use crate::{emulators::Emulators, leaving::Leave};
 
 /// Options of the window, for screenshots and tests. By default it stays open until it is closed.
@@ -103,7 +103,7 @@ pub(crate) struct Begun {
     pub(crate) scene: Scene,
     pub(crate) sessions: Sessions,
     /// The line to the machine with the arm, if it is at another one, and how it is opened again.
-    pub(crate) far: Option<(LineDoor, Reopen)>,
+    pub(crate) far: Option<(Box<dyn LineDoor>, Reopen)>,
 }
 
 /// Opens the console for a running loop; returns when the window is closed and the loop has ended.
@@ -145,7 +145,7 @@ fn console(cc: &eframe::CreationContext<'_>, begun: Begun, options: Options) -> 
 }
 
 /// An error with its causes, in one line.
-fn chain(error: &dyn std::error::Error) -> String {
+pub(crate) fn chain(error: &dyn std::error::Error) -> String {
     let mut words = error.to_string();
     let mut source = error.source();
     while let Some(cause) = source {

@@ -15,7 +15,7 @@ const OPENER: &[&str] = if cfg!(target_os = "macos") {
 };
 
 /// Opens it; false if there is no program that does. It may wait for as long as that program runs, so not on the window's thread.
-pub(super) fn open(path: &Path) -> bool {
+pub(crate) fn open(path: &Path) -> bool {
     open_with(OPENER, path)
 }
 

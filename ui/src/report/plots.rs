@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use nima_charts::COLOURS;
 use nima_session::report::{ArmFigures, Figures, Mark, MarkLevel, STATES, Span, Trace};
-use nima_study::picture::COLOURS;
 
 use super::html::escape;
 

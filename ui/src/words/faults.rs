@@ -1,27 +1,11 @@
 //! Texts: the cause of each fault, and what the operator can do.
 
-use nima_core::safety::{Implausible, State};
+use nima_core::safety::Implausible;
 use nima_devices::Loss;
-use nima_machine::messages::{FarStop, Fault, ForceSource, LoopState};
+use nima_machine::messages::{FarStop, Fault, ForceSource};
 
 use super::Remedy;
 use crate::language::word;
-
-/// What is wrong in a state, and what to do, beside a code for another program; nothing in a state in which all is well.
-pub(crate) fn trouble_of(state: LoopState) -> String {
-    match state {
-        State::Faulted(fault) => format!("{}. {}", fault.cause(), fault.cure()),
-        State::Stopped => {
-            word("Stopped. Release the stop, then engage again", "Angehalten. Halt lösen, dann neu koppeln").to_owned()
-        }
-        State::Disconnected => word(
-            "A device is missing or sends nothing. See Devices",
-            "Ein Gerät fehlt oder sendet nichts. Siehe Geräte",
-        )
-        .to_owned(),
-        State::Idle | State::Ready | State::Engaged | State::Clutched => String::new(),
-    }
-}
 
 /// Why the force at the tip is unknown.
 fn unknown_because(source: ForceSource) -> &'static str {

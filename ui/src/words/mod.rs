@@ -5,7 +5,6 @@
 //! Causes are sentences; cures say what the operator can do; reasons start in lower case, because they follow a colon.
 
 mod calibration;
-pub(crate) mod camera;
 mod causes;
 mod channels;
 mod commands;
@@ -17,7 +16,6 @@ mod force;
 mod frames;
 mod gates;
 mod happenings;
-mod link;
 mod modes;
 mod names;
 mod numbers;
@@ -31,12 +29,10 @@ pub(crate) use channels::{channel_group, channel_name, marker};
 pub(crate) use commands::operation;
 pub(crate) use disk::disk_full_in;
 pub(crate) use events::event;
-pub(crate) use faults::trouble_of;
 pub(crate) use findings::finding_words;
 pub(crate) use frames::{axes_words, cause, phase};
 pub(crate) use gates::gate_words;
 pub(crate) use happenings::happening;
-pub(crate) use link::{link_rows, link_trouble, state_in_words};
 pub(crate) use modes::{mode_meaning, mode_name};
 pub(crate) use names::{
     device_name, exchange_words, goal_words, lack_words, loss_words, obstacle_words, part_name, role_name,

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::words::{has_words, literals, sources};
+use crate::words::{has_words, literals, of_extras, sources};
 
 /// Texts that are the same in both languages: names, abbreviations, terms that German engineers use as they are.
 const SAME: [&str; 27] = [
@@ -76,6 +76,9 @@ fn modules() -> Vec<(PathBuf, String)> {
     let mut files: Vec<PathBuf> = Vec::new();
     for folder in ["console/text", "words"] {
         sources(&root.join(folder), &mut files);
+    }
+    for path in ["text", "words"].into_iter().flat_map(of_extras) {
+        sources(&path, &mut files);
     }
     files.sort();
     let read = |path: PathBuf| {

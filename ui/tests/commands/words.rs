@@ -1,5 +1,5 @@
-//! The console's words live in `ui/src/console/text/`: a translation has one place to work in. This test reads the sources and counts the
-//! literals with words everywhere else.
+//! The console's words live in `ui/src/console/text/`, those of an extra in its folder: a translation has few places to work in. This test reads
+//! the sources and counts the literals with words everywhere else.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,19 @@ use crate::languages::pairs;
 const LEFT: [(&str, usize); 4] =
     [("app/pace.rs", 1), ("canvas/surface.rs", 1), ("scene3d/gl.rs", 2), ("screenshot.rs", 1)];
 
+/// What each extra has under this name: a file or a folder.
+pub(crate) fn of_extras(name: &str) -> Vec<PathBuf> {
+    let extras = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/extras");
+    let folders = std::fs::read_dir(extras).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir());
+    let paths = folders.flat_map(|folder| [folder.join(name), folder.join(format!("{name}.rs"))]);
+    paths.filter(|path| path.exists()).collect()
+}
+
+/// The sources in this folder, or this source.
 pub(crate) fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
+    if folder.is_file() {
+        return files.push(folder.to_owned());
+    }
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
@@ -85,10 +97,15 @@ fn every_sentence_is_in_the_text_modules() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/console");
     let mut files = Vec::new();
     sources(&root, &mut files);
+    let shown = of_extras("screen");
+    assert!(shown.len() >= 4, "{shown:?}");
+    for path in &shown {
+        sources(path, &mut files);
+    }
     files.sort();
     let mut wrong = Vec::new();
     for path in &files {
-        let name = path.strip_prefix(&root).unwrap().to_str().unwrap().replace('\\', "/");
+        let name = path.strip_prefix(&root).unwrap_or(path).to_str().unwrap().replace('\\', "/");
         let found: Vec<String> = literals(&std::fs::read_to_string(path).unwrap())
             .into_iter()
             .filter(|literal| has_words(literal))
@@ -100,17 +117,21 @@ fn every_sentence_is_in_the_text_modules() {
     }
     assert!(
         wrong.is_empty(),
-        "put new words into ui/src/console/text, and lower the number where some have moved:\n{}",
+        "put new words into ui/src/console/text or the text of the extra, and lower the number where some have moved:\n{}",
         wrong.join("\n")
     );
 }
 
 /// Name and words, English and German, of every constant in `text/`.
 fn constants() -> Vec<(String, [String; 2])> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/console/text");
+    let mut files = Vec::new();
+    sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src/console/text"), &mut files);
+    for path in of_extras("text") {
+        sources(&path, &mut files);
+    }
     let mut constants = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let source = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+    for path in files {
+        let source = std::fs::read_to_string(path).unwrap();
         for part in source.split("const ").skip(1) {
             let Some((name, rest)) = part.split_once(": Text =") else { continue };
             constants.push((name.to_owned(), pairs(rest).remove(0)));

@@ -129,7 +129,7 @@ fn a_measurement_can_be_cancelled() {
     pick(&mut harness, "Cancel");
     let stopped = comes(&mut harness, Duration::from_secs(10), |harness| shows(harness, "Cancelled"));
     assert!(stopped, "it did not stop");
-    assert!(harness.state().tradeoff().figures().is_none());
+    assert!(!harness.state().is_tradeoff_measured());
     harness.get_by_role_and_label(Role::Button, "Measure on this machine…");
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged, "the loop went on");
 }
@@ -149,7 +149,7 @@ fn choose_another(harness: &Console) -> usize {
 fn a_measured_point_is_applied_and_a_restart_comes_back_idle() {
     let mut harness = console();
     pick(&mut harness, "Measure on this machine…");
-    wait(&mut harness, "measured", |harness| harness.state().tradeoff().figures().is_some());
+    wait(&mut harness, "measured", |harness| harness.state().is_tradeoff_measured());
     harness.step();
     harness.check_accessibility();
     harness.get_by_label_contains("Trade-off plot:");
@@ -177,7 +177,7 @@ fn a_measured_point_is_applied_and_a_restart_comes_back_idle() {
 fn a_restart_is_no_way_out_of_a_stop() {
     let mut harness = console();
     pick(&mut harness, "Measure on this machine…");
-    wait(&mut harness, "measured", |harness| harness.state().tradeoff().figures().is_some());
+    wait(&mut harness, "measured", |harness| harness.state().is_tradeoff_measured());
     harness.step();
     choose_another(&harness);
     harness.step();

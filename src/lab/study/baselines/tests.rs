@@ -1,7 +1,7 @@
 use nima_core::impedance::{Baseline, Mode};
 use nima_recording::csv::{Mapping, Recording};
-use nima_testing::unjudged;
 use nima_simulation::scene::Scene;
+use nima_testing::unjudged;
 
 use super::{CHOSEN_ON, Options, Report, Split};
 use crate::{Experiment as _, Findings as _, tradeoff::Source};

@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
+use nima_charts::{Axis, Chart, Series, Style, svg};
 use nima_core::impedance::{Mode, OwnMotion};
 use nima_machine::runtime::ClockProfile;
 
@@ -9,10 +10,7 @@ use super::{
     Aim, BASE_MS, Condition, DELAYS_MS, Extent, Happening, JITTERS, Jitter, LOSSES_PERCENT, NetworkError, Options,
     Report, Row, plan::judged_line, study,
 };
-use crate::{
-    Experiment, Findings, clocks,
-    picture::{Axis, Chart, Series, Style, svg},
-};
+use crate::{Experiment, Findings, clocks};
 
 const CSV_HEADER: &str = "clock,mode,delay_ms,jitter_ms,loss_percent,burst_ms,happening,error_n,asked_error_n,tissue_n,over_clean,over_same_playout,\
     over_reflection,injected_mj,tissue_injected_mj,oscillation_n,tissue_oscillation_n,ceiling_breaches,slew_breaches,\

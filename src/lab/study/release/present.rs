@@ -2,16 +2,14 @@
 
 use std::fmt::Write as _;
 
+use nima_charts::{Axis, Chart, Series, Style, svg};
 use nima_core::impedance::Mode;
 use nima_machine::runtime::ClockProfile;
 
 use super::{
     AIM_M_S, AIM_MJ, AIM_MM, AIM_N, CONTACTS_N, DELAYS_MS, Report, Row, Situation, WEAK_AIM_MM, Worst, methods,
 };
-use crate::{
-    Findings, clocks,
-    picture::{Axis, Chart, Series, Style, svg},
-};
+use crate::{Findings, clocks};
 
 impl Findings for Report {
     /// For each clock: a summary, other handles, and every letting go of 5 N.

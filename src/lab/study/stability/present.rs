@@ -2,13 +2,12 @@
 
 use std::fmt::Write as _;
 
+use nima_charts::{Axis, Chart, Series, Style, svg};
+
 use super::{
     Entry, Extreme, ORDINARY_CONDITION, Options, RenderingVerdict, Report, Solver, StabilityError, TARGET, study,
 };
-use crate::{
-    Experiment, Findings,
-    picture::{Axis, Chart, Series, Style, svg},
-};
+use crate::{Experiment, Findings};
 
 impl Report {
     /// CSV with one row per case, solver and degree; a figure that does not exist is empty.

@@ -1,12 +1,10 @@
 //! The curves as pictures.
 
+use nima_charts::{Axis, Chart, Series, Style, svg};
 use nima_core::impedance::Mode;
 
 use super::{Knob, Method, Point, SourceFigures, Study};
-use crate::{
-    picture::{Axis, Chart, Series, Style, svg},
-    solvers::Solver,
-};
+use crate::solvers::Solver;
 
 impl Study {
     /// Pictures by name: error over cost for every source (under the source's name), then one for every parameter.

@@ -1,7 +1,8 @@
 //! The figures as CSV, one row per point.
 
-use crate::csv_cell;
 use std::fmt::Write as _;
+
+use nima_files::csv_cell;
 
 use super::{SourceFigures, Study};
 

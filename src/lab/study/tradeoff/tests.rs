@@ -6,8 +6,8 @@ use nima_core::{
     signal::DifferentiatorKind,
 };
 use nima_recording::csv::{Mapping, Recording};
-use nima_testing::unjudged;
 use nima_simulation::scene::Scene;
+use nima_testing::unjudged;
 
 use super::{sweep::mark_front, *};
 use crate::{

@@ -3,9 +3,10 @@
 use std::fmt::Write as _;
 
 use nima_analysis::Interval;
+use nima_files::csv_cell;
 
 use super::{Design, Mixed, OfCondition, OfMeasure, Pair, Report};
-use crate::{Findings, csv_cell};
+use crate::Findings;
 
 impl Findings for Report {
     fn text(&self) -> String {

@@ -1,7 +1,6 @@
 //! `nima calibrate`: calibrations from files, each with a verdict; or all of an emulated rig.
 
 mod board;
-mod camera;
 mod correspondence;
 mod gravity;
 mod rig;
@@ -19,8 +18,6 @@ pub(super) enum CalibrateCommand {
     Gravity(gravity::Arguments),
     /// Find the rotation between the sensor under the tissue and the wrist sensor from pairs of forces
     Correspondence(correspondence::Arguments),
-    /// Find the lens of the endoscope's camera from pictures of a checkerboard
-    Camera(camera::Arguments),
     /// Draw a checkerboard in its true size, for a printer
     Board(board::Arguments),
     /// Let the simulated technician of an emulated rig do every calibration of every arm, and save them (some minutes)
@@ -31,7 +28,6 @@ pub(super) fn run(command: &CalibrateCommand) -> anyhow::Result<()> {
     match command {
         CalibrateCommand::Gravity(arguments) => gravity::run(arguments),
         CalibrateCommand::Correspondence(arguments) => correspondence::run(arguments),
-        CalibrateCommand::Camera(arguments) => camera::run(arguments),
         CalibrateCommand::Board(arguments) => board::run(arguments),
         CalibrateCommand::Rig(arguments) => rig::run(arguments),
     }

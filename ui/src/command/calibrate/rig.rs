@@ -23,7 +23,7 @@ use nima_simulation::{
 };
 
 use crate::{
-    command::setup::Setup,
+    command::setup::{Setup, side},
     console::{
         in_force::InForce,
         reader::{Reader, task_of},
@@ -65,10 +65,6 @@ impl Arguments {
     }
 }
 
-fn side(word: &str) -> Result<Side, String> {
-    Side::ALL.into_iter().find(|side| side.word() == word).ok_or_else(|| "give right or left".to_owned())
-}
-
 pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.only == Some(Which::Camera) {
         bail!("the simulated technician has no board; calibrate the camera with `nima console --calibrate camera`");
@@ -88,7 +84,7 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let rig = in_force.with_checked(rig);
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
     let mut bench = Bench::start(plan, arguments.rig.clone(), in_force, emulators.technician(), leave)?;
-    for which in Which::ALL.into_iter().filter(|which| arguments.does(*which)) {
+    for which in Which::built().filter(|which| arguments.does(*which)) {
         for side in &sides {
             let began = Instant::now();
             bench.calibrate(which, *side)?;

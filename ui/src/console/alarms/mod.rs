@@ -9,7 +9,6 @@ use std::time::Duration;
 
 use egui::Color32;
 use nima_machine::messages::{Fault, LoopState, Scheduling};
-use nima_network::endpoint::Control;
 
 use super::theme;
 use crate::words::lack_words;
@@ -83,8 +82,8 @@ pub enum Kind {
     Scheduling,
     /// No ready check of today has passed.
     Unchecked,
-    /// Another console asks for control of the follower.
-    ControlAsked,
+    /// Somebody at another machine asks something.
+    Question,
     /// The session is not recorded, or will soon not be.
     Unrecorded,
 }
@@ -101,7 +100,7 @@ impl Kind {
             | Self::BiasMoved
             | Self::Scheduling
             | Self::Unchecked
-            | Self::ControlAsked => false,
+            | Self::Question => false,
         }
     }
 }
@@ -157,8 +156,8 @@ pub struct Signs {
     pub bias_moved_n: Option<f64>,
     /// No ready check of today has passed on this rig.
     pub is_unchecked: bool,
-    /// Who holds the follower, if it is at another machine.
-    pub control: Option<Control>,
+    /// Cause and cure of a question that comes over the line to another machine.
+    pub question: Option<[&'static str; 2]>,
     /// Why the session is not recorded although it should be, or what will soon be in the way.
     pub unrecorded: Option<String>,
 }
@@ -231,12 +230,12 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             cure: text::alarms::UNCHECKED_CURE.get().to_owned(),
         });
     }
-    if signs.control == Some(Control::HoldsAsked) {
+    if let Some([cause, cure]) = signs.question {
         alarms.push(Alarm {
-            kind: Kind::ControlAsked,
+            kind: Kind::Question,
             priority: Priority::Low,
-            cause: text::link::CONTROL_ASKED_CAUSE.get().to_owned(),
-            cure: text::link::CONTROL_ASKED_CURE.get().to_owned(),
+            cause: cause.to_owned(),
+            cure: cure.to_owned(),
         });
     }
     if let Some(why) = &signs.unrecorded {

@@ -51,8 +51,7 @@ impl ConsoleApp {
             Action::Rig if self.start.is_open => self.close_pages(),
             Action::Rig => self.open_start(),
             Action::Sessions => self.toggle_list(),
-            Action::Studies if self.studies.is_shown => self.studies.is_shown = false,
-            Action::Studies => self.open_studies(),
+            Action::Studies => self.toggle_page(),
             Action::Alarms => self.top_bar.alarms.list ^= true,
             Action::Acknowledge => self.top_bar.alarms.log.acknowledge(),
             Action::Mark => self.live.mark(),
@@ -75,10 +74,10 @@ impl ConsoleApp {
         }
     }
 
-    const fn close_pages(&mut self) {
+    fn close_pages(&mut self) {
         self.start.is_open = false;
         self.list.is_open = false;
-        self.studies.is_shown = false;
+        self.hide_page();
     }
 
     fn act_in_past(&mut self, action: Action) {

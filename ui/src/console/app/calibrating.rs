@@ -124,7 +124,7 @@ impl ConsoleApp {
             Saving::Frame(saving) => self.in_force.save_frame(*saving, &self.running.rig, self.settings.folder())?,
             Saving::Camera(changes) => {
                 let (path, rig) = self.in_force.change_rig(&changes, &self.running.rig, self.settings.folder())?;
-                let words = text::camera::written(&path);
+                let words = text::wizards::written(&path);
                 (rig, path, words)
             }
             Saving::Undo(changes) => {

@@ -11,7 +11,7 @@ use crate::{
         Options, frames::Meter, in_force::InForce, pictures::Photographer, screenshot, sessions::Sessions,
         settings::Kept, wizards::Wizards,
     },
-    line::{LineDoor, Reopen},
+    link::{LineDoor, Reopen},
     telling::tell,
 };
 
@@ -90,9 +90,9 @@ impl ConsoleApp {
 
     /// The arm is at another machine: shows what is told of the line there, and opens it again for every loop that starts anew.
     #[must_use]
-    pub(crate) fn with_line(mut self, far: Option<(LineDoor, Reopen)>) -> Self {
+    pub(crate) fn with_line(mut self, far: Option<(Box<dyn LineDoor>, Reopen)>) -> Self {
         if let Some((door, reopen)) = far {
-            self.live.line_door = Some(door);
+            self.live.line = Some(door);
             self.reopen = Some(reopen);
         }
         self

@@ -22,13 +22,13 @@ pub(super) enum Page {
     Listing,
     Wizard,
     Start,
-    Studies,
+    OfExtra,
     Monitor,
 }
 
 impl ConsoleApp {
     /// The page that is shown.
-    pub(super) const fn page(&self) -> Page {
+    pub(super) fn page(&self) -> Page {
         if self.in_trial() {
             Page::Trial
         } else if self.past.is_some() {
@@ -43,16 +43,16 @@ impl ConsoleApp {
             Page::Wizard
         } else if self.start.is_open {
             Page::Start
-        } else if self.studies.is_shown {
-            Page::Studies
+        } else if self.is_page_shown() {
+            Page::OfExtra
         } else {
             Page::Monitor
         }
     }
 
     /// A person guides the arm, or a study is open: views stay, and the arm cannot be engaged.
-    pub(super) const fn is_calibrating(&self) -> bool {
-        self.wizards.open.is_some() || self.checking.is_open() || self.has_study() && !self.in_trial()
+    pub(super) fn is_calibrating(&self) -> bool {
+        self.wizards.open.is_some() || self.checking.is_open() || self.is_held() && !self.in_trial()
     }
 
     /// Whether this can be done now, and by who sits here.
@@ -111,7 +111,7 @@ impl ConsoleApp {
     fn may_turn_to(&self, action: Action) -> Reach {
         let why = if self.past.is_some() {
             Some(text::past::BLOCKED.get())
-        } else if self.has_study() && action == Action::Studies {
+        } else if self.is_held() && action == Action::Studies {
             Some(text::commands::STUDY_IS_OPEN.get())
         } else if self.is_calibrating() {
             Some(text::start::OPEN_DISABLED_HOVER.get())

@@ -4,9 +4,7 @@ use nima_machine::{config::RigConfig, messages::Tick};
 use nima_session::objects::Objects;
 
 use super::ConsoleApp;
-use crate::console::{
-    in_force::InForce, panels::TradeoffState, roles::Role, scene3d::extras::Extras, settings::Settings,
-};
+use crate::console::{in_force::InForce, roles::Role, scene3d::extras::Extras, settings::Settings};
 
 impl ConsoleApp {
     /// The settings that are saved between sessions, for tests.
@@ -34,9 +32,9 @@ impl ConsoleApp {
         &self.live.rig
     }
 
-    /// State of the trade-off panel.
-    pub fn tradeoff(&self) -> &TradeoffState {
-        &self.panels.tradeoff
+    /// Whether the trade-off panel has figures.
+    pub fn is_tradeoff_measured(&self) -> bool {
+        self.panels.tradeoff.as_ref().is_some_and(|tradeoff| tradeoff.is_measured())
     }
 
     /// Optional objects in the 3-D view.

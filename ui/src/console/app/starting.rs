@@ -92,7 +92,7 @@ impl ConsoleApp {
 
     /// Over a view, a newcomer chooses between what runs, the demonstration and a rig of their own.
     pub(super) fn welcome(&mut self, ctx: &egui::Context, room: egui::Rect) {
-        let covers = self.start.is_open || self.list.is_open || self.past.is_some() || self.has_study();
+        let covers = self.start.is_open || self.list.is_open || self.past.is_some() || self.is_held();
         if covers || self.wizards.open.is_some() || self.checking.is_open() {
             return;
         }
@@ -118,10 +118,11 @@ impl ConsoleApp {
             recent: &self.settings.now.recent,
             is_starting: self.starting.is_some(),
             picture: self.panels.eyes.told(),
+            page: self.page.as_ref().map(|page| page.name()),
         };
         let chosen = self.start.ui(ui, &now);
-        if std::mem::take(&mut self.start.wants_studies) {
-            self.open_studies();
+        if std::mem::take(&mut self.start.wants_page) {
+            self.open_page();
         }
         if let Some(choice) = chosen
             && !self.outbox.holds_stop()
@@ -199,7 +200,7 @@ impl ConsoleApp {
         }
         match (started, before) {
             (Ok(()), _) => {
-                if !self.has_study() {
+                if !self.is_held() {
                     choice.remember(&mut self.settings.now.recent);
                 }
                 self.forget_what_was_taken();

@@ -19,7 +19,7 @@ impl ConsoleApp {
             Page::Listing => self.listing_layout(ui),
             Page::Wizard => self.wizard_layout(ui),
             Page::Start => self.start_layout(ui),
-            Page::Studies => self.studies_layout(ui),
+            Page::OfExtra => self.page_of_extra_layout(ui),
             Page::Monitor => self.monitor_layout(ui),
         }
     }

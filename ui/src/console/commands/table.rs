@@ -8,6 +8,7 @@ use super::{Action, Entry, Place, SIZE, SIZES_PERCENT, Stroke, UNDO, With};
 use crate::console::{
     desk::Panel, roles::Role, scene3d::extras::Switch, text, text::commands as names, wizards::Which,
 };
+use crate::extras::{self, Extra};
 use crate::language::{self, Language, Text};
 use crate::words::within;
 
@@ -62,15 +63,20 @@ fn views() -> Vec<Entry> {
 
 fn pages() -> Vec<Entry> {
     const PALETTE: Keys = &[Stroke { key: Key::P, with: With::Ctrl }];
-    vec![
+    let mut entries = vec![
         entry(Action::Glossary, names::GLOSSARY, key!(F4), Place::ViewMenu),
         entry(Action::Alarms, names::ALARMS, key!(F5), Place::ViewMenu),
         entry(Action::Rig, names::RIG, key!(F6), Place::Bar),
         entry(Action::Sessions, names::SESSIONS, key!(F7), Place::Bar),
-        entry(Action::Studies, names::STUDIES, key!(F8), Place::Keys),
+    ];
+    if extras::part(Extra::page).is_some() {
+        entries.push(entry(Action::Studies, names::STUDIES, key!(F8), Place::Keys));
+    }
+    entries.extend([
         entry(Action::Tour, names::TOUR, &[], Place::ViewMenu),
         entry(Action::Palette, names::PALETTE, PALETTE, Place::ViewMenu),
-    ]
+    ]);
+    entries
 }
 
 fn screen() -> Vec<Entry> {
@@ -94,7 +100,8 @@ fn screen() -> Vec<Entry> {
     );
     entries.extend(languages);
     entries.extend(
-        Panel::ALL.map(|panel| named(Action::Panel(panel), names::panel(panel.title()), panel.meaning(), &[], menu)),
+        Panel::built()
+            .map(|panel| named(Action::Panel(panel), names::panel(panel.title()), panel.meaning(), &[], menu)),
     );
     entries.extend([
         entry(Action::ResetLayout, (names::RESET_LAYOUT, text::menu::RESET_LAYOUT_HOVER), &[], menu),
@@ -112,7 +119,7 @@ fn calibration() -> Vec<Entry> {
         entry(Action::Check, (text::ready::OPEN, text::ready::MEANING), &[], at),
         entry(Action::Calibrations, (text::overview::OPEN, text::overview::MEANING), &[], at),
     ];
-    entries.extend(Which::ALL.map(|which| {
+    entries.extend(Which::built().map(|which| {
         let title = text::calibrations::calibrate(&within(which.name()));
         named(Action::Calibrate(which), title, which.meaning(), &[], at)
     }));

@@ -91,11 +91,8 @@ impl Layout {
         let mut placed = Vec::new();
         let fallback = self.places.is_none().then(|| default_for(size));
         let root = self.places.as_ref().or(fallback.as_ref()).and_then(|node| insert(&mut tiles, node, &mut placed));
-        let missing: Vec<TileId> = Panel::ALL
-            .into_iter()
-            .filter(|panel| !placed.contains(panel))
-            .map(|panel| tiles.insert_pane(panel))
-            .collect();
+        let missing: Vec<TileId> =
+            Panel::built().filter(|panel| !placed.contains(panel)).map(|panel| tiles.insert_pane(panel)).collect();
         let root = match root {
             _ if missing.is_empty() => root,
             Some(root) => Some(add_as_tabs(&mut tiles, root, missing)),
@@ -138,7 +135,7 @@ pub(super) fn in_front(tree: &Tree<Panel>) -> Vec<Panel> {
 /// Inserts a node; `None` if all its panels have been placed already.
 fn insert(tiles: &mut Tiles<Panel>, node: &Node, placed: &mut Vec<Panel>) -> Option<TileId> {
     match node {
-        Node::Panel(panel) if placed.contains(panel) => None,
+        Node::Panel(panel) if placed.contains(panel) || !panel.is_built() => None,
         Node::Panel(panel) => {
             placed.push(*panel);
             Some(tiles.insert_pane(*panel))

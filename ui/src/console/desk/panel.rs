@@ -1,8 +1,12 @@
 //! The panels of the technician's desk: names, purposes, and smallest sizes.
 
-use crate::console::text;
 use egui::{Vec2, vec2};
 use serde::{Deserialize, Serialize};
+
+use crate::{
+    console::text,
+    extras::{self, Extra},
+};
 
 /// A panel. Its name in the settings file is the variant's name in lower case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -53,6 +57,20 @@ impl Panel {
         Self::Link,
         Self::Tradeoff,
     ];
+
+    /// Those that this build has.
+    pub fn built() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().filter(|panel| panel.is_built())
+    }
+
+    /// Whether this build has it.
+    pub(super) fn is_built(self) -> bool {
+        match self {
+            Self::Link => extras::part(Extra::way).is_some(),
+            Self::Tradeoff => extras::part(Extra::tradeoff).is_some(),
+            _ => true,
+        }
+    }
 
     /// Title on its tab and in the menu.
     pub fn title(self) -> &'static str {

@@ -6,7 +6,7 @@ use std::{
 };
 
 use nalgebra::{Isometry3, Vector3};
-use nima_camera::steadied;
+use nima_endoscope::steadied;
 use nima_machine::{
     messages::Tick,
     rig::{SIDES, Side},

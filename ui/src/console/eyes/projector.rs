@@ -11,8 +11,7 @@ use std::{
 };
 
 use nalgebra::Isometry3;
-use nima_camera::steadied;
-use nima_endoscope::{Damage, FROZEN, Look, Picture, Standing, Tone, Wrong, h264, jpeg};
+use nima_endoscope::{Damage, FROZEN, Look, Picture, Standing, Tone, Wrong, h264, jpeg, steadied};
 use nima_machine::rig::{SIDES, Side};
 use nima_session::{
     pictures::{Coding, Pictures, Recorded},

@@ -13,15 +13,12 @@ use nima_machine::{
 };
 
 use super::{BLOCKS_KEPT, FIGURES_EVERY, Live, READINGS_EVERY, Refused, TRAIL_S, TRAIL_STEP_S, TREND_S};
-use crate::{
-    console::{
-        activity::Activity,
-        door::{Door, News},
-        history::CHANNELS,
-        readings::{Change, Figures, Twist},
-        rolling::Fading,
-    },
-    line::LineDoor,
+use crate::console::{
+    activity::Activity,
+    door::{Door, News},
+    history::CHANNELS,
+    readings::{Change, Figures, Twist},
+    rolling::Fading,
 };
 
 impl Live {
@@ -32,8 +29,8 @@ impl Live {
             self.roster.clone_from(handle.roster());
             self.activity = Activity::of(&self.roster);
         }
-        if let Some(report) = self.line_door.as_ref().and_then(LineDoor::newest) {
-            self.line = Some(report);
+        if let Some(line) = &mut self.line {
+            line.hear();
         }
         if let Some(healths) = handle.healths() {
             self.healths = healths;

@@ -66,7 +66,7 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
         Which::Camera => live.rig.endoscope.is_some(),
         _ => has_arm || which.scene().is_some(),
     };
-    for which in Which::ALL.into_iter().filter(offered) {
+    for which in Which::built().filter(offered) {
         let text = text::calibrations::calibrate(&within(which.name()));
         let is_open = open == Some(Page::Wizard(which));
         let button =

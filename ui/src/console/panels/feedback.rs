@@ -10,7 +10,6 @@ use nima_core::{
 };
 use nima_machine::messages::Command;
 
-use super::stable_gain::stable_gain_ui;
 use crate::{
     console::{
         live::Live,
@@ -18,6 +17,7 @@ use crate::{
         text, theme,
         widgets::{at_the_right, small},
     },
+    extras::{self, Extra},
     words::{mode_meaning, mode_name},
 };
 
@@ -148,7 +148,9 @@ fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Out
     };
     let limits = if state.allow_above_one { GAIN_ABOVE_ONE } else { GAIN };
     let (wanted, rail) = setting_ui(ui, &setting, &limits, live.gain(), &mut state.gain);
-    stable_gain_ui(ui, live, rail, limits.max);
+    if let Some(strip_ui) = extras::part(Extra::stable_gain) {
+        strip_ui(ui, live, rail, limits.max);
+    }
     if let Some(gain) = wanted {
         outbox.push(if gain > GAIN.max { Command::SetGainAboveOne(gain) } else { Command::SetGain(gain) });
     }
@@ -212,7 +214,7 @@ fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Ou
         at_once: false,
     };
     let in_force = live.delay_s() * 1e3;
-    let measured = live.line_door.is_some();
+    let measured = live.line.is_some();
     ui.add_enabled_ui(!measured, |ui| {
         if let Some(delay_ms) =
             setting_ui(ui, &setting, &SLIDER_DELAY_S.per(1e-3, "ms"), in_force, &mut state.delay_ms).0

@@ -13,13 +13,9 @@ pub mod gates;
 pub mod horizon;
 pub mod link;
 pub mod safety;
-mod stable_gain;
 pub mod timing;
 mod timing_bars;
 pub mod top_bar;
-pub mod tradeoff;
-mod tradeoff_apply;
-mod tradeoff_plot;
 
 pub use calibrations::{CalibrationWish, Page, calibrations_ui};
 pub use degrees::degrees_ui;
@@ -36,4 +32,28 @@ pub use safety::safety_ui;
 pub use timing::{TimingState, timing_ui};
 pub(super) use top_bar::state_ui;
 pub use top_bar::{TopBarState, top_bar_ui};
-pub use tradeoff::{TradeoffState, tradeoff_ui};
+
+use std::fmt::Debug;
+
+use egui::{Rect, Ui};
+use nima_machine::config::RigConfig;
+
+use super::{live::Live, outbox::Outbox};
+
+/// A panel of an extra. Dropping it ends what it does in the background.
+pub trait Tile: Debug {
+    /// Draws the panel. Returns a rig if the loop must be restarted with it.
+    fn ui(&mut self, ui: &mut Ui, live: &Live, outbox: &mut Outbox) -> Option<RigConfig>;
+
+    /// Tells how the restart went.
+    fn restarted(&mut self, outcome: Result<(), String>);
+
+    /// Asks what runs in the background to stop.
+    fn stop(&self);
+
+    /// Whether it has figures.
+    fn is_measured(&self) -> bool;
+}
+
+/// Draws a strip below a slider: whose rectangle, and whose value at the right end.
+pub(crate) type StripUi = fn(&mut Ui, &Live, Rect, f64);

@@ -20,13 +20,15 @@ use super::{
     outbox::Outbox,
     panels::devices::Change,
     panels::{
-        CalibrationWish, DevicesState, FeedbackState, ForceSpaceState, ForcesState, GatesState, TimingState,
-        TradeoffState,
+        CalibrationWish, DevicesState, FeedbackState, ForceSpaceState, ForcesState, GatesState, Tile, TimingState,
     },
     scene3d::{Look, SceneView},
     settings::Settings,
 };
-use crate::console::text;
+use crate::{
+    console::text,
+    extras::{self, Extra},
+};
 
 /// The user's role.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -74,7 +76,7 @@ impl Role {
 }
 
 /// State of the panels of all roles.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Panels {
     /// Mode, gain, delay.
     pub feedback: FeedbackState,
@@ -82,8 +84,8 @@ pub struct Panels {
     pub forces: ForcesState,
     /// Force space.
     pub space: ForceSpaceState,
-    /// Computing time against accuracy.
-    pub tradeoff: TradeoffState,
+    /// Computing time against accuracy, in a build that has it.
+    pub tradeoff: Option<Box<dyn Tile>>,
     /// The operating field.
     pub scene: SceneView,
     /// The endoscope's picture of it.
@@ -98,6 +100,24 @@ pub struct Panels {
     pub desk: Desk,
     /// State of the demonstration.
     pub demo: DemoState,
+}
+
+impl Default for Panels {
+    fn default() -> Self {
+        Self {
+            tradeoff: extras::part(Extra::tradeoff).map(|panel| panel()),
+            feedback: FeedbackState::default(),
+            forces: ForcesState::default(),
+            space: ForceSpaceState::default(),
+            scene: SceneView::default(),
+            eyes: Eyes::default(),
+            gates: GatesState::default(),
+            devices: DevicesState::default(),
+            timing: TimingState::default(),
+            desk: Desk::default(),
+            demo: DemoState::default(),
+        }
+    }
 }
 
 /// Requests of the operator that are not commands to the loop.

@@ -10,7 +10,7 @@ use crate::console::{
     outbox::Outbox,
     panels::{
         calibrations_ui, degrees_ui, devices_ui, feedback_ui, force_space_ui, forces_ui, gates_ui, horizon_ui, link_ui,
-        safety_ui, timing_ui, tradeoff_ui,
+        safety_ui, timing_ui,
     },
     scene3d::scene_ui,
     text,
@@ -49,7 +49,10 @@ pub(super) fn technician_ui(
             ui.label(weak(if elsewhere { text::monitor::NO_LINK.get() } else { text::link::NOT_IN_SESSIONS.get() }));
         }
         Panel::Link => link_ui(ui, live),
-        Panel::Tradeoff => wishes.restart = acts(ui, past, |ui| tradeoff_ui(ui, live, &mut panels.tradeoff, outbox)),
+        Panel::Tradeoff => {
+            let tradeoff = panels.tradeoff.as_mut();
+            wishes.restart = acts(ui, past, |ui| tradeoff.and_then(|panel| panel.ui(ui, live, outbox)));
+        }
     });
     panels.desk = desk;
     wishes

@@ -9,7 +9,7 @@ use nima_machine::config::RigConfig;
 use nima_simulation::scene::Scene;
 use serde::{Deserialize, Serialize};
 
-use crate::console::text;
+use crate::{console::text, extras};
 
 /// A rig and a scene, by name or path.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -77,7 +77,7 @@ impl Lists {
     /// Reads the user's files in `folder` beside what is built in. Files of these choices are listed too, wherever they are.
     pub(super) fn read(folder: Option<&Path>, used: &[Choice]) -> Self {
         let rigs = keys(
-            RigConfig::names(),
+            RigConfig::names().filter(|name| extras::emulates() || !is_emulated(name)),
             folder.map(|folder| folder.join("rigs")).as_deref(),
             used.iter().map(|one| &one.rig),
         );
@@ -88,6 +88,11 @@ impl Lists {
         );
         Self { rigs: rigs.into_iter().map(rig).collect(), scenes: scenes.into_iter().map(scene).collect() }
     }
+}
+
+/// Whether this built-in rig consists of emulated devices.
+fn is_emulated(rig: &str) -> bool {
+    RigConfig::load(rig).is_ok_and(|rig| rig.devices.is_some_and(|devices| devices.emulated))
 }
 
 /// The keys of one list, with whether each is the user's own.

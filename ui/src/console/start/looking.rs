@@ -16,7 +16,7 @@ const AGAIN: Duration = Duration::from_secs(2);
 
 /// Work on a thread of its own, and its last result.
 #[derive(Debug)]
-pub(in crate::console) struct Looked<T> {
+pub(crate) struct Looked<T> {
     running: Option<Receiver<T>>,
     found: Option<T>,
 }
@@ -29,7 +29,7 @@ impl<T> Default for Looked<T> {
 
 impl<T: Send + 'static> Looked<T> {
     /// Begins; the window is woken when there is a result. Does nothing while work is going on.
-    pub(in crate::console) fn begin(&mut self, ctx: &Context, work: impl FnOnce() -> T + Send + 'static) {
+    pub(crate) fn begin(&mut self, ctx: &Context, work: impl FnOnce() -> T + Send + 'static) {
         if self.running.is_some() {
             return;
         }
@@ -44,7 +44,7 @@ impl<T: Send + 'static> Looked<T> {
     }
 
     /// The last result.
-    pub(in crate::console) fn found(&mut self) -> Option<&T> {
+    pub(crate) fn found(&mut self) -> Option<&T> {
         match self.running.as_ref().map(Receiver::try_recv) {
             Some(Ok(found)) => (self.running, self.found) = (None, Some(found)),
             Some(Err(TryRecvError::Disconnected)) => self.running = None,
@@ -54,12 +54,12 @@ impl<T: Send + 'static> Looked<T> {
     }
 
     /// Whether work is going on.
-    pub(in crate::console) const fn is_running(&self) -> bool {
+    pub(crate) const fn is_running(&self) -> bool {
         self.running.is_some()
     }
 
     /// Forgets the result; one that is still to come is dropped.
-    pub(in crate::console) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         *self = Self::default();
     }
 }

@@ -16,7 +16,7 @@ pub use choices::Choice;
 pub(crate) use choices::drawn_anew;
 use choices::{Entry, Lists};
 use endoscope::EndoscopeCard;
-pub(in crate::console) use looking::Looked;
+pub(crate) use looking::Looked;
 use looking::{Answers, PluggedIn};
 pub(in crate::console) use welcome::Way;
 use welcome::Welcome;
@@ -35,8 +35,8 @@ const ROW: f32 = 40.0;
 pub struct StartPage {
     /// Whether the page is shown.
     pub(super) is_open: bool,
-    /// The page of user studies is wanted.
-    pub(super) wants_studies: bool,
+    /// The page of an extra is wanted.
+    pub(super) wants_page: bool,
     /// What a newcomer sees first.
     pub(super) welcome: Welcome,
     chosen: Choice,
@@ -63,6 +63,8 @@ pub(super) struct Now<'a> {
     pub(super) is_starting: bool,
     /// How it stands with the picture of the rig that runs, and what to do.
     pub(super) picture: Option<[String; 2]>,
+    /// Name and purpose of the page of an extra.
+    pub(super) page: Option<[&'static str; 2]>,
 }
 
 impl StartPage {
@@ -70,7 +72,7 @@ impl StartPage {
     pub(super) fn new(chosen: Choice) -> Self {
         Self {
             is_open: false,
-            wants_studies: false,
+            wants_page: false,
             welcome: Welcome::default(),
             chosen,
             folder: None,
@@ -182,9 +184,10 @@ impl StartPage {
                 self.make(now);
             }
         });
-        let studies = Button::new(text::studies::OPEN.get()).min_size(vec2(ui.available_width(), 36.0));
-        let studies = ui.add_enabled(!now.is_starting, studies).on_hover_text(text::studies::OPEN_HOVER.get());
-        self.wants_studies |= studies.clicked();
+        if let Some([name, meaning]) = now.page {
+            let page = Button::new(name).min_size(vec2(ui.available_width(), 36.0));
+            self.wants_page |= ui.add_enabled(!now.is_starting, page).on_hover_text(meaning).clicked();
+        }
     }
 
     fn make(&mut self, now: &Now<'_>) {

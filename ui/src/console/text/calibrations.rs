@@ -65,7 +65,7 @@ pub(in crate::console) const ARM_TO_CALIBRATE: Text = Text::of(
 );
 
 /// Why nothing that sets the loop to idle can be opened in this state, and what to do; `None` where it can.
-pub(in crate::console) fn closed(state: LoopState) -> Option<&'static str> {
+pub(crate) fn closed(state: LoopState) -> Option<&'static str> {
     match state {
         LoopState::Idle | LoopState::Engaged => None,
         LoopState::Stopped | LoopState::Faulted(_) => {

@@ -1,9 +1,8 @@
-//! The feedback panel: mode, gain, delay, dead band, highest stable gain.
+//! The feedback panel: mode, gain, delay, dead band.
 
 use nima_core::limits::{self, GAIN_ABOVE_ONE, Limits, SLIDER_DEAD_BAND_M_S, SLIDER_DELAY_S};
-use nima_study::stability_map::Verdict;
 
-use crate::language::{Text, told, word};
+use crate::language::{Text, told};
 
 /// Meaning of the gain, which changes at most so fast (1/s).
 pub(in crate::console) fn gain_hover(rate_per_s: f64) -> String {
@@ -11,11 +10,9 @@ pub(in crate::console) fn gain_hover(rate_per_s: f64) -> String {
     let most = GAIN_ABOVE_ONE.max;
     told!(
         "Ratio of the force in the hand to the force that the mode asks for, no unit: {min} to {max}, or up to {most} if \
-         allowed below. 0 is no force, 1 is natural. The gain changes by at most {rate_per_s} per second. The strip \
-         below shows up to which gain a gripping hand comes to rest.",
+         allowed below. 0 is no force, 1 is natural. The gain changes by at most {rate_per_s} per second.",
         "Verhältnis der Kraft in der Hand zu der vom Modus verlangten, ohne Einheit: {min} bis {max}, oder bis {most}, wenn \
-         unten erlaubt. 0 ist keine Kraft, 1 ist natürlich. Ändert sich um höchstens {rate_per_s} je Sekunde. Der Streifen \
-         unten zeigt, bis zu welcher Verstärkung eine greifende Hand zur Ruhe kommt."
+         unten erlaubt. 0 ist keine Kraft, 1 ist natürlich. Ändert sich um höchstens {rate_per_s} je Sekunde."
     )
 }
 
@@ -70,38 +67,6 @@ pub(in crate::console) const LOWER_GAIN: Text = Text::of("Lower the gain", "Vers
 pub(in crate::console) const LINK_DELAY: Text = Text::of("Link delay", "Verzögerung");
 pub(in crate::console) const DEAD_BAND: Text = Text::of("Dead band", "Totband");
 pub(in crate::console) const HOLD: Text = Text::of("Keep force at standstill", "Kraft im Stillstand halten");
-pub(in crate::console) const STABLE_GAIN_UNKNOWN: Text = Text::of(
-    "Highest stable gain: known after the first contact",
-    "Höchste stabile Verstärkung: nach dem ersten Kontakt bekannt",
-);
-pub(in crate::console) const STABLE_GAIN_UNMEASURED: Text = Text::of(
-    "Highest stable gain: not measured in this mode",
-    "Höchste stabile Verstärkung: in diesem Modus nicht \
-     gemessen",
-);
-pub(in crate::console) const STABLE_GAIN_HOVER: Text = Text::of(
-    "From simulations of a gripping hand that is pushed aside and must come to rest again, for the mode \
-    and delay in use and the stiffness of the present contact (N/m; between contacts, of the last one). \
-    Force is kept at standstill and the energy gate is off, which is harder than the default settings. \
-    Solid: stable. Thin: at the limit. Hatched: the hand shakes.",
-    "Aus Simulationen einer greifenden Hand, die ausgelenkt wird und wieder zur Ruhe kommen muss, für aktuellen Modus, \
-     aktuelle Verzögerung und die Steifigkeit des jetzigen Kontakts (N/m; sonst des letzten). Kraft im Stillstand wird \
-     gehalten, die Energiesperre ist aus: strenger als die Standardeinstellungen. Voll: stabil. Dünn: an der Grenze. \
-     Schraffiert: die Hand zittert.",
-);
-
-/// Verdict of the stability map for this gain.
-pub(in crate::console) fn stable_up_to(verdict: Verdict, greatest: f64, stiffness_n_m: f64) -> String {
-    let verdict = match verdict {
-        Verdict::Stable => word("stable", "stabil"),
-        Verdict::Marginal => word("at the limit", "an der Grenze"),
-        Verdict::Unstable => word("unstable", "instabil"),
-    };
-    told!(
-        "This gain is {verdict}; stable up to {greatest:.2} at {stiffness_n_m:.0} N/m",
-        "Diese Verstärkung ist {verdict}; stabil bis {greatest:.2} bei {stiffness_n_m:.0} N/m"
-    )
-}
 
 /// The present gain, while it ramps to the chosen one.
 pub(in crate::console) fn gain_in_use(gain: f64) -> String {

@@ -242,12 +242,12 @@ pub(in crate::console) const AFTER: Text = Text::of("New", "Neu");
 pub(in crate::console) const CHANGE: Text = Text::of("Change", "Änderung");
 pub(in crate::console) const NOT_GIVEN: Text = Text::of("not given", "keine Angabe");
 pub(in crate::console) const PROOF: Text = Text::of("Accepted on held-out data", "Auf Testdaten angenommen");
-pub(in crate::console) const UNDO_TITLE: Text = Text::of("Undo", "Rückgängig");
-pub(in crate::console) const UNDO_CARD_HOVER: Text = Text::of(
+pub(crate) const UNDO_TITLE: Text = Text::of("Undo", "Rückgängig");
+pub(crate) const UNDO_CARD_HOVER: Text = Text::of(
     "The record keeps the values of before; they can be put back into the rig file",
     "Das Protokoll bewahrt die vorigen Werte; sie lassen sich in die Aufbaudatei zurückschreiben",
 );
-pub(in crate::console) const UNDO: Text = Text::of("Put the values of before back", "Vorige Werte wiederherstellen");
+pub(crate) const UNDO: Text = Text::of("Put the values of before back", "Vorige Werte wiederherstellen");
 pub(in crate::console) const UNDONE: Text =
     Text::of("The values of before are in the rig file again", "Die vorigen Werte stehen wieder in der Aufbaudatei");
 

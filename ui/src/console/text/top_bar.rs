@@ -5,7 +5,7 @@ use crate::language::{Text, told};
 pub(in crate::console) const NIMA_CONSOLE: Text = Text::of("NIMA Console", "NIMA-Konsole");
 pub(in crate::console) const RESEARCH_ONLY: Text =
     Text::of("Research software, not for clinical use", "Forschungssoftware, nicht für klinische Anwendung");
-pub(in crate::console) const DISCONNECTED_MEANING: Text = Text::of(
+pub(crate) const DISCONNECTED_MEANING: Text = Text::of(
     "A device needed for force feedback is missing. The console reconnects it automatically.",
     "Ein für die Kraftrückkopplung nötiges Gerät fehlt. Die Konsole verbindet es von selbst wieder.",
 );
@@ -13,7 +13,7 @@ pub(in crate::console) const READY_MEANING: Text = Text::of(
     "The drives are on but hold still, without force, until hand and tip are aligned",
     "Antriebe ein, aber still und ohne Kraft, bis Hand und Spitze ausgerichtet sind",
 );
-pub(in crate::console) const CLUTCHED_MEANING: Text = Text::of(
+pub(crate) const CLUTCHED_MEANING: Text = Text::of(
     "The clutch is pressed: the hand moves freely, the follower holds still, no force",
     "Kupplung gedrückt: die Hand bewegt sich frei, der Folgearm steht still, keine Kraft",
 );

@@ -1,10 +1,12 @@
 //! Texts that all calibration wizards share.
 
+use std::path::Path;
+
 use crate::language::{Text, told};
 use crate::words::within;
 
-pub(in crate::console) const LAST_STEP: Text = Text::of("This is the last step", "Das ist der letzte Schritt");
-pub(in crate::console) const NEEDS_CHECKS: Text = Text::of(
+pub(crate) const LAST_STEP: Text = Text::of("This is the last step", "Das ist der letzte Schritt");
+pub(crate) const NEEDS_CHECKS: Text = Text::of(
     "A check has not passed yet",
     "Eine Prüfung ist noch nicht \
  bestanden",
@@ -15,15 +17,22 @@ pub(in crate::console) const OPTIONS_HOVER: Text = Text::of(
 );
 pub(in crate::console) const OPTIONS_TITLE: Text = Text::of("How this rig is built", "Bauweise dieses Aufbaus");
 pub(in crate::console) const SO_FAR: Text = Text::of("So far", "Bisher");
-pub(in crate::console) const STEP_CHECK: Text = Text::of("Check", "Prüfen");
+pub(crate) const STEP_CHECK: Text = Text::of("Check", "Prüfen");
 pub(in crate::console) const STEP_RESULT: Text = Text::of("Result", "Ergebnis");
-pub(in crate::console) const STEP_SAVE: Text = Text::of("Save", "Speichern");
+pub(crate) const STEP_SAVE: Text = Text::of("Save", "Speichern");
 pub(in crate::console) const STEP_SAVE_HOVER: Text = Text::of(
     "Saves the result for this sensor and this tool, with its errors",
     "Speichert das Ergebnis mit seinen Fehlern für diesen Sensor und dieses Instrument",
 );
+pub(crate) const STEP_SAVE_IN_RIG_HOVER: Text =
+    Text::of("Writes lens and place into the rig file", "Schreibt Objektiv und Lage in die Aufbaudatei");
 pub(in crate::console) const GRAVITY: Text = Text::of("Gravity", "Schwerkraft");
 pub(in crate::console) const CORRESPONDENCE: Text = Text::of("Correspondence", "Korrespondenz");
+pub(in crate::console) const CAMERA: Text = Text::of("Camera", "Kamera");
+pub(in crate::console) const CAMERA_MEANING: Text = Text::of(
+    "Finds the endoscope's lens and its place, so that forces are drawn where the tip is seen",
+    "Bestimmt Objektiv und Lage des Endoskops, damit Kräfte dort erscheinen, wo die Spitze zu sehen ist",
+);
 pub(in crate::console) const TIP_FORCE: Text = Text::of("Tip force", "Kraft an der Spitze");
 pub(in crate::console) const GRAVITY_MEANING: Text = Text::of(
     "Removes the tool's weight and the sensor's bias from the wrist force",
@@ -115,4 +124,9 @@ pub(in crate::console) fn title(wizard: &str) -> String {
 /// A picture of directions in one sentence.
 pub(in crate::console) fn recorded(name: &str, count: usize) -> String {
     told!("{name}: {count} recorded", "{name}: {count} aufgezeichnet")
+}
+
+/// Where values were written.
+pub(in crate::console) fn written(path: &Path) -> String {
+    told!("Saved in {}", "Gespeichert in {}", path.display())
 }

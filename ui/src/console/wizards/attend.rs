@@ -17,7 +17,7 @@ impl Wizards {
     /// Does what a technician does with the open wizard; `None` if none is open.
     pub fn attend(&mut self, binding: &Binding) -> Option<Attended> {
         let which = self.open?;
-        let wizard = self.the_mut(which);
+        let wizard = self.the_mut(which)?;
         wizard.refresh(binding);
         let (steps, now) = (wizard.steps(), wizard.frame_mut().step);
         if now + 1 < steps.len() {

@@ -23,7 +23,7 @@ pub(super) fn check_ui(ui: &mut Ui, check: &Check) {
 }
 
 /// A check that has passed, or what to do.
-pub(super) fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
+pub(crate) fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
     let (what, colour, words) = if met {
         (Sign::Disc, theme::now().engaged, text::wizards::FINE.get())
     } else {
@@ -45,7 +45,7 @@ fn line_ui(ui: &mut Ui, what: Sign, colour: egui::Color32, words: &str) {
 }
 
 /// A switch that describes the rig; returns its new state if it was pressed.
-pub(super) fn switch_ui(ui: &mut Ui, free: bool, on: bool, name: &str, meaning: &str) -> Option<bool> {
+pub(crate) fn switch_ui(ui: &mut Ui, free: bool, on: bool, name: &str, meaning: &str) -> Option<bool> {
     let mut wanted = on;
     let switch = ui.add_enabled(free, Checkbox::new(&mut wanted, name));
     let switch = switch.on_hover_text(meaning).on_disabled_hover_text(text::wizards::SWITCH_DISABLED_HOVER.get());

@@ -1,7 +1,10 @@
 //! Common parts of all wizards: steps, buttons for back, next and reset, and the last step, which saves.
 
+use std::sync::Arc;
+
 use egui::{Button, RichText, TextEdit, Ui, vec2};
 use nima_core::calibration::Judgement;
+use nima_endoscope::Picture;
 use nima_machine::{messages::Tick, rig::Prompt};
 
 use super::{Asked, Binding, GoOn, Saving};
@@ -13,14 +16,14 @@ use crate::language::Text;
 
 /// One step of a wizard.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Step {
-    pub(super) name: Text,
-    pub(super) meaning: Text,
+pub(crate) struct Step {
+    pub(crate) name: Text,
+    pub(crate) meaning: Text,
 }
 
 /// A request of the technician.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Wish {
+pub(crate) enum Wish {
     GoTo(usize),
     StartOver,
     /// Go on elsewhere.
@@ -29,14 +32,14 @@ pub(super) enum Wish {
 
 /// State of a wizard: its step, and the inputs and messages of the last step.
 #[derive(Debug, Default)]
-pub(super) struct Frame {
-    pub(super) step: usize,
+pub(crate) struct Frame {
+    pub(crate) step: usize,
     /// Name of the person who overrides the verdict.
     name: String,
     /// The reason.
     why: String,
     /// What is told of saving: done, or why not.
-    pub(super) saved: Option<Result<String, String>>,
+    pub(crate) saved: Option<Result<String, String>>,
     /// What is to be done after what was saved.
     following: Option<GoOn>,
     /// The step or what is saved has changed since [`Frame::take_changed`].
@@ -59,7 +62,7 @@ impl Frame {
     }
 
     /// Whether the step or what is saved has changed since the last call.
-    pub(super) const fn take_changed(&mut self) -> bool {
+    pub(crate) const fn take_changed(&mut self) -> bool {
         std::mem::replace(&mut self.changed, false)
     }
 
@@ -70,7 +73,7 @@ impl Frame {
 }
 
 /// A wizard for one calibration. It draws its own steps except the last one (saving), which is common.
-pub(super) trait Wizard {
+pub(crate) trait Wizard: std::fmt::Debug {
     /// Its steps; the last one saves.
     fn steps(&self) -> &'static [Step];
     fn frame_mut(&mut self) -> &mut Frame;
@@ -89,6 +92,9 @@ pub(super) trait Wizard {
     fn made(&self, binding: &Binding) -> Option<Saving>;
     /// Removes the data, but keeps the settings of the rig.
     fn start_over(&mut self);
+
+    /// Looks at the endoscope's newest picture.
+    fn see(&mut self, _newest: Option<(u64, Arc<Picture>)>, _ctx: &egui::Context) {}
 
     /// Whether the result belongs to the wrist sensor and its tool.
     fn is_of_a_sensor(&self) -> bool {
@@ -216,7 +222,8 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, going_on: &GoingOn) -> Opti
 /// The last step of every wizard: sensor and tool of the record, if it is bound to them, and the save button; returns true when it is pressed.
 /// Without `proof` a name and a reason are required.
 fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame: &mut Frame) -> bool {
-    let meaning = if binding.is_some() { text::wizards::SAVE_HOVER.get() } else { text::camera::STEP_SAVE_HOVER.get() };
+    let meaning =
+        if binding.is_some() { text::wizards::SAVE_HOVER.get() } else { text::wizards::STEP_SAVE_IN_RIG_HOVER.get() };
     card(ui, text::wizards::STEP_SAVE.get(), meaning, |ui| {
         if let Some(binding) = binding {
             figure(ui, text::wizards::SENSOR.get(), &binding.sensor, text::wizards::SENSOR_HOVER.get());

@@ -5,14 +5,13 @@
 //! to be saved. It does not change the loop; saving puts the new calibration in force.
 
 mod attend;
-mod camera;
-mod checks;
+pub(crate) mod checks;
 mod correspondence;
-mod frame;
+pub(crate) mod frame;
 mod frames;
 mod gravity;
-mod pictures;
-mod report;
+pub(crate) mod pictures;
+pub(crate) mod report;
 mod tip_force;
 
 use std::sync::Arc;
@@ -44,12 +43,14 @@ pub use frames::{FrameCalibration, FrameKept, FrameSaving, FrameWizard, Kind, Su
 pub use gravity::GravityWizard;
 pub use tip_force::TipForceWizard;
 
-use self::{
-    camera::CameraWizard,
-    frame::{Wizard, wizard_ui},
-};
+pub(crate) use frame::Wizard;
+
+use self::frame::wizard_ui;
 use super::{scene3d::side_name, theme, widgets::small};
-use crate::console::text;
+use crate::{
+    console::text,
+    extras::{self, Extra},
+};
 
 /// Sensor, tool and existing data for a new calibration.
 #[derive(Clone, Debug, Default)]
@@ -125,6 +126,12 @@ impl Which {
         Self::Camera,
     ];
 
+    /// Those that this build has.
+    pub(crate) fn built() -> impl Iterator<Item = Self> {
+        let has_camera = extras::part(Extra::camera_wizard).is_some();
+        Self::ALL.into_iter().filter(move |which| has_camera || *which != Self::Camera)
+    }
+
     /// Name on buttons.
     pub fn name(self) -> &'static str {
         match self {
@@ -132,7 +139,7 @@ impl Which {
             Self::Correspondence => text::wizards::CORRESPONDENCE.get(),
             Self::TipForce => text::wizards::TIP_FORCE.get(),
             Self::Frame(kind) => kind.name(),
-            Self::Camera => text::camera::NAME.get(),
+            Self::Camera => text::wizards::CAMERA.get(),
         }
     }
 
@@ -143,7 +150,7 @@ impl Which {
             Self::Correspondence => text::wizards::CORRESPONDENCE_MEANING.get(),
             Self::TipForce => text::wizards::TIP_FORCE_MEANING.get(),
             Self::Frame(kind) => kind.meaning(),
-            Self::Camera => text::camera::MEANING.get(),
+            Self::Camera => text::wizards::CAMERA_MEANING.get(),
         }
     }
 
@@ -256,7 +263,8 @@ pub struct Wizards {
     tip_force: TipForceWizard,
     /// In the order of [`Kind::ALL`].
     frames: [FrameWizard; Kind::ALL.len()],
-    camera: CameraWizard,
+    /// `None` in a build without it.
+    camera: Option<Box<dyn Wizard>>,
 }
 
 impl Default for Wizards {
@@ -267,7 +275,7 @@ impl Default for Wizards {
             correspondence: CorrespondenceWizard::default(),
             tip_force: TipForceWizard::default(),
             frames: Kind::ALL.map(FrameWizard::new),
-            camera: CameraWizard::default(),
+            camera: extras::part(Extra::camera_wizard).map(|wizard| wizard()),
         }
     }
 }
@@ -278,43 +286,43 @@ impl Wizards {
         Self { open: Some(which), ..Self::default() }
     }
 
-    fn the(&self, which: Which) -> &dyn Wizard {
-        match which {
+    fn the(&self, which: Which) -> Option<&dyn Wizard> {
+        Some(match which {
             Which::Gravity => &self.gravity,
             Which::Correspondence => &self.correspondence,
             Which::TipForce => &self.tip_force,
             Which::Frame(kind) => &self.frames[kind as usize],
-            Which::Camera => &self.camera,
-        }
+            Which::Camera => return self.camera.as_deref(),
+        })
     }
 
-    fn the_mut(&mut self, which: Which) -> &mut dyn Wizard {
-        match which {
+    fn the_mut(&mut self, which: Which) -> Option<&mut (dyn Wizard + 'static)> {
+        Some(match which {
             Which::Gravity => &mut self.gravity,
             Which::Correspondence => &mut self.correspondence,
             Which::TipForce => &mut self.tip_force,
             Which::Frame(kind) => &mut self.frames[kind as usize],
-            Which::Camera => &mut self.camera,
-        }
+            Which::Camera => return self.camera.as_deref_mut(),
+        })
     }
 
     /// Adds one tick of a loop of this rate (Hz).
     pub fn tick(&mut self, tick: &Tick, rate_hz: f64) {
-        if let Some(which) = self.open {
-            self.the_mut(which).tick(tick, rate_hz);
+        if let Some(wizard) = self.open.and_then(|which| self.the_mut(which)) {
+            wizard.tick(tick, rate_hz);
         }
     }
 
     /// Shows the newest picture of the endoscope to a wizard that looks at it; asks for it only then.
     pub fn see(&mut self, newest: impl FnOnce() -> Option<(u64, Arc<Picture>)>, ctx: &egui::Context) {
-        if self.open == Some(Which::Camera) {
-            self.camera.see(newest(), ctx);
+        if let Some(wizard) = self.camera.as_mut().filter(|_| self.open == Some(Which::Camera)) {
+            wizard.see(newest(), ctx);
         }
     }
 
     /// Present instruction to the person at the arm.
     pub fn prompt(&self) -> Prompt {
-        self.open.map_or(Prompt::Rest, |which| self.the(which).prompt())
+        self.open.and_then(|which| self.the(which)).map_or(Prompt::Rest, Wizard::prompt)
     }
 
     /// Chooses between the two parts of a view.
@@ -333,8 +341,8 @@ impl Wizards {
 
     /// Shows the result of saving in the open wizard, and what is to be done after it.
     pub fn tell_saved(&mut self, told: Result<String, String>, following: Option<GoOn>) {
-        if let Some(which) = self.open {
-            self.the_mut(which).frame_mut().tell_saved(told, following);
+        if let Some(wizard) = self.open.and_then(|which| self.the_mut(which)) {
+            wizard.frame_mut().tell_saved(told, following);
         }
     }
 
@@ -344,7 +352,7 @@ impl Wizards {
         ui.label(RichText::new(text::wizards::title(which.name())).font(theme::strong(22.0)));
         ui.label(small(which.meaning()));
         ui.add_space(theme::GAP);
-        let asked = wizard_ui(self.the_mut(which), ui, binding)?;
+        let asked = wizard_ui(self.the_mut(which)?, ui, binding)?;
         if let Asked::Save(saving) = &asked {
             self.forget_what_rests_on(saving);
         }

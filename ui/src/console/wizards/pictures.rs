@@ -149,7 +149,7 @@ fn dot(
 }
 
 /// A progress bar with a text inside.
-pub(super) fn progress(ui: &mut Ui, name: &str, share: f64, words: &str) {
+pub(crate) fn progress(ui: &mut Ui, name: &str, share: f64, words: &str) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
     let label = format!("{name}: {words}");
     response.widget_info(|| WidgetInfo::labeled(egui::Role::ProgressIndicator, true, label.clone()));

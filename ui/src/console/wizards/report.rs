@@ -17,7 +17,7 @@ pub(super) fn verdict_words(verdict: Verdict, reason: &str) -> String {
 }
 
 /// The same text as a line of a card.
-pub(super) fn verdict_line(ui: &mut Ui, verdict: Verdict, reason: &str) {
+pub(crate) fn verdict_line(ui: &mut Ui, verdict: Verdict, reason: &str) {
     ui.label(RichText::new(verdict_words(verdict, reason)).font(theme::strong(14.0)));
 }
 

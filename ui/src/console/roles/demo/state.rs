@@ -184,7 +184,7 @@ impl DemoState {
 
 /// Whether the rig is simulated or emulated, so that nobody can be hurt. An arm at another machine may be a real one.
 pub(super) fn may_play(live: &Live) -> bool {
-    live.rig.is_harmless() && live.line_door.is_none()
+    live.rig.is_harmless() && live.line.is_none()
 }
 
 /// Whether the hand is simulated, so that it may let go.

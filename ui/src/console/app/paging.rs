@@ -1,0 +1,176 @@
+//! The console while a page of an extra is open: its rig runs idle between the runs, and a run has a loop of its own.
+//!
+//! The console's own recorder rests as long: a session holds the mode. What a page wants to keep it keeps itself.
+
+use egui::Ui;
+use nima_machine::{config::RigConfig, messages::LoopState};
+use nima_simulation::scene::Scene;
+
+use super::ConsoleApp;
+use crate::console::{
+    chain,
+    page::{Broken, Closed, Now, Prepared, Room, Run, Wish},
+    start::is_real,
+    text,
+};
+
+impl ConsoleApp {
+    /// Whether a run of a page goes on: then the window shows nothing else.
+    pub fn in_trial(&self) -> bool {
+        self.run().is_some()
+    }
+
+    pub(super) fn run(&self) -> Option<&dyn Run> {
+        self.page.as_ref().and_then(|page| page.run())
+    }
+
+    /// Whether a page holds the machine.
+    pub(super) fn is_held(&self) -> bool {
+        self.page.as_ref().is_some_and(|page| page.holds_machine())
+    }
+
+    pub(super) fn is_page_shown(&self) -> bool {
+        self.page.as_ref().is_some_and(|page| page.is_shown())
+    }
+
+    pub(super) fn hide_page(&mut self) {
+        if let Some(page) = &mut self.page {
+            page.hide();
+        }
+    }
+
+    pub(super) fn toggle_page(&mut self) {
+        if self.is_page_shown() { self.hide_page() } else { self.open_page() }
+    }
+
+    /// Shows the page. What the screen does to the machine by itself, a demonstration or leading by mouse, ends before.
+    pub(super) fn open_page(&mut self) {
+        let Some(page) = &mut self.page else { return };
+        self.panels.demo.leave(&mut self.outbox);
+        self.panels.scene.let_go(&mut self.outbox);
+        (self.start.is_open, self.list.is_open) = (false, false);
+        page.show(self.settings.folder(), &self.settings.now.studies);
+    }
+
+    pub(super) fn page_of_extra_layout(&mut self, ui: &mut Ui) {
+        let held = self.live.state() == LoopState::Engaged && is_real(&self.live.rig);
+        let closed = match text::calibrations::closed(self.live.state()) {
+            None if held => Some(text::start::ENGAGED.get()),
+            closed => closed,
+        };
+        let folder = self.settings.folder().map(std::path::Path::to_path_buf);
+        let room = Room {
+            folder: folder.as_deref(),
+            known: &mut self.settings.now.studies,
+            closed,
+            is_over_a_line: self.reopen.is_some(),
+            is_starting: self.starting.is_some(),
+        };
+        let closed = self.page.as_mut().and_then(|page| page.ui(ui, room));
+        self.sessions.rest(self.is_held());
+        // The rig that ran before runs again.
+        if let Some(Closed(Some(before))) = closed {
+            let now = self.running.clone();
+            self.begin(before, Some(now), None);
+        }
+    }
+
+    /// Goes on with what a page asks of the loop. A stop or a fault that is latched keeps its loop until it is released.
+    pub(super) fn go_on_with_page(&mut self) {
+        let Some(page) = &mut self.page else { return };
+        let has_ended = self.door.as_ref().is_some_and(|door| !door.handle().is_running());
+        let why = if self.options.leave.is_asked() { Broken::Closed } else { Broken::LoopEnded };
+        let now = Now {
+            running: &self.running,
+            ended: has_ended.then_some(why),
+            is_latched: self.live.state().is_latched(),
+            is_starting: self.starting.is_some(),
+        };
+        match page.go_on(&now) {
+            None => {}
+            Some(Wish::End { again }) => self.end_run(again),
+            Some(Wish::Run) => {
+                if let Err(why) = self.begin_run() {
+                    self.tell_page(Some(why));
+                }
+            }
+            Some(Wish::Start(choice)) => {
+                let before = self.running.clone();
+                self.begin(choice, Some(before), None);
+                if self.starting.is_none() {
+                    // The start page has the cause, which is told there when it is opened.
+                    self.tell_page(self.start.told().map(str::to_owned));
+                }
+            }
+        }
+    }
+
+    fn tell_page(&mut self, why: Option<String>) {
+        if let Some(page) = &mut self.page {
+            page.tell(why);
+        }
+    }
+
+    /// The loop begins anew for the run, whose conditions nothing but the loop is told.
+    fn begin_run(&mut self) -> Result<(), String> {
+        self.take_in();
+        if let Some(why) = text::calibrations::closed(self.live.state()) {
+            return Err(why.to_owned());
+        }
+        let Some(page) = &mut self.page else { return Ok(()) };
+        let Prepared { rig, scene, is_by_mouse } = page.prepare()?;
+        self.panels.scene.be_of_participant(true, is_by_mouse);
+        self.clear_for_trial();
+        // End the old loop first: a rig must have one controller only.
+        drop(self.door.take());
+        self.sessions.end();
+        let started = rig.and_then(|rig| self.start_loop(rig, scene).ok());
+        if started.is_none() {
+            self.break_off(Broken::NotStarted);
+            self.end_run(true);
+        }
+        Ok(())
+    }
+
+    fn break_off(&mut self, why: Broken) {
+        if let Some(run) = self.page.as_mut().and_then(|page| page.run_mut()) {
+            run.break_off(why);
+        }
+    }
+
+    /// Ends the loop of the run, lets the page write down how it ended, and starts its rig again, idle, as its file has it.
+    fn end_run(&mut self, again: bool) {
+        self.panels.scene.let_go(&mut self.outbox);
+        self.panels.scene.be_of_participant(false, false);
+        drop(self.door.take());
+        self.objects = None;
+        let Some(page) = &mut self.page else { return };
+        page.finish_run();
+        if !again {
+            return;
+        }
+        let loaded = RigConfig::load(&self.running.rig).and_then(|rig| {
+            let scene = Scene::load(&self.running.scene)?.mounted_at(&rig)?;
+            Ok((rig, scene))
+        });
+        let started = loaded.map_err(|error| chain(&error)).and_then(|(rig, scene)| self.start_loop(rig, scene));
+        if let Err(why) = started {
+            self.tell_page(Some(text::start::not_started(&why, None)));
+        }
+    }
+
+    /// The window is closed: a run that goes on is written down as broken off.
+    pub(super) fn leave_page(&mut self) {
+        if self.in_trial() {
+            self.break_off(Broken::Closed);
+            self.end_run(false);
+        }
+    }
+
+    /// The participant's screen, below the top bar.
+    pub(super) fn trial_layout(&mut self, ui: &mut Ui) {
+        if let Some(run) = self.page.as_mut().and_then(|page| page.run_mut()) {
+            run.ui(ui, &self.live, &mut self.panels.scene, &mut self.outbox);
+        }
+    }
+}

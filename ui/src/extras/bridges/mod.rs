@@ -1,0 +1,145 @@
+//! The bridges to other programs: `OpenIGTLink`, and marks over the Lab Streaming Layer.
+
+mod words;
+
+use std::{net::SocketAddr, path::Path, time::Duration};
+
+use nima_bridges::{
+    igtl::{self, Image, Outline, Pictures},
+    lsl::{self, CONTACT_N, Marker},
+};
+use nima_endoscope::{Compressed, Glimpse, Reel, jpeg};
+use nima_machine::{messages::Fault, rig::Side};
+use nima_score::TaskFile;
+use nima_session::outlet::Audience;
+use nima_simulation::Plan;
+
+use super::Extra;
+use crate::{
+    recording::PROGRAM,
+    telling::tell,
+    watching::{INSTALLED, Server, Show, Shown},
+    words::Remedy as _,
+};
+use words::trouble_of;
+
+/// The extra.
+pub(super) struct Bridges;
+
+impl Extra for Bridges {
+    fn server(&self, show: Show, at: SocketAddr) -> Option<anyhow::Result<Box<dyn Server>>> {
+        (show == Show::Igtl).then(|| igtl_at(at))
+    }
+
+    fn marks(&self, library: &Path) -> Option<anyhow::Result<Box<dyn Server>>> {
+        Some(marks_by(library))
+    }
+}
+
+/// Hands the newest picture of a reel to a bridge, as pixels.
+#[derive(Debug)]
+struct OfReel(Glimpse);
+
+impl Pictures for OfReel {
+    fn newest(&mut self, is_wanted: bool) -> Option<(Image, Duration)> {
+        let Compressed { bytes, arrived, .. } = self.0.take(is_wanted).filter(|_| is_wanted)?;
+        // A damaged one is left out; the next one comes soon.
+        let jpeg::Picture { size_px, rgba } = jpeg::decode(&bytes).ok()?;
+        let [width, height] = size_px.map(u16::try_from);
+        let pixels = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+        Some((Image { size_px: [width.ok()?, height.ok()?], colours: 3, pixels }, arrived.elapsed()))
+    }
+}
+
+impl Server for igtl::Server {
+    fn audience(&self, plan: &Plan, reel: &Reel) -> Box<dyn Audience> {
+        let pictures = plan.rig.endoscope.as_ref().map(|_| Box::new(OfReel(reel.glimpse())) as Box<dyn Pictures>);
+        self.show(pictures);
+        self.audience(outline(plan))
+    }
+
+    fn shows_pictures(&self) -> bool {
+        true
+    }
+
+    fn shown(&self) -> Shown {
+        Shown { at: format!("igtl://{}", self.address()), watchers: self.clients() }
+    }
+}
+
+fn outline(plan: &Plan) -> Outline {
+    let trocar = |side| plan.scene.of_side(side).filter(|_| plan.has(side)).map(|scene| scene.trocar_m);
+    Outline { trocars_m: Side::ALL.map(trocar) }
+}
+
+fn igtl_at(address: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
+    let server = igtl::Server::start(address, trouble_of)?;
+    let at = server.address();
+    tell(format_args!("nima: OpenIGTLink at {at}: connect 3D Slicer (OpenIGTLinkIF, client) or pyigtl to it"));
+    if !at.ip().is_loopback() {
+        tell("nima: OpenIGTLink: whoever reaches this address can read poses, forces and pictures, without a password");
+    }
+    Ok(Box::new(server))
+}
+
+impl Server for Marker {
+    fn audience(&self, plan: &Plan, _: &Reel) -> Box<dyn Audience> {
+        self.audience(marked(plan, None))
+    }
+
+    fn blind_audience(&self, plan: &Plan, trial: &str) -> Option<Box<dyn Audience>> {
+        Some(self.audience(marked(plan, Some(trial.to_owned()))))
+    }
+
+    fn shown(&self) -> Shown {
+        Shown { at: format!("LSL stream {}", lsl::STREAM), watchers: usize::from(self.is_heard()) }
+    }
+}
+
+fn marked(plan: &Plan, trial: Option<String>) -> lsl::About {
+    let contact_n =
+        plan.scene.task.as_ref().and_then(|task| TaskFile::of(task).ok()).map_or(CONTACT_N, |task| task.contact_n);
+    lsl::About { contact_n, trial, words: Fault::cause }
+}
+
+fn marks_by(library: &Path) -> anyhow::Result<Box<dyn Server>> {
+    let named = (library != Path::new(INSTALLED)).then_some(library);
+    let marker = Marker::start(named, PROGRAM, &machine())?;
+    tell(format_args!("nima: marks over the Lab Streaming Layer: stream {}, type {}", lsl::STREAM, lsl::STREAM_TYPE));
+    Ok(Box::new(marker))
+}
+
+/// The name of this computer, as far as the system tells it.
+fn machine() -> String {
+    let by_kernel = std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
+    let name = by_kernel.or_else(|| std::env::var("COMPUTERNAME").ok()).unwrap_or_default();
+    name.trim().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::config::RigConfig;
+    use nima_simulation::scene::Scene;
+
+    use super::*;
+
+    #[test]
+    fn the_shaft_of_each_arm_goes_through_the_trocar_that_the_screen_shows() {
+        for (scene, arms) in [("peg_transfer", 1), ("bimanual", 2)] {
+            let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
+            let plan = Plan { rig, scene: scene.clone(), calibrations: Default::default(), engage: false };
+            let known = outline(&plan).trocars_m;
+            assert_eq!(known.iter().flatten().count(), arms);
+            assert_eq!(known[0], Some(scene.trocar_m));
+        }
+    }
+
+    #[test]
+    fn a_mark_of_contact_begins_where_the_task_counts_contact() {
+        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("rings").unwrap());
+        let contact_n = TaskFile::of(scene.task.as_ref().unwrap()).unwrap().contact_n;
+        let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
+        let marked_n = marked(&plan, Some("P03 4".to_owned())).contact_n;
+        assert_eq!(marked_n.to_bits(), contact_n.to_bits());
+    }
+}

@@ -1,0 +1,279 @@
+//! `nima calibrate camera`: the lens of the endoscope's camera, from a folder of pictures or from the camera itself.
+
+use std::{
+    fmt::Write as _,
+    path::{Path, PathBuf},
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use nima_camera::{Ask, Grey, Offer, Report, Session, Sight, Terms, calibrate, find};
+use nima_core::calibration::Verdict;
+use nima_endoscope::{Address, Board, Feed, Standing, Wrong, board::Corners, jpeg};
+use nima_machine::config::{RigFile, change_rig};
+use serde_json::json;
+
+use super::{lens::changes, words as camera};
+use crate::{command::output, leaving::Leave, telling::tell, words::Words as _};
+
+/// Most pictures of a folder.
+const PICTURES: usize = 500;
+/// Most bytes of one.
+const BYTES: u64 = 16 << 20;
+/// A camera is watched until nothing new was taken for so long.
+const PATIENCE: Duration = Duration::from_mins(2);
+const NAP: Duration = Duration::from_millis(20);
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Folder with JPEGs of the board, or the camera itself (http://HOST:PORT/PATH), which is watched while you move the board
+    #[arg(value_name = "FOLDER_OR_URL")]
+    source: String,
+    /// Inner corners along both sides, one number odd and the other even
+    #[arg(long, value_name = "AxB", default_value = "9x6")]
+    board: Corners,
+    /// Side of a square
+    #[arg(long, value_name = "MM", default_value_t = 10.0)]
+    square_mm: f64,
+    /// Write the lens into this rig file, whose comments stay; the camera's place is taken away, because it belongs to the lens of before
+    #[arg(long, value_name = "RIG.toml")]
+    out: Option<PathBuf>,
+    /// Print the report as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Views, and what they are called.
+struct Taken {
+    size_px: [usize; 2],
+    views: Vec<(String, Sight)>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let Corners(corners) = arguments.board;
+    let board = Board::new(corners, arguments.square_mm * 1e-3)?;
+    if let Some(out) = &arguments.out {
+        let rig = rig_file(out)?;
+        if rig.value("endoscope.url").is_none() {
+            bail!("{} has no endoscope; add [endoscope] with its url first", out.display());
+        }
+        output::check(out, &[])?;
+    }
+    let address: Address = arguments.source.parse()?;
+    let taken = match &address {
+        Address::File(folder) => of_folder(folder, &board)?,
+        Address::Http { .. } | Address::Rtsp { .. } | Address::Camera { .. } => of_camera(address, board)?,
+    };
+    let views: Vec<Sight> = taken.views.iter().map(|(_, view)| view.clone()).collect();
+    let report = calibrate(&board, taken.size_px, &views);
+    let reason = report.cause.as_ref().map(camera::camera_cause);
+    if arguments.json {
+        output::json(&in_json(&report, &taken, reason.as_deref()))?;
+    } else {
+        output::line(&in_words(&report, &taken))?;
+    }
+    if let Some(reason) = reason {
+        bail!("{}: {reason}", report.verdict().words());
+    }
+    let (Some(out), Some(found)) = (&arguments.out, &report.lens) else { return Ok(()) };
+    let name = out.to_string_lossy();
+    let changes = changes(&rig_file(out)?, &found.lens, None);
+    let folder = out.parent().unwrap_or_else(|| Path::new("."));
+    change_rig(&name, folder, &changes)?;
+    tell(format_args!(
+        "{name}: the lens is written; calibrate the camera's place with `nima console --calibrate camera`"
+    ));
+    Ok(())
+}
+
+fn rig_file(out: &Path) -> anyhow::Result<RigFile> {
+    if !out.is_file() {
+        bail!("{} is no rig file; give --out the one that is to be changed", out.display());
+    }
+    Ok(RigFile::of(&out.to_string_lossy())?)
+}
+
+/// The views in the JPEGs of a folder, in the order of their names.
+fn of_folder(folder: &Path, board: &Board) -> anyhow::Result<Taken> {
+    let about = || format!("cannot read the pictures in {}", folder.display());
+    let entries = std::fs::read_dir(folder).with_context(about)?;
+    let mut paths: Vec<PathBuf> =
+        entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<_>>().with_context(about)?;
+    paths.retain(|path| {
+        path.extension().is_some_and(|ending| ["jpg", "jpeg"].iter().any(|jpeg| ending.eq_ignore_ascii_case(jpeg)))
+    });
+    paths.sort();
+    if paths.is_empty() || paths.len() > PICTURES {
+        bail!("{} JPEGs in {}; give a folder with 8 to {PICTURES}", paths.len(), folder.display());
+    }
+    let mut taken = Taken { size_px: [0, 0], views: Vec::new() };
+    for path in paths {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let bytes = nima_files::read(&path, BYTES).with_context(|| path.display().to_string())?;
+        let picture = jpeg::decode(&bytes).with_context(|| path.display().to_string())?;
+        let [width, height] = picture.size_px;
+        if taken.size_px != [0, 0] && taken.size_px != picture.size_px {
+            bail!(
+                "{} is {width} x {height} px, the pictures before it are not; use pictures of one size",
+                path.display()
+            );
+        }
+        taken.size_px = picture.size_px;
+        let found = Grey::of(&picture).map(|grey| find(&grey, board));
+        match found {
+            Some(Ok(sight)) => taken.views.push((name, sight)),
+            Some(Err(why)) => tell(format_args!("{name}: {}", camera::unseen(why))),
+            None => tell(format_args!("{name}: it is empty")),
+        }
+    }
+    Ok(taken)
+}
+
+/// Watches the camera while the board is moved, and says what is wanted next.
+fn of_camera(address: Address, board: Board) -> anyhow::Result<Taken> {
+    let leave = Leave::on_signals()?;
+    let shown = address.to_string();
+    let feed = Feed::start(address, None, || {}).context("no thread for the picture")?;
+    let mut session: Option<Session> = None;
+    let (mut last, mut since, mut told) = (0, Instant::now(), String::new());
+    let mut say = |words: String| {
+        if told != words {
+            tell(&words);
+            told = words;
+        }
+    };
+    loop {
+        if leave.is_asked() {
+            bail!("ended as asked; nothing is written");
+        }
+        if since.elapsed() > PATIENCE {
+            bail!("nothing new for {} s; {shown} shows no board that is held still", PATIENCE.as_secs());
+        }
+        let look = feed.look(Instant::now());
+        if let Standing::Lost(trouble) = &look.standing {
+            bail!("{trouble}: {}", trouble.cure());
+        }
+        if matches!(look.standing, Standing::Wrong(Wrong::Black)) {
+            say("the picture is black".to_owned());
+        }
+        let Some((number, picture)) = look.picture.filter(|(number, _)| *number != last) else {
+            thread::sleep(NAP);
+            continue;
+        };
+        last = number;
+        if session.as_ref().is_some_and(|session| session.size_px() != picture.size_px) {
+            bail!("the picture has another size than before; set the camera to one size");
+        }
+        let session = session.get_or_insert_with(|| Session::new(board, picture.size_px));
+        let asked = session.asks();
+        if asked == Ask::Complete {
+            break;
+        }
+        say(format!("{} views: {}", session.views().len(), camera::ask(asked)));
+        match Grey::of(&picture).map(|grey| find(&grey, &board)) {
+            Some(Ok(sight)) => {
+                if session.offer(sight) == Offer::Taken {
+                    since = Instant::now();
+                }
+            }
+            _ => session.miss(),
+        }
+    }
+    let session = session.context("no picture came")?;
+    let views = session.views().iter().enumerate().map(|(at, view)| (format!("view {}", at + 1), view.clone()));
+    Ok(Taken { size_px: session.size_px(), views: views.collect() })
+}
+
+const fn terms_words(terms: Terms) -> [(&'static str, bool); 3] {
+    [("pixels are not square", terms.aspect), ("k2", terms.k2), ("p1, p2", terms.tangential)]
+}
+
+fn in_words(report: &Report, taken: &Taken) -> String {
+    let mut text = format!("{}\n", report.verdict().words());
+    // Writing into a String cannot fail.
+    writeln!(
+        text,
+        "{} of {} views used; corners in {:.0} % of the picture",
+        report.used.len(),
+        taken.views.len(),
+        100.0 * report.coverage.share()
+    )
+    .ok();
+    for (at, why) in &report.left_out {
+        writeln!(text, "left out: {}, {}", taken.views[*at].0, camera::left_out(*why)).ok();
+    }
+    let Some(found) = &report.lens else { return text + "no lens" };
+    let (lens, sd) = (&found.lens, &found.deviations);
+    writeln!(
+        text,
+        "focal length {:.2} +- {:.2} px across, {:.2} px down   centre {:.2} +- {:.2}, {:.2} +- {:.2} px",
+        lens.focal_px.x,
+        sd.focal_px.x,
+        lens.focal_px.y,
+        lens.centre_px.x,
+        sd.centre_px.x,
+        lens.centre_px.y,
+        sd.centre_px.y
+    )
+    .ok();
+    writeln!(
+        text,
+        "k1 {:.5} +- {:.5}   k2 {:.5}   p1 {:.5}   p2 {:.5}",
+        lens.bend.k1, sd.bend.k1, lens.bend.k2, lens.bend.p1, lens.bend.p2
+    )
+    .ok();
+    for (name, is_found) in terms_words(found.terms) {
+        writeln!(
+            text,
+            "{name}: {}",
+            if is_found { "pays on held-out views" } else { "left out, does not pay on held-out views" }
+        )
+        .ok();
+    }
+    write!(
+        text,
+        "error {:.3} px fitted, {:.3} px held out (largest {:.2} px)   tilt up to {:.0} deg",
+        found.fitted_px, found.held_out_px, found.held_out_max_px, found.tilt_deg
+    )
+    .ok();
+    text
+}
+
+fn in_json(report: &Report, taken: &Taken, reason: Option<&str>) -> serde_json::Value {
+    let left_out =
+        report.left_out.iter().map(|(at, why)| json!({ "view": taken.views[*at].0, "why": camera::left_out(*why) }));
+    let lens = report.lens.as_ref().map(|found| {
+        let (lens, sd) = (&found.lens, &found.deviations);
+        json!({
+            "focal_px": [lens.focal_px.x, lens.focal_px.y],
+            "focal_sd_px": [sd.focal_px.x, sd.focal_px.y],
+            "centre_px": [lens.centre_px.x, lens.centre_px.y],
+            "centre_sd_px": [sd.centre_px.x, sd.centre_px.y],
+            "k1": lens.bend.k1,
+            "k1_sd": sd.bend.k1,
+            "k2": lens.bend.k2,
+            "p1": lens.bend.p1,
+            "p2": lens.bend.p2,
+            "fitted_px": found.fitted_px,
+            "held_out_px": found.held_out_px,
+            "held_out_max_px": found.held_out_max_px,
+            "tilt_deg": found.tilt_deg,
+        })
+    });
+    json!({
+        "verdict": match report.verdict() {
+            Verdict::Accepted => "accepted",
+            Verdict::InsufficientMotion => "insufficient_motion",
+            Verdict::PoorData => "poor_data",
+        },
+        "reason": reason,
+        "size_px": taken.size_px,
+        "views": taken.views.len(),
+        "used": report.used.len(),
+        "left_out": left_out.collect::<Vec<_>>(),
+        "coverage": report.coverage.share(),
+        "lens": lens,
+    })
+}

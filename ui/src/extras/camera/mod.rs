@@ -1,0 +1,43 @@
+//! Calibration of the endoscope's camera, from pictures of a checkerboard.
+
+mod command;
+mod lens;
+mod screen;
+mod text;
+mod words;
+
+use clap::{ArgMatches, Subcommand};
+
+use super::{Extra, given};
+use crate::console::wizards::Wizard;
+use screen::CameraWizard;
+
+/// The extra.
+pub(super) struct Camera;
+
+/// What it adds to `nima calibrate`.
+#[derive(Debug, Subcommand)]
+enum Calibrate {
+    /// Find the lens of the endoscope's camera from pictures of a checkerboard
+    Camera(command::Arguments),
+}
+
+impl Extra for Camera {
+    fn commands(&self, line: clap::Command) -> clap::Command {
+        line.mut_subcommands(|command| {
+            if command.get_name() == "calibrate" { Calibrate::augment_subcommands(command) } else { command }
+        })
+    }
+
+    fn run(&self, matches: &ArgMatches) -> Option<anyhow::Result<()>> {
+        let calibrate = matches.subcommand_matches("calibrate")?;
+        Some(match given(calibrate)? {
+            Ok(Calibrate::Camera(arguments)) => command::run(&arguments),
+            Err(error) => Err(error.into()),
+        })
+    }
+
+    fn camera_wizard(&self) -> Option<fn() -> Box<dyn Wizard>> {
+        Some(|| Box::new(CameraWizard::default()))
+    }
+}

@@ -1,0 +1,401 @@
+//! The wizard of the endoscope's camera: check, views of a board, the lens, the corners touched with the tip, save. It writes into the rig file.
+
+mod detector;
+mod picture;
+mod steps_ui;
+#[cfg(test)]
+mod tests;
+mod tip;
+
+use std::sync::Arc;
+
+use egui::Ui;
+use nima_camera::{Offer, PlaceError, Placed, Report, Session, Sight, Touch, Unseen, calibrate, place};
+use nima_core::calibration::{Verdict, frames::RigChange};
+use nima_endoscope::{Board, BoardError, Lens, Picture, board::Corners};
+use nima_machine::{
+    config::{Endoscope, RigConfig, RigFile},
+    messages::Tick,
+    rig::Prompt,
+};
+use nima_simulation::camera::lens_of;
+
+use self::{
+    detector::{Detector, Found},
+    picture::Shown,
+    steps_ui::is_good,
+    tip::{Marker, Tip},
+};
+use super::{
+    lens::{FoundPlace, changes, undone},
+    text as texts, words,
+};
+use crate::console::{
+    text,
+    widgets::card,
+    wizards::{
+        Binding, Saving, Wizard,
+        frame::{Frame, Step, Wish},
+    },
+};
+
+const STEPS: [Step; 5] = [
+    Step { name: text::wizards::STEP_CHECK, meaning: texts::STEP_CHECK_HOVER },
+    Step { name: texts::STEP_VIEWS, meaning: texts::STEP_VIEWS_HOVER },
+    Step { name: texts::STEP_LENS, meaning: texts::STEP_LENS_HOVER },
+    Step { name: texts::STEP_TOUCH, meaning: texts::STEP_TOUCH_HOVER },
+    Step { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_IN_RIG_HOVER },
+];
+const CHECK: usize = 0;
+const VIEWS: usize = 1;
+const LENS: usize = 2;
+const TOUCH: usize = 3;
+const SAVE: usize = 4;
+/// A board that is seen so far from where it lay has moved, px of a picture 1280 wide.
+const MOVED_PX: f64 = 3.0;
+
+/// State of the wizard.
+pub(super) struct CameraWizard {
+    frame: Frame,
+    corners: String,
+    square_mm: f64,
+    keeps_lens: bool,
+    /// What the rig file of this name says.
+    endoscope: Option<Endoscope>,
+    rig: Option<String>,
+    detector: Option<Detector>,
+    /// The newest picture that was looked at, until it is uploaded.
+    fresh: Option<Arc<Picture>>,
+    shown: Shown,
+    sight: Option<Sight>,
+    last: Option<Result<Offer, Unseen>>,
+    session: Option<Session>,
+    report: Option<Report>,
+    tip: Tip,
+    /// The marker on the endoscope while the board lies still, where its place is known.
+    marker: Marker,
+    /// The board as it lies while it is touched, and a sight of it before, which must be the same.
+    base: Option<Sight>,
+    lying: Option<Sight>,
+    moved: bool,
+    touches: Vec<Touch>,
+    placed: Option<Result<Placed, PlaceError>>,
+    /// What would be saved, and what was.
+    pending: Option<Vec<RigChange>>,
+    undoable: Vec<RigChange>,
+}
+
+impl std::fmt::Debug for CameraWizard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("CameraWizard").field("frame", &self.frame).field("views", &self.views()).finish_non_exhaustive()
+    }
+}
+
+impl Default for CameraWizard {
+    fn default() -> Self {
+        Self {
+            frame: Frame::default(),
+            corners: "9x6".to_owned(),
+            square_mm: 10.0,
+            keeps_lens: false,
+            endoscope: None,
+            rig: None,
+            detector: None,
+            fresh: None,
+            shown: Shown::default(),
+            sight: None,
+            last: None,
+            session: None,
+            report: None,
+            tip: Tip::default(),
+            marker: Marker::default(),
+            base: None,
+            lying: None,
+            moved: false,
+            touches: Vec::new(),
+            placed: None,
+            pending: None,
+            undoable: Vec::new(),
+        }
+    }
+}
+
+impl CameraWizard {
+    fn take(&mut self, Found { picture, board, sight }: Found) {
+        let size_px = picture.size_px;
+        self.fresh = Some(picture);
+        self.sight = sight.as_ref().ok().cloned();
+        if self.session.as_ref().is_none_or(|session| session.size_px() != size_px || *session.board() != board) {
+            self.session = Some(Session::new(board, size_px));
+        }
+        self.last = Some(match sight {
+            Ok(sight) if self.frame.step == VIEWS && !self.keeps_lens => Ok(self.offer(sight)),
+            Ok(sight) => {
+                if self.frame.step == TOUCH {
+                    self.lie(&sight);
+                }
+                Ok(Offer::TakenHere)
+            }
+            Err(unseen) => {
+                self.session.iter_mut().for_each(Session::miss);
+                Err(unseen)
+            }
+        });
+    }
+
+    fn offer(&mut self, sight: Sight) -> Offer {
+        let Some(session) = &mut self.session else { return Offer::Moving };
+        let offer = session.offer(sight);
+        if offer == Offer::Taken {
+            (self.report, self.frame.saved) = (None, None);
+        }
+        offer
+    }
+
+    /// The board while it is to be touched: seen twice at the same place it lies still; seen elsewhere later it has moved.
+    fn lie(&mut self, sight: &Sight) {
+        let limit_px = MOVED_PX * sight_width(self.session.as_ref()) / 1280.0;
+        match &self.base {
+            Some(base) => self.moved |= !self.touches.is_empty() && base.mean_move_px(sight) > limit_px,
+            None if self.lying.as_ref().is_some_and(|lying| lying.mean_move_px(sight) < 0.3 * limit_px) => {
+                self.base = Some(sight.clone());
+            }
+            None => self.lying = Some(sight.clone()),
+        }
+        if self.touches.is_empty() && self.base.as_ref().is_some_and(|base| base.mean_move_px(sight) > limit_px) {
+            (self.base, self.lying) = (None, Some(sight.clone()));
+            self.marker = Marker::default();
+        }
+    }
+
+    fn board(&self) -> Result<Board, BoardError> {
+        board_of(&self.corners, self.square_mm)
+    }
+
+    fn views(&self) -> usize {
+        self.session.as_ref().map_or(0, |session| session.views().len())
+    }
+
+    /// The lens of the rig file.
+    fn rig_lens(&self) -> Option<Lens> {
+        self.endoscope.as_ref()?.camera.as_ref().map(lens_of)
+    }
+
+    /// The lens that is used from here on.
+    fn lens(&self) -> Option<Lens> {
+        if self.keeps_lens {
+            return self.rig_lens();
+        }
+        let report = self.report.as_ref().filter(|report| is_good(report))?;
+        report.lens.as_ref().map(|found| found.lens)
+    }
+
+    /// How it stands with the board in the newest picture.
+    fn told(&self) -> String {
+        match &self.last {
+            None => texts::LOOKING.get().to_owned(),
+            Some(Ok(_)) if self.frame.step != VIEWS => texts::SEEN.get().to_owned(),
+            Some(Ok(offer)) => words::offer(*offer).to_owned(),
+            Some(Err(unseen)) => words::unseen(*unseen),
+        }
+    }
+
+    /// The outermost corners and one in the middle, in this order.
+    fn wanted(&self) -> Vec<[usize; 2]> {
+        let Ok(board) = self.board() else { return Vec::new() };
+        let [right, low] = board.corners().map(|side| side - 1);
+        vec![[0, 0], [right, 0], [right, low], [0, low], [right / 2, low / 2]]
+    }
+
+    /// Number of the corner that is to be touched next.
+    fn next_corner(&self) -> Option<usize> {
+        self.base.as_ref()?;
+        let corner = *self.wanted().get(self.touches.len())?;
+        Some(self.board().ok()?.index(corner))
+    }
+
+    fn take_touch(&mut self) {
+        let (Some(tip_m), Some(corner)) = (self.tip.still_m(), self.wanted().get(self.touches.len()).copied()) else {
+            return;
+        };
+        self.touches.push(Touch { corner, tip_m });
+        self.find_place();
+    }
+
+    fn find_place(&mut self) {
+        (self.pending, self.frame.saved) = (None, None);
+        let found = self.board().ok().zip(self.lens()).zip(self.base.as_ref());
+        self.placed = found
+            .filter(|_| !self.touches.is_empty())
+            .map(|((board, lens), base)| place(&board, &lens, base, &self.touches));
+    }
+
+    /// The board lies elsewhere now: what was touched is forgotten.
+    fn lay_anew(&mut self) {
+        (self.base, self.lying, self.moved) = (None, None, false);
+        self.marker = Marker::default();
+        self.touches.clear();
+        self.find_place();
+    }
+
+    /// What is saved of the place: on the endoscope's marker, if the tracker saw it while the board lay.
+    fn found_place(&self) -> Option<FoundPlace> {
+        let placed = self.good_place()?;
+        let (world_from_camera, checked_px) = (placed.world_from_camera, placed.held_out_px);
+        let on_marker = self.marker.world_from_n().map(|world_from_n| world_from_n.inverse() * world_from_camera);
+        Some(FoundPlace { pose: on_marker.unwrap_or(world_from_camera), on_marker: on_marker.is_some(), checked_px })
+    }
+
+    fn good_place(&self) -> Option<&Placed> {
+        let placed = self.placed.as_ref()?.as_ref().ok()?;
+        (placed.verdict() == Verdict::Accepted && !self.moved).then_some(placed)
+    }
+}
+
+fn sight_width(session: Option<&Session>) -> f64 {
+    session.map_or(1280.0, |session| session.size_px()[0] as f64)
+}
+
+fn board_of(corners: &str, square_mm: f64) -> Result<Board, BoardError> {
+    let Corners(corners) = corners.trim().parse()?;
+    Board::new(corners, square_mm * 1e-3)
+}
+
+impl Wizard for CameraWizard {
+    fn steps(&self) -> &'static [Step] {
+        &STEPS
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
+    }
+
+    fn is_of_a_sensor(&self) -> bool {
+        false
+    }
+
+    fn refresh(&mut self, binding: &Binding) {
+        let changed = self.frame.take_changed();
+        if changed || self.rig.as_ref() != Some(&binding.rig) {
+            self.rig = Some(binding.rig.clone());
+            self.endoscope = RigConfig::load(&binding.rig).ok().and_then(|rig| rig.endoscope);
+            self.keeps_lens &= self.rig_lens().is_some();
+            if matches!(self.frame.saved, Some(Ok(_))) && self.frame.step == SAVE {
+                // What was saved can be undone; what was undone can be saved again.
+                let saved = self.pending.take().unwrap_or_default();
+                self.undoable = if self.undoable.is_empty() { saved } else { Vec::new() };
+            }
+        }
+        if self.frame.step == SAVE && self.pending.is_none() && self.undoable.is_empty() {
+            let file = RigFile::of(&binding.rig).ok();
+            self.pending = file.zip(self.lens()).map(|(file, lens)| changes(&file, &lens, self.found_place()));
+        }
+    }
+
+    fn tick(&mut self, tick: &Tick, _: f64) {
+        self.tip.note(tick.t_s, tick.tip_m);
+        if self.frame.step == TOUCH && self.base.is_some() {
+            self.marker.note(tick.t_s, tick.view.world_from_n());
+        }
+    }
+
+    fn see(&mut self, picture: Option<(u64, Arc<Picture>)>, ctx: &egui::Context) {
+        if self.detector.is_none() {
+            self.detector = Detector::new(ctx);
+        }
+        let (Some(detector), Ok(board)) = (&mut self.detector, board_of(&self.corners, self.square_mm)) else { return };
+        let found = detector.take();
+        if let Some(picture) = picture {
+            detector.show(picture, board);
+        }
+        if let Some(found) = found.filter(|found| found.board == board) {
+            self.take(found);
+        }
+    }
+
+    fn prompt(&self) -> Prompt {
+        Prompt::Rest
+    }
+
+    fn may_go_on(&self, _: &Binding) -> Result<(), &'static str> {
+        match self.frame.step {
+            CHECK if self.endoscope.is_none() || !self.shown.has_come() => Err(text::wizards::NEEDS_CHECKS.get()),
+            CHECK => self.board().map(|_| ()).map_err(|_| texts::NEEDS_BOARD.get()),
+            VIEWS | LENS if self.keeps_lens => Ok(()),
+            VIEWS if self.views() >= 4 => Ok(()),
+            VIEWS => Err(texts::NEEDS_VIEWS.get()),
+            LENS => self.lens().map(|_| ()).ok_or(texts::NEEDS_LENS.get()),
+            TOUCH if self.good_place().is_some() || self.touches.is_empty() && !self.keeps_lens => Ok(()),
+            TOUCH => Err(texts::NEEDS_PLACE.get()),
+            _ => Err(text::wizards::LAST_STEP.get()),
+        }
+    }
+
+    fn is_done(&self) -> bool {
+        match self.frame.step {
+            VIEWS => self.keeps_lens || self.session.as_ref().is_some_and(|session| session.share() >= 1.0),
+            TOUCH => self.good_place().is_some() && self.next_corner().is_none(),
+            _ => true,
+        }
+    }
+
+    fn step_ui(&mut self, ui: &mut Ui, _: &Binding) -> Option<Wish> {
+        if let Some(picture) = self.fresh.take() {
+            self.shown.upload(ui, &picture);
+        }
+        match self.frame.step {
+            CHECK => self.check_ui(ui),
+            VIEWS => self.views_ui(ui),
+            LENS => self.lens_ui(ui),
+            _ => self.touch_ui(ui),
+        }
+        None
+    }
+
+    fn proof(&self) -> Option<String> {
+        self.lens()?;
+        let held_out_px = self.report.as_ref().and_then(|report| Some(report.lens?.held_out_px));
+        let place = self.found_place().map(|place| (place.checked_px, place.on_marker));
+        Some(texts::proof(held_out_px.filter(|_| !self.keeps_lens), place))
+    }
+
+    fn made(&self, _: &Binding) -> Option<Saving> {
+        self.pending.clone().map(Saving::Camera)
+    }
+
+    fn before_saving(&self, ui: &mut Ui) -> bool {
+        if self.lens().is_none() {
+            ui.label(texts::NEEDS_LENS.get());
+        }
+        self.lens().is_some()
+    }
+
+    fn after_saving(&mut self, ui: &mut Ui) -> Option<Saving> {
+        if self.undoable.is_empty() {
+            return None;
+        }
+        let wanted = card(ui, text::frames::UNDO_TITLE.get(), text::frames::UNDO_CARD_HOVER.get(), |ui| {
+            ui.button(text::frames::UNDO.get()).clicked()
+        });
+        wanted.then(|| Saving::Undo(undone(&self.undoable)))
+    }
+
+    fn go_to(&mut self, step: usize) {
+        self.frame.step = step;
+        if step == SAVE {
+            (self.pending, self.frame.saved) = (None, None);
+            self.undoable.clear();
+        }
+        if step == LENS && self.report.is_none() && !self.keeps_lens {
+            let session = self.session.as_ref();
+            self.report = session.map(|session| calibrate(session.board(), session.size_px(), session.views()));
+            self.find_place();
+        }
+    }
+
+    fn start_over(&mut self) {
+        let (corners, square_mm) = (std::mem::take(&mut self.corners), self.square_mm);
+        let detector = self.detector.take();
+        *self = Self { corners, square_mm, detector, ..Self::default() };
+    }
+}

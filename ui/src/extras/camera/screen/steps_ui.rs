@@ -1,0 +1,219 @@
+//! What each step shows.
+
+use egui::{Button, DragValue, RichText, TextEdit, Ui};
+use nima_camera::{Ask, Lack, Report};
+use nima_core::calibration::Verdict;
+use nima_endoscope::board::SQUARE_M;
+
+use super::{
+    CameraWizard,
+    picture::{MAP_WIDTH, coverage_ui, picture_ui},
+};
+use crate::{
+    console::{
+        theme,
+        widgets::{card, figure, small},
+        wizards::{
+            checks::{check_line, switch_ui},
+            pictures::progress,
+            report::verdict_line,
+        },
+    },
+    extras::camera::{text as texts, words},
+};
+
+/// Widest picture, points: with the map beside it, and what is to be done above it, it fits a window of 1280 x 720.
+const PICTURE: f32 = 500.0;
+
+impl CameraWizard {
+    pub(super) fn check_ui(&mut self, ui: &mut Ui) {
+        card(ui, texts::CHECKS_TITLE.get(), texts::CHECKS_HOVER.get(), |ui| {
+            ui.label(texts::TASK.get());
+            ui.add_space(6.0);
+            check_line(ui, texts::CHECK_ENDOSCOPE.get(), self.endoscope.is_some(), texts::NO_ENDOSCOPE.get());
+            check_line(ui, texts::CHECK_PICTURE.get(), self.shown.has_come(), texts::NO_PICTURE.get());
+        });
+        let free = self.views() == 0 && self.touches.is_empty();
+        card(ui, texts::BOARD_TITLE.get(), texts::BOARD_HOVER.get(), |ui| {
+            ui.horizontal(|ui| {
+                let label = ui.label(texts::CORNERS.get());
+                let edit = TextEdit::singleline(&mut self.corners).desired_width(60.0).char_limit(7);
+                ui.add_enabled(free, edit).labelled_by(label.id).on_hover_text(texts::CORNERS_HOVER.get());
+                ui.add_space(16.0);
+                let label = ui.label(texts::SQUARE.get());
+                let [least_mm, most_mm] = [SQUARE_M.start(), SQUARE_M.end()].map(|side_m| side_m * 1e3);
+                let drag = DragValue::new(&mut self.square_mm).range(least_mm..=most_mm).speed(0.1).suffix(" mm");
+                ui.add_enabled(free, drag).labelled_by(label.id).on_hover_text(texts::SQUARE_HOVER.get());
+            });
+            match self.board() {
+                Ok(_) => ui.label(small(texts::PRINT.get())),
+                Err(error) => ui.label(texts::no_board(&error.to_string())),
+            };
+            let keeps = switch_ui(
+                ui,
+                free && self.rig_lens().is_some(),
+                self.keeps_lens,
+                texts::KEEP.get(),
+                texts::KEEP_HOVER.get(),
+            );
+            self.keeps_lens = keeps.unwrap_or(self.keeps_lens);
+        });
+        self.live_ui(ui, None);
+    }
+
+    pub(super) fn views_ui(&mut self, ui: &mut Ui) {
+        if self.keeps_lens {
+            ui.label(texts::LENS_IS_KEPT.get());
+            return;
+        }
+        let Some(session) = &self.session else {
+            ui.label(texts::NO_PICTURE.get());
+            return;
+        };
+        let (asked, share, views) = (session.asks(), session.share(), session.views().len());
+        let (coverage, size_px) = (session.coverage(), session.size_px());
+        card(ui, texts::VIEWS_TITLE.get(), texts::VIEWS_HOVER.get(), |ui| {
+            ui.label(RichText::new(words::ask(asked)).font(theme::strong(19.0)));
+            let told = self.told();
+            progress(ui, texts::PROGRESS.get(), share, &texts::views(views, &told));
+            ui.add_space(4.0);
+            ui.horizontal_top(|ui| {
+                self.live_ui(ui, None);
+                ui.vertical(|ui| coverage_ui(ui, &coverage, size_px));
+            });
+            ui.add_space(4.0);
+            if ui.add_enabled(views > 0, Button::new(texts::REMOVE_LAST.get())).clicked() {
+                self.session.iter_mut().for_each(nima_camera::Session::undo);
+                self.report = None;
+            }
+            if asked != Ask::Complete {
+                ui.label(small(texts::VIEWS_NOTE.get()));
+            }
+        });
+    }
+
+    pub(super) fn lens_ui(&self, ui: &mut Ui) {
+        if self.keeps_lens {
+            ui.label(texts::LENS_IS_KEPT.get());
+            return;
+        }
+        let Some(report) = &self.report else {
+            ui.label(texts::CALCULATING.get());
+            return;
+        };
+        card(ui, texts::LENS_TITLE.get(), texts::LENS_HOVER.get(), |ui| lens_figures(ui, report));
+    }
+
+    pub(super) fn touch_ui(&mut self, ui: &mut Ui) {
+        let marked = self.next_corner();
+        let still = self.tip.still_m().is_some();
+        card(ui, texts::TOUCH_TITLE.get(), texts::TOUCH_HOVER.get(), |ui| {
+            let asked = match (&self.base, marked) {
+                (None, _) => texts::LAY_DOWN.get().to_owned(),
+                (Some(_), Some(corner)) => texts::touch(corner),
+                (Some(_), None) => texts::ALL_TOUCHED.get().to_owned(),
+            };
+            ui.label(RichText::new(asked).font(theme::strong(19.0)));
+            if self.moved {
+                ui.label(texts::MOVED.get());
+            }
+            ui.horizontal(|ui| {
+                let can = self.base.is_some() && marked.is_some() && still && !self.moved;
+                let take = ui.add_enabled(can, Button::new(texts::TOUCHED.get()).min_size(egui::vec2(150.0, 34.0)));
+                if take
+                    .on_hover_text(texts::TOUCHED_HOVER.get())
+                    .on_disabled_hover_text(texts::TOUCHED_DISABLED.get())
+                    .clicked()
+                {
+                    self.take_touch();
+                }
+                if ui.add_enabled(!self.touches.is_empty(), Button::new(texts::REMOVE_TOUCH.get())).clicked() {
+                    self.touches.pop();
+                    self.find_place();
+                }
+                if ui.button(texts::LAY_ANEW.get()).on_hover_text(texts::LAY_ANEW_HOVER.get()).clicked() {
+                    self.lay_anew();
+                }
+            });
+            let tip = if still { texts::TIP_STILL.get() } else { texts::TIP_MOVES.get() };
+            ui.label(small(texts::touched(self.touches.len(), tip)));
+            ui.add_space(4.0);
+            ui.horizontal_top(|ui| {
+                self.live_ui(ui, marked);
+                ui.vertical(|ui| self.place_figures(ui));
+            });
+        });
+    }
+
+    fn place_figures(&self, ui: &mut Ui) {
+        ui.set_max_width(MAP_WIDTH);
+        match &self.placed {
+            None => {
+                ui.label(small(texts::PLACE_OPTIONAL.get()));
+            }
+            Some(Err(error)) => {
+                ui.label(words::place_error(*error));
+            }
+            Some(Ok(placed)) => {
+                let reason = placed
+                    .lack
+                    .as_ref()
+                    .map_or_else(|| texts::PLACE_GOOD.get().to_owned(), |lack: &Lack| words::place_lack(lack));
+                verdict_line(ui, placed.verdict(), &reason);
+                figure(
+                    ui,
+                    texts::HELD_OUT.get(),
+                    format!("{:.1} px", placed.held_out_px),
+                    texts::PLACE_HELD_OUT_HOVER.get(),
+                );
+                figure(
+                    ui,
+                    texts::HELD_OUT_MAX.get(),
+                    format!("{:.1} px", placed.held_out_max_px),
+                    texts::PLACE_HELD_OUT_HOVER.get(),
+                );
+                figure(ui, texts::RIGID.get(), format!("{:.2} mm", placed.fitted_m * 1e3), texts::RIGID_HOVER.get());
+            }
+        }
+    }
+
+    /// The picture with what was found in it.
+    pub(super) fn live_ui(&self, ui: &mut Ui, marked: Option<usize>) {
+        let width = (ui.available_width() - MAP_WIDTH - 16.0).clamp(160.0, PICTURE);
+        // While the board lies still, its corners stay where they were seen, whatever hides them.
+        let sight = if marked.is_some() { self.base.as_ref() } else { self.sight.as_ref() };
+        let board = self.board().ok();
+        let words = texts::picture(&self.told());
+        picture_ui(ui, width, &self.shown, sight.zip(board.as_ref()), marked, &words);
+    }
+}
+
+fn lens_figures(ui: &mut Ui, report: &Report) {
+    let reason = report.cause.as_ref().map_or_else(|| texts::LENS_GOOD.get().to_owned(), words::camera_cause);
+    verdict_line(ui, report.verdict(), &reason);
+    ui.add_space(4.0);
+    figure(ui, texts::VIEWS_USED.get(), report.used.len().to_string(), texts::VIEWS_USED_HOVER.get());
+    for (at, why) in &report.left_out {
+        ui.label(small(texts::left_out(at + 1, words::left_out(*why))));
+    }
+    figure(ui, texts::COVERAGE.get(), format!("{:.0} %", 100.0 * report.coverage.share()), texts::COVERAGE_HOVER.get());
+    let Some(found) = &report.lens else { return };
+    let (lens, sd) = (&found.lens, &found.deviations);
+    let with = |value: f64, sd: f64| texts::with_deviation(value, sd);
+    figure(ui, texts::HELD_OUT.get(), format!("{:.3} px", found.held_out_px), texts::HELD_OUT_HOVER.get());
+    figure(ui, texts::HELD_OUT_MAX.get(), format!("{:.2} px", found.held_out_max_px), texts::HELD_OUT_HOVER.get());
+    figure(ui, texts::FITTED.get(), format!("{:.3} px", found.fitted_px), texts::FITTED_HOVER.get());
+    figure(ui, texts::TILT.get(), format!("{:.0} deg", found.tilt_deg), texts::TILT_HOVER.get());
+    figure(ui, texts::FOCAL.get(), with(lens.focal_px.x, sd.focal_px.x), texts::FOCAL_HOVER.get());
+    if found.terms.aspect {
+        figure(ui, texts::FOCAL_DOWN.get(), with(lens.focal_px.y, sd.focal_px.y), texts::FOCAL_HOVER.get());
+    }
+    let centre = format!("{}, {}", with(lens.centre_px.x, sd.centre_px.x), with(lens.centre_px.y, sd.centre_px.y));
+    figure(ui, texts::CENTRE.get(), centre, texts::CENTRE_HOVER.get());
+    figure(ui, texts::BEND.get(), texts::bend(&lens.bend, &sd.bend), texts::BEND_HOVER.get());
+}
+
+/// Whether a lens may be used.
+pub(super) fn is_good(report: &Report) -> bool {
+    report.verdict() == Verdict::Accepted
+}

@@ -1,0 +1,299 @@
+//! The commands, in a program that has them.
+
+use std::{
+    net::{Ipv6Addr, SocketAddr},
+    path::PathBuf,
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context as _, bail};
+use nima_department::{Authority, Found, Identity, Recording, Rig, Role, Step, find, find_at};
+use nima_machine::config::RigConfig;
+use nima_recording::store::{Store, utc_of};
+use nima_simulation::scene::Scene;
+use serde::Serialize;
+
+use crate::{
+    command::{
+        department::{DepartmentCommand, MonitorArguments, RecordArguments, RigsArguments, Which},
+        output,
+    },
+    console::{
+        monitor::{self, Heard, Options, Teller},
+        settings::Kept,
+    },
+    leaving::Leave,
+    telling::tell,
+};
+
+/// The port of a rig that is shared.
+const PORT: u16 = 7447;
+/// How long rigs of the local network have to answer.
+const ANSWER: Duration = Duration::from_millis(1500);
+/// A rig that is silent or gone is looked for again after this time.
+const AGAIN: Duration = Duration::from_secs(2);
+
+pub(super) fn run(command: &DepartmentCommand) -> anyhow::Result<()> {
+    match command {
+        DepartmentCommand::Create { name } => {
+            let authority = Authority::create(&folder()?, name)?;
+            output::line(&format!(
+                "department {} is created; issue a certificate to every machine with `nima department issue NAME --out FILE`",
+                authority.department
+            ))
+        }
+        DepartmentCommand::Issue { name, watcher, out } => {
+            let role = if *watcher { Role::Watcher } else { Role::Rig };
+            let identity = Authority::load(&folder()?)?.issue(name, role, out)?;
+            output::line(&format!(
+                "certificate of {} {} is in {}: carry it there, use `nima department join` and delete the file",
+                role.word(),
+                identity.name,
+                out.display()
+            ))
+        }
+        DepartmentCommand::Join { file } => {
+            let identity = Identity::join(&folder()?, file)?;
+            let Identity { department, name, role, .. } = &identity;
+            output::line(&format!(
+                "this machine is {} {name} of department {department}; delete {}",
+                role.word(),
+                file.display()
+            ))
+        }
+        DepartmentCommand::Rigs(arguments) => rigs(arguments),
+        DepartmentCommand::Monitor(arguments) => watch(arguments),
+        DepartmentCommand::Record(arguments) => record(arguments),
+    }
+}
+
+fn folder() -> anyhow::Result<PathBuf> {
+    let store = Store::of_user()?;
+    let folder = store.folder().parent().context("no folder for your files was found; set NIMA_DATA_DIR")?;
+    Ok(folder.join("department"))
+}
+
+/// Who this machine is.
+pub(super) fn own_identity() -> anyhow::Result<Identity> {
+    Ok(Identity::load(&folder()?)?)
+}
+
+#[derive(Serialize)]
+struct Listed {
+    name: String,
+    address: String,
+    /// `None`: no loop runs there.
+    rig: Option<String>,
+    scene: Option<String>,
+    running_since: Option<String>,
+    watchers: usize,
+    program: String,
+}
+
+impl Listed {
+    fn of(found: &Found) -> Self {
+        let about = &found.about;
+        let runs = about.session != 0;
+        let name = |text: &str| toml::from_str::<toml::Table>(text).ok()?.get("name")?.as_str().map(str::to_owned);
+        Self {
+            name: about.name.clone(),
+            address: found.address.clone(),
+            rig: name(&about.rig).filter(|_| runs),
+            scene: name(&about.scene).filter(|_| runs),
+            running_since: runs.then(|| utc_of(std::time::UNIX_EPOCH + Duration::from_nanos(about.started_ns))),
+            watchers: found.watchers,
+            program: about.program.clone(),
+        }
+    }
+
+    fn in_words(&self) -> String {
+        let Self { name, address, rig, scene, running_since, watchers, .. } = self;
+        let runs = match (rig, scene, running_since) {
+            (Some(rig), Some(scene), Some(since)) => format!("rig {rig}, scene {scene}, since {since}"),
+            _ => "no loop runs".to_owned(),
+        };
+        format!("{name} at {address}: {runs}; watchers: {watchers}")
+    }
+}
+
+fn rigs(arguments: &RigsArguments) -> anyhow::Result<()> {
+    let own = own_identity()?;
+    let found = if arguments.at.is_empty() {
+        find(&own, ANSWER)?
+    } else {
+        let at = |address: &String| find_at(&own, &with_port(address));
+        arguments.at.iter().map(at).collect::<Result<_, _>>()?
+    };
+    let listed: Vec<Listed> = found.iter().map(Listed::of).collect();
+    if arguments.json {
+        return output::json(&listed);
+    }
+    if listed.is_empty() {
+        return output::line(
+            "no rig of this department is shared in the local network; one elsewhere is found by --at HOST",
+        );
+    }
+    listed.iter().try_for_each(|rig| output::line(&rig.in_words()))
+}
+
+impl Which {
+    /// Where it is.
+    fn address(&self, own: &Identity) -> anyhow::Result<String> {
+        if let Some(address) = &self.at {
+            return Ok(with_port(address));
+        }
+        let mut found = find(own, ANSWER)?;
+        if let Some(name) = &self.rig {
+            found.retain(|found| found.about.name == *name);
+        }
+        match found.as_slice() {
+            [found] => Ok(found.address.clone()),
+            [] => bail!(
+                "no such rig of this department is shared in the local network; `nima department rigs` lists them, --at HOST names one elsewhere"
+            ),
+            several => {
+                let names: Vec<&str> = several.iter().map(|found| found.about.name.as_str()).collect();
+                bail!("several rigs are shared: {}; name one of them", names.join(", "))
+            }
+        }
+    }
+}
+
+fn watch(arguments: &MonitorArguments) -> anyhow::Result<()> {
+    let own = own_identity()?;
+    let address = arguments.which.address(&own)?;
+    let rig = Rig::open(&own, &address)?;
+    let options = Options {
+        role: arguments.role,
+        language: arguments.language.unwrap_or_else(|| Kept::of_user().now.language),
+        exit_after: arguments.exit_after.map(Duration::from_secs_f64),
+        screenshot: arguments.screenshot.clone(),
+    };
+    let name = rig.name().to_owned();
+    monitor::open(&name, options, move |teller| {
+        let thread = thread::Builder::new().name("monitor".to_owned());
+        let listen = move || listen(rig, &own, &address, &teller);
+        if let Err(error) = thread.spawn(listen) {
+            tell(format_args!("nima: cannot start a thread: {error}; end other programs, then try again"));
+        }
+    })
+}
+
+/// Tells a window what a rig shows, until the window is closed. A rig that is gone is looked for again.
+fn listen(rig: Rig, own: &Identity, address: &str, teller: &Teller) {
+    let mut rig = Some(rig);
+    loop {
+        let heard = match rig.take() {
+            Some(rig) => listen_to(&rig, teller),
+            None => Rig::open(own, address).map_err(anyhow::Error::from).and_then(|rig| listen_to(&rig, teller)),
+        };
+        match heard {
+            Ok(()) => return,
+            Err(why) => {
+                if !teller.tell(Heard::Trouble(format!("{why:#}"))) {
+                    return;
+                }
+            }
+        }
+        thread::sleep(AGAIN);
+    }
+}
+
+/// Until the window is closed.
+fn listen_to(rig: &Rig, teller: &Teller) -> anyhow::Result<()> {
+    let (to, came) = crossbeam_channel::unbounded();
+    let presence = rig.presence()?;
+    let _watching = rig.watch(move |session, moments| drop(to.send((session, moments))))?;
+    let mut shown = None;
+    loop {
+        // What runs there, at first and whenever another session speaks or nothing comes.
+        let about = rig.about()?;
+        if shown != Some(about.session) {
+            shown = Some(about.session);
+            let heard = if about.session == 0 {
+                Heard::Rests
+            } else {
+                let rig: RigConfig = nima_files::from_toml(&about.rig).context("the rig's file cannot be read here")?;
+                let scene: Scene =
+                    nima_files::from_toml(&about.scene).context("the rig's scene cannot be read here")?;
+                Heard::Runs(Box::new(rig), Box::new(scene))
+            };
+            if !teller.tell(heard) {
+                return Ok(());
+            }
+        }
+        while let Ok((session, moments)) = came.recv_timeout(AGAIN) {
+            if shown != Some(session) {
+                break;
+            }
+            if !teller.tell(Heard::Shows(moments?)) {
+                return Ok(());
+            }
+        }
+        if !presence.is_there() {
+            bail!("{} has ended, or cannot be reached", rig.name());
+        }
+    }
+}
+
+fn record(arguments: &RecordArguments) -> anyhow::Result<()> {
+    let own = own_identity()?;
+    let leave = Leave::on_signals()?;
+    let address = arguments.which.address(&own)?;
+    let rig = Rig::open(&own, &address)?;
+    let mut recording = Recording::start(&rig, &arguments.into)?;
+    tell(format_args!("nima: records {} into {}", rig.name(), arguments.into.display()));
+    let ends = arguments.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
+    let mut written = None;
+    while !leave.is_asked() && ends.is_none_or(|ends| Instant::now() < ends) {
+        match recording.step(Duration::from_millis(250))? {
+            Step::Writes { file, .. } if written.as_ref() != Some(&file) => {
+                tell(format_args!("nima: a session: {}", file.display()));
+                written = Some(file);
+            }
+            Step::Ended { file, messages } => ended(&file, messages)?,
+            Step::Writes { .. } | Step::Waits => {}
+        }
+    }
+    if let Step::Ended { file, messages } = recording.finish()? {
+        ended(&file, messages)?;
+    }
+    Ok(())
+}
+
+fn ended(file: &std::path::Path, messages: u64) -> anyhow::Result<()> {
+    output::line(&format!("recorded {} messages into {}", messages, file.display()))
+}
+
+/// The address with the usual port, if it has none.
+fn with_port(address: &str) -> String {
+    let has_port = address.parse::<SocketAddr>().is_ok()
+        || address.rsplit_once(':').is_some_and(|(host, port)| !host.contains(':') && port.parse::<u16>().is_ok());
+    match address.parse::<Ipv6Addr>() {
+        Ok(ip) => format!("[{ip}]:{PORT}"),
+        Err(_) if has_port => address.to_owned(),
+        Err(_) => format!("{address}:{PORT}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::Ipv4Addr;
+
+    use super::*;
+
+    #[test]
+    fn an_address_without_a_port_gets_the_usual_one() {
+        let localhost = Ipv4Addr::LOCALHOST;
+        for (given, expected) in [
+            ("theatre-1", "theatre-1:7447".to_owned()),
+            ("theatre-1:80", "theatre-1:80".to_owned()),
+            ("127.0.0.1", format!("{localhost}:7447")),
+            ("[::1]:9", "[::1]:9".to_owned()),
+            ("::1", "[::1]:7447".to_owned()),
+        ] {
+            assert_eq!(with_port(given), expected);
+        }
+    }
+}

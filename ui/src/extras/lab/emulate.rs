@@ -1,0 +1,174 @@
+//! `nima emulate`: emulators on the real interfaces, for drivers, third-party clients and demos without hardware.
+//!
+//! Prints one JSON line per endpoint (`{"device": ..., "endpoint": ...}`), then serves until Ctrl-C, or until its
+//! standard input ends if that is a pipe or a terminal, so that it does not outlive the process that started it. Lines
+//! on standard input set faults: `fault NAME` (see `--help`), `fault none` removes it; with several devices `fault
+//! DEVICE NAME`, with a name that contains blanks in quotes or with dashes. `nima emulate rig` emulates a whole rig
+//! with one simulated world; `pedal BITS` presses its pedal's switches, `screen ...` shows its technician what to do.
+
+mod link;
+#[cfg(unix)]
+mod rig;
+
+#[cfg(unix)]
+use std::io::IsTerminal as _;
+use std::{io::BufRead as _, sync::mpsc::RecvTimeoutError, time::Duration};
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use nima_emulation::emulators::{ALONE, EmulatedFault, Serving, Settings};
+use serde::Serialize;
+
+#[cfg(unix)]
+use crate::command::setup::default_scene;
+use crate::{command::output, leaving::Leave, telling::tell};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Devices to emulate; `rig` for all devices of a rig, `link` for a bad network between two machines
+    #[arg(required = true, value_name = "DEVICE")]
+    devices: Vec<String>,
+    /// A setting of the emulated devices; devices that do not have it ignore it
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// With `rig`: the rig, by name or TOML file
+    #[arg(long, default_value = "emulated")]
+    rig: String,
+    /// With `rig`: the scene, by name or TOML file (default: `bimanual` for a rig with two arms, else `peg_transfer`)
+    #[arg(long)]
+    scene: Option<String>,
+    /// A fault that is in force from the beginning, as `fault NAME` on standard input sets it; an unknown name lists them
+    #[arg(long, value_name = "NAME")]
+    fault: Option<String>,
+    /// End with standard input and without a word: whoever started this holds its other end
+    #[arg(long, hide = true)]
+    until_input_ends: bool,
+}
+
+#[derive(Serialize)]
+struct Endpoint<'a> {
+    device: &'a str,
+    endpoint: &'a str,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if arguments.fault.is_some() && arguments.devices.iter().any(|name| name == "rig" || name == "link") {
+        bail!("--fault is for single devices; with a rig or a link write `fault DEVICE NAME` on standard input");
+    }
+    #[cfg(unix)]
+    if arguments.devices == ["rig"] {
+        return rig::run(
+            &arguments.rig,
+            arguments.scene.as_deref().unwrap_or_else(|| default_scene(&arguments.rig)),
+            arguments.until_input_ends,
+        );
+    }
+    if arguments.devices == ["link"] {
+        return link::run(&arguments.set);
+    }
+    let settings = Settings::new(&arguments.set)?;
+    let fault = arguments.fault.as_deref().map(fault_named).transpose().map_err(anyhow::Error::msg)?;
+    let mut emulated = Vec::new();
+    for name in &arguments.devices {
+        let Some((known, emulator)) = ALONE.iter().find(|(known, _)| known == name) else {
+            let known: Vec<_> = ALONE.iter().map(|(known, _)| *known).collect();
+            bail!("unknown emulator \"{name}\"; known: {}", known.join(", "));
+        };
+        let serving = emulator(&settings).and_then(<dyn nima_emulation::emulators::Emulator>::serve);
+        emulated.push((*known, serving.with_context(|| format!("cannot emulate {name}"))?));
+    }
+    for (_, serving) in &emulated {
+        serving.faults.set(fault.unwrap_or_default());
+    }
+    let served: Vec<_> = emulated.iter().map(|(device, serving)| (*device, serving)).collect();
+    serve(&served, arguments.until_input_ends, |_| false)
+}
+
+/// Prints the endpoints and serves until the end is requested. Lines on standard input that are not about faults are
+/// passed to `other`, which returns whether it knows them.
+fn serve(emulated: &[(&str, &Serving)], until_input_ends: bool, other: impl Fn(&str) -> bool) -> anyhow::Result<()> {
+    for (device, serving) in emulated {
+        output::line(&serde_json::to_string(&Endpoint { device, endpoint: &serving.endpoint })?)?;
+    }
+    let leave = Leave::on_signals()?;
+    let (lines, told) = std::sync::mpsc::sync_channel(16);
+    std::thread::spawn(move || {
+        for line in std::io::stdin().lock().lines().map_while(Result::ok) {
+            if lines.send(line).is_err() {
+                return;
+            }
+        }
+    });
+    let held = until_input_ends || input_is_held();
+    while !leave.is_asked() && emulated.iter().all(|(_, serving)| serving.is_serving()) {
+        match told.recv_timeout(Duration::from_millis(50)) {
+            Ok(line) if other(&line) => {}
+            Ok(line) => obey(&line, emulated),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) if held => {
+                if !until_input_ends {
+                    tell("nima: standard input has ended, and with it the emulators");
+                }
+                return Ok(());
+            }
+            // Standard input was a file that has been read completely, or there was none.
+            Err(RecvTimeoutError::Disconnected) => std::thread::sleep(Duration::from_millis(50)),
+        }
+    }
+    Ok(())
+}
+
+/// Whether another process or a person at a terminal holds the other end of standard input.
+#[cfg(unix)]
+fn input_is_held() -> bool {
+    use std::os::{fd::AsFd as _, unix::fs::FileTypeExt as _};
+    let stdin = std::io::stdin();
+    let kind = stdin.as_fd().try_clone_to_owned().and_then(|input| std::fs::File::from(input).metadata());
+    stdin.is_terminal() || kind.is_ok_and(|kind| kind.file_type().is_fifo() || kind.file_type().is_socket())
+}
+
+/// Whether another process or a person at a terminal holds the other end of standard input.
+#[cfg(not(unix))]
+fn input_is_held() -> bool {
+    true
+}
+
+/// A device's name in normal form, whichever way its blanks were written.
+fn plain(name: &str) -> String {
+    name.trim_matches(['"', '\'']).replace('-', " ")
+}
+
+fn fault_named(name: &str) -> Result<EmulatedFault, String> {
+    EmulatedFault::named(name).ok_or_else(|| {
+        let known: Vec<_> = EmulatedFault::every().map(EmulatedFault::name).collect();
+        format!("unknown fault \"{name}\"; known: none, {}", known.join(", "))
+    })
+}
+
+fn obey(line: &str, emulated: &[(&str, &Serving)]) {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let (device, name) = match words[..] {
+        [] => return,
+        ["fault", name] => (None, name),
+        ["fault", ref device @ .., name] => (Some(plain(&device.join(" "))), name),
+        _ => {
+            tell(format_args!("unknown command \"{line}\"; expected: fault [DEVICE] NAME"));
+            return;
+        }
+    };
+    let fault = match fault_named(name) {
+        Ok(fault) => fault,
+        Err(unknown) => {
+            tell(unknown);
+            return;
+        }
+    };
+    let meant = |known: &str| device.as_ref().is_none_or(|device| *device == plain(known));
+    if !emulated.iter().any(|(known, _)| meant(known)) {
+        let known: Vec<_> = emulated.iter().map(|(known, _)| *known).collect();
+        tell(format_args!("unknown device \"{}\"; known: {}", device.as_deref().unwrap_or_default(), known.join(", ")));
+    }
+    for (_, serving) in emulated.iter().filter(|(known, _)| meant(known)) {
+        serving.faults.set(fault);
+    }
+}

@@ -1,0 +1,62 @@
+//! Shows the stability map below the gain slider: a strip that is solid where a gripping hand is stable and broken
+//! where it is not, for the present mode, delay and contact stiffness.
+
+use egui::{Rect, Sense, Stroke, Ui, pos2, vec2};
+use nima_study::stability_map::{StabilityMap, Verdict};
+
+use crate::{
+    console::{live::Live, theme, widgets::small},
+    extras::lab::text,
+};
+
+const HEIGHT: f32 = 8.0;
+/// Number of segments of the strip.
+const PARTS: u32 = 60;
+
+/// Draws the strip and its text; `rail` is the slider's rectangle, `limit` the gain at its right end.
+///
+/// In a scope of its own: what it shows changes with the first contact, and what stands below must keep its identity, or
+/// a slider would slip from the hand in that moment.
+pub(in crate::extras::lab) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
+    ui.scope(|ui| strip_ui(ui, live, rail, limit));
+}
+
+fn strip_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
+    let Some(map) = StabilityMap::committed() else { return };
+    if !StabilityMap::has(live.mode()) {
+        ui.label(small(text::STABLE_GAIN_UNMEASURED.get())).on_hover_text(text::STABLE_GAIN_HOVER.get());
+        return;
+    }
+    let Some(n_m) = live.stiffness_n_m() else {
+        ui.label(small(text::STABLE_GAIN_UNKNOWN.get())).on_hover_text(text::STABLE_GAIN_HOVER.get());
+        return;
+    };
+    let (mode, delay_s) = (live.mode(), live.delay_s());
+    // The slider's handle stays within the rail by half its own width.
+    let ends = rail.x_range().shrink(0.3 * rail.height());
+    let (rect, response) = ui.allocate_exact_size(vec2(rail.width(), HEIGHT), Sense::hover());
+    let painter = ui.painter();
+    for part in 0..PARTS {
+        let gain = limit * (f64::from(part) + 0.5) / f64::from(PARTS);
+        let x = |edge: u32| ends.min + ends.span() * edge as f32 / PARTS as f32;
+        let cell = Rect::from_x_y_ranges(x(part)..=x(part + 1), rect.y_range());
+        match map.at(mode, gain, delay_s, n_m) {
+            Verdict::Stable => {
+                painter.rect_filled(cell, 0.0, theme::now().engaged.gamma_multiply(0.8));
+            }
+            Verdict::Marginal => {
+                painter.rect_filled(cell.shrink2(vec2(0.0, 2.5)), 0.0, theme::now().at_rest);
+            }
+            Verdict::Unstable if part % 2 == 0 => {
+                let (low, high) = (pos2(cell.left(), cell.bottom()), pos2(cell.right(), cell.top()));
+                painter.line_segment([low, high], Stroke::new(1.5, theme::now().text));
+            }
+            Verdict::Unstable => {}
+        }
+    }
+    let greatest = map.greatest_stable_gain(mode, delay_s, n_m);
+    let now = map.at(mode, live.gain(), delay_s, n_m);
+    let words = text::stable_up_to(now, greatest, n_m);
+    response.on_hover_text(text::STABLE_GAIN_HOVER.get());
+    ui.label(small(words)).on_hover_text(text::STABLE_GAIN_HOVER.get());
+}

@@ -1,0 +1,250 @@
+//! Measures the trade-off between computing time and accuracy on this computer, in the background, and applies a chosen
+//! point.
+
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+    },
+    thread::{Builder, JoinHandle},
+};
+
+use egui::{Button, ProgressBar, Ui, vec2};
+use nima_machine::config::RigConfig;
+use nima_study::tradeoff::{Choice, Method, Plan, Point, Source, SourceFigures, Study, SweepError, sweep};
+
+use super::{tradeoff_apply::Apply, tradeoff_plot::plot_ui};
+use crate::{
+    console::{live::Live, outbox::Outbox, panels::Tile, text::calibrations, widgets::small},
+    extras::lab::text,
+    words::{mode_meaning, mode_name, three_digits},
+};
+
+/// Duration of the scene on which it is measured, s.
+const SCENE_S: f64 = 6.0;
+const BUTTON: egui::Vec2 = vec2(120.0, 30.0);
+
+/// State of the panel.
+#[derive(Debug, Default)]
+pub(in crate::extras::lab) struct Tradeoff {
+    job: Option<Job>,
+    measured: Option<SourceFigures>,
+    selected: Option<usize>,
+    message: String,
+}
+
+/// A sweep in the background. Dropping it requests it to stop.
+#[derive(Debug)]
+struct Job {
+    cancel: Arc<AtomicBool>,
+    progress: Arc<[AtomicUsize; 2]>,
+    thread: JoinHandle<Result<Study, SweepError>>,
+}
+
+impl Job {
+    fn start(live: &Live) -> std::io::Result<Self> {
+        let (plan, rate_hz, scene) = (plan(live), live.rig.rate_hz, live.scene.clone());
+        let cancel = Arc::new(AtomicBool::new(false));
+        let progress = Arc::new([AtomicUsize::new(0), AtomicUsize::new(1)]);
+        let (stop, told) = (Arc::clone(&cancel), Arc::clone(&progress));
+        // A thread with normal priority: the loop's thread has real-time priority if that is granted, and is not
+        // delayed.
+        let thread = Builder::new().name("trade-off".to_owned()).spawn(move || {
+            let source = Source::from_scene(&scene, rate_hz, SCENE_S);
+            sweep(&[source], &plan, &stop, |done, total| {
+                told[0].store(done, Ordering::Relaxed);
+                told[1].store(total, Ordering::Relaxed);
+            })
+        })?;
+        Ok(Self { cancel, progress, thread })
+    }
+
+    fn share(&self) -> f32 {
+        let [done, total] = [&self.progress[0], &self.progress[1]].map(|count| count.load(Ordering::Relaxed) as f32);
+        done / total.max(1.0)
+    }
+
+    fn join(self) -> Option<Result<Study, SweepError>> {
+        let Self { thread, .. } = self;
+        thread.join().ok()
+    }
+}
+
+/// What is measured: the rig as it is, at the present delay.
+pub(super) fn plan(live: &Live) -> Plan {
+    let mut rig = live.rig.clone();
+    rig.delay_s = live.delay_s();
+    Plan::quick(rig.settings())
+}
+
+impl Tradeoff {
+    /// Shows a message to the operator.
+    fn tell(&mut self, message: impl Into<String>) {
+        self.message = message.into();
+    }
+
+    fn take_in(&mut self) {
+        let Some(job) = self.job.take_if(|job| job.thread.is_finished()) else { return };
+        match job.join() {
+            Some(Ok(mut study)) if !study.sources.is_empty() => {
+                let figures = study.sources.swap_remove(0);
+                self.selected = most_accurate(&figures);
+                self.measured = Some(figures);
+                self.message.clear();
+            }
+            Some(Err(SweepError::Cancelled)) => self.tell(text::CANCELLED.get()),
+            Some(Err(error)) => self.tell(error.to_string()),
+            Some(Ok(_)) | None => self.tell(text::FAILED.get()),
+        }
+    }
+}
+
+impl Drop for Tradeoff {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+impl Tile for Tradeoff {
+    fn ui(&mut self, ui: &mut Ui, live: &Live, outbox: &mut Outbox) -> Option<RigConfig> {
+        tradeoff_ui(ui, live, self, outbox)
+    }
+
+    fn restarted(&mut self, outcome: Result<(), String>) {
+        self.tell(match outcome {
+            Ok(()) => text::APPLIED_BY_RESTART.get().to_owned(),
+            Err(reason) => text::not_applied(&reason),
+        });
+    }
+
+    fn stop(&self) {
+        if let Some(job) = &self.job {
+            job.cancel.store(true, Ordering::Relaxed);
+        }
+    }
+
+    fn is_measured(&self) -> bool {
+        self.measured.is_some()
+    }
+}
+
+/// The panel. Returns a rig if the operator applies a point that the running loop cannot change to: the loop must then
+/// be restarted with it.
+fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut Tradeoff, outbox: &mut Outbox) -> Option<RigConfig> {
+    state.take_in();
+    measure_ui(ui, live, state);
+    if !state.message.is_empty() {
+        ui.label(small(state.message.clone()));
+    }
+    let Some(figures) = &state.measured else {
+        ui.label(small(text::NOT_MEASURED.get()));
+        return None;
+    };
+    if let Some(clicked) = plot_ui(ui, figures, state.selected) {
+        state.selected = Some(clicked);
+    }
+    front_ui(ui, figures, &mut state.selected);
+    let point = state.selected.and_then(|index| figures.points.get(index)).copied()?;
+    apply_ui(ui, live, &point, state, outbox)
+}
+
+fn measure_ui(ui: &mut Ui, live: &Live, state: &mut Tradeoff) {
+    let Some(job) = &state.job else {
+        let meaning = text::MEASURE_HOVER.get();
+        let button = Button::new(text::MEASURE.get()).min_size(vec2(ui.available_width(), 30.0));
+        if ui.add(button).on_hover_text(meaning).clicked() {
+            match Job::start(live) {
+                Ok(job) => state.job = Some(job),
+                Err(error) => state.tell(text::not_started(&error)),
+            }
+        }
+        return;
+    };
+    ui.horizontal(|ui| {
+        let share = job.share();
+        let width = (ui.available_width() - BUTTON.x - 8.0).max(60.0);
+        let bar = ui.add(ProgressBar::new(share).desired_width(width).text(format!("{:.0} %", 100.0 * share)));
+        bar.widget_info(|| {
+            let words = text::measured(100.0 * share);
+            egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, words)
+        });
+        let cancel = ui.add(Button::new(text::CANCEL.get()).min_size(BUTTON));
+        if cancel.on_hover_text(text::CANCEL_HOVER.get()).clicked() {
+            job.cancel.store(true, Ordering::Relaxed);
+        }
+    });
+}
+
+/// The points of the Pareto front, cheapest first, each a button.
+fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) {
+    ui.label(small(text::FRONT.get())).on_hover_text(text::FRONT_HOVER.get());
+    for index in front(figures) {
+        let point = &figures.points[index];
+        let row = Button::selectable(*selected == Some(index), format!("{}: {}", name(point), figures_of(point)));
+        if ui.add(row.min_size(vec2(ui.available_width(), 24.0))).on_hover_text(words(point)).clicked() {
+            *selected = Some(index);
+        }
+    }
+}
+
+fn apply_ui(ui: &mut Ui, live: &Live, point: &Point, state: &mut Tradeoff, outbox: &mut Outbox) -> Option<RigConfig> {
+    let mode = point.choice.method.mode()?;
+    let apply = Apply::of(live, mode, &point.choice);
+    let restart = matches!(apply, Apply::Restart(_));
+    // After a restart the loop is idle, so it must not be a way out of a stop or a fault.
+    let closed = calibrations::closed(live.state()).filter(|_| restart);
+    let size = vec2(ui.available_width(), 30.0);
+    let button = ui.add_enabled(closed.is_none(), Button::new(text::APPLY.get()).min_size(size));
+    let note = if restart { text::APPLY_BY_RESTART.get() } else { text::APPLY_AT_ONCE.get() };
+    ui.label(small(format!("{}. {note}", name(point))));
+    let clicked = button
+        .on_hover_text(format!("{}\n{}\n{note}", words(point), mode_meaning(mode)))
+        .on_disabled_hover_text(closed.unwrap_or_default())
+        .clicked();
+    if !clicked {
+        return None;
+    }
+    match apply {
+        Apply::Restart(rig) => return Some(*rig),
+        Apply::AtOnce(commands) => commands.into_iter().for_each(|command| outbox.push(command)),
+    }
+    state.tell(text::applied(&name(point)));
+    None
+}
+
+/// Indices of the Pareto front at the source's own rate, cheapest first.
+fn front(figures: &SourceFigures) -> Vec<usize> {
+    let points = &figures.points;
+    let mut front: Vec<usize> =
+        (0..points.len()).filter(|&i| points[i].pareto && points[i].choice.every == 1).collect();
+    front.sort_by(|&a, &b| points[a].cost_us.p50.total_cmp(&points[b].cost_us.p50));
+    front
+}
+
+fn most_accurate(figures: &SourceFigures) -> Option<usize> {
+    front(figures).into_iter().min_by(|&a, &b| figures.points[a].error.total_cmp(&figures.points[b].error))
+}
+
+/// Name of a point: mode, degree and window, as far as they apply.
+pub(super) fn name(point: &Point) -> String {
+    let Choice { method, degree, window_ms, .. } = point.choice;
+    match method {
+        Method::Mode(mode) if mode.has_degrees() => format!("{}, N = {degree}, {window_ms:.0} ms", mode_name(mode)),
+        Method::Mode(mode) if mode.has_window() => format!("{}, {window_ms:.0} ms", mode_name(mode)),
+        Method::Mode(mode) => mode_name(mode).to_owned(),
+        Method::Solver(solver) => solver.name().to_owned(),
+    }
+}
+
+fn figures_of(point: &Point) -> String {
+    format!("{} µs, {} N", three_digits(point.cost_us.p50), three_digits(point.error))
+}
+
+/// Hover text of a point.
+pub(super) fn words(point: &Point) -> String {
+    let front = if point.pareto { text::ON_FRONT.get() } else { "" };
+    let [median_us, p99_us, error_n, ratio] =
+        [point.cost_us.p50, point.cost_us.p99, point.error, point.ratio].map(three_digits);
+    let figures = text::point(&name(point), [&median_us, &p99_us], point.choice.delay_ms, [&error_n, &ratio]);
+    figures + front
+}

@@ -1,0 +1,185 @@
+//! What **Apply** does with a measured point, so that the loop then does the work whose time was measured.
+
+use nima_core::{impedance::Mode, limits::GAIN};
+use nima_machine::{
+    config::{Identification, RigConfig},
+    messages::Command,
+};
+use nima_study::tradeoff::Choice;
+
+use crate::console::live::Live;
+
+/// How the loop comes to a choice.
+#[derive(Clone, Debug)]
+pub(super) enum Apply {
+    /// The running loop is told.
+    AtOnce([Command; 3]),
+    /// The loop is started anew with this rig: degree and window cannot change while it runs.
+    Restart(Box<RigConfig>),
+}
+
+impl Apply {
+    pub(super) fn of(live: &Live, mode: Mode, choice: &Choice) -> Self {
+        if needs_restart(&live.rig.identification, mode, choice) {
+            return Self::Restart(Box::new(rig_with(live, mode, choice)));
+        }
+        // The cost that was measured is that of this mode alone.
+        Self::AtOnce([Command::Compare(false), Command::SetMode(mode), Command::SetDelay(choice.delay_ms * 1e-3)])
+    }
+}
+
+fn needs_restart(now: &Identification, mode: Mode, choice: &Choice) -> bool {
+    let degree = choice.degree != now.max_degree;
+    let window = (choice.window_ms - now.window_s * 1e3).abs() > 1e-6;
+    (mode.has_degrees() && degree) || (mode.has_window() && window)
+}
+
+/// The rig with this choice and all settings that the operator has changed since the start; a gain above 1 is reset to
+/// 1.
+fn rig_with(live: &Live, mode: Mode, choice: &Choice) -> RigConfig {
+    let mut rig = live.rig.clone();
+    rig.mode = mode;
+    rig.identification.compare = false;
+    rig.delay_s = choice.delay_ms * 1e-3;
+    if mode.has_window() {
+        rig.identification.window_s = choice.window_ms * 1e-3;
+    }
+    if mode.has_degrees() {
+        rig.identification.max_degree = choice.degree;
+    }
+    rig.gates = live.gate_settings();
+    rig.gates.gain = live.gain().min(GAIN.max);
+    rig
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{sync::atomic::AtomicBool, time::Instant};
+
+    use nima_core::{
+        impedance::{Identifier, Sample},
+        statistics::Percentiles,
+    };
+    use nima_machine::{
+        messages::LoopState,
+        rig::{Outputs, Side},
+        teleop::{Calibrations, Loop, Timing},
+    };
+    use nima_simulation::{World, scene::Scene};
+    use nima_study::tradeoff::{Knob, Plan, Point, Source, SourceFigures, sweep};
+
+    use super::*;
+    use crate::extras::lab::screen::tradeoff::{name, plan};
+
+    const SIDE: Side = Side::Right;
+    /// Passes of each for a cost that other work disturbs little.
+    const PASSES: usize = 5;
+
+    /// A rig whose settings are not the default ones and that compares all modes when the operator presses Apply.
+    fn live() -> Live {
+        let mut rig = RigConfig::load("simulated").unwrap();
+        rig.identification.compare = true;
+        rig.identification.cross_talk = true;
+        rig.identification.rest_n = 0.12;
+        rig.delay_s = 0.04;
+        Live::new(rig, Scene::load("peg_transfer").unwrap())
+    }
+
+    fn measured(source: &Source, plan: &Plan) -> SourceFigures {
+        sweep(std::slice::from_ref(source), plan, &AtomicBool::new(false), |_, _| {}).unwrap().sources.remove(0)
+    }
+
+    /// Every point that can be on the front. Which of them are is a matter of measured times.
+    fn grid(figures: &SourceFigures) -> Vec<Point> {
+        let curves = figures.curves.iter().filter(|curve| curve.knob == Knob::Grid);
+        curves.flat_map(|curve| &curve.points).map(|&index| figures.points[index]).collect()
+    }
+
+    /// The loop at the simulated peg transfer, engaged, 2 s after it was started and after `apply`.
+    fn loop_after(live: &Live, apply: &Apply) -> Loop {
+        let (rig, commands) = match apply {
+            Apply::AtOnce(commands) => (&live.rig, &commands[..]),
+            Apply::Restart(rig) => (&**rig, &[][..]),
+        };
+        let mut control = Loop::new(rig, &[Some(Calibrations::default()), None]).unwrap();
+        let mut world = World::new(&live.scene, rig.rate_hz);
+        let mut outputs = Outputs::SAFE;
+        for tick in 0..4000 {
+            let now_s = f64::from(tick) / rig.rate_hz;
+            match tick {
+                100 => control.obey(Command::Engage, now_s),
+                2000 => commands.iter().for_each(|&command| control.obey(command, now_s)),
+                _ => {}
+            }
+            let inputs = world.exchange(now_s, &outputs);
+            [outputs, _] = control.step([inputs, None], &Timing { now_s, ..Timing::default() }).0;
+        }
+        assert_eq!(control.pair(SIDE).unwrap().state(), LoopState::Engaged);
+        control
+    }
+
+    /// After Apply the identifier in the loop is the one whose time was measured: from the same samples it makes, tick for tick, the
+    /// same results of everything that it computes. What it learnt before is left out of the comparison.
+    #[test]
+    fn after_apply_the_loop_does_the_work_that_was_measured() {
+        let live = live();
+        let source = Source::from_scene(&live.scene, live.rig.rate_hz, 4.2);
+        let points = grid(&measured(&source, &plan(&live)));
+        let mut restarts = 0;
+        for point in &points {
+            let mode = point.choice.method.mode().unwrap();
+            let apply = Apply::of(&live, mode, &point.choice);
+            restarts += usize::from(matches!(apply, Apply::Restart(_)));
+            let control = loop_after(&live, &apply);
+            let mut in_loop = control.pair(SIDE).unwrap().identifier().clone();
+            in_loop.reset();
+            let mut timed = plan(&live).identifier(&point.choice, source.recording.axes.len()).unwrap().unwrap();
+            for sample in &source.recording.samples {
+                in_loop.step(sample);
+                timed.step(sample);
+                assert_eq!(in_loop.report(), timed.report(), "{} at {} s", name(point), sample.t_s);
+                assert_eq!(in_loop.parcel(), timed.parcel(), "{} at {} s", name(point), sample.t_s);
+            }
+            assert!(timed.report().learnt > 500, "{}: it touched nothing", name(point));
+        }
+        assert!(points.len() > 20 && restarts > 5 && restarts < points.len(), "{restarts} of {}", points.len());
+    }
+
+    /// Median time of a tick, us: the lowest of all passes, as the study takes the lowest of its own.
+    fn median_us(identifier: &Identifier, samples: &[Sample], from_s: f64) -> f64 {
+        let pass = || {
+            let mut identifier = identifier.clone();
+            identifier.reset();
+            let mut times = Percentiles::new();
+            for sample in samples {
+                let start = Instant::now();
+                identifier.step(sample);
+                let spent_s = start.elapsed().as_secs_f64();
+                if sample.t_s >= from_s {
+                    times.record(spent_s);
+                }
+            }
+            times.quantiles().p50
+        };
+        (0..PASSES).map(|_| pass()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Prints the times; it judges nothing.
+    #[test]
+    #[ignore = "prints the times of docs/tradeoff.md: `./dev figures` runs it"]
+    fn figures_of_what_apply_costs() {
+        let rig = RigConfig::load("simulated").unwrap();
+        let live = Live::new(rig, Scene::load("peg_transfer").unwrap());
+        let source = Source::from_scene(&live.scene, live.rig.rate_hz, 6.0);
+        let figures = measured(&source, &Plan { passes: PASSES, ..plan(&live) });
+        println!("| row | measured by the study (us) | in the loop (us) | ratio |\n|---|---|---|---|");
+        for point in grid(&figures) {
+            let mode = point.choice.method.mode().unwrap();
+            let control = loop_after(&live, &Apply::of(&live, mode, &point.choice));
+            let from_s = figures.judged_from_s + point.choice.delay_ms * 1e-3;
+            let in_loop = median_us(control.pair(SIDE).unwrap().identifier(), &source.recording.samples, from_s);
+            let (studied, front) = (point.cost_us.p50, if point.pareto { ", on the front" } else { "" });
+            println!("| {}{front} | {studied:.2} | {in_loop:.2} | {:.2} |", name(&point), in_loop / studied);
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Arguments of `nima study baselines`.
+
+use clap::Args;
+use nima_machine::runtime::VirtualClock;
+use nima_simulation::scene::Scene;
+use nima_study::{
+    baselines::{Options, Split},
+    tradeoff::Source,
+};
+
+use super::{
+    Asked,
+    sources::{RATE_HZ, Sources, delays_s},
+};
+
+/// Scenes with contact, compared on where no recording is given (in `bimanual` the right hand does what it does in `peg_transfer`),
+/// each with this many seeds: hands that move differently.
+const SCENES: [&str; 2] = ["palpation", "peg_transfer"];
+const SEEDS: u64 = 4;
+/// Duration of a scene, s.
+const SCENE_S: f64 = 20.0;
+const DELAYS_MS: [f64; 4] = [10.0, 50.0, 100.0, 300.0];
+
+#[derive(Debug, Args)]
+pub(in crate::extras::lab) struct Arguments {
+    #[command(flatten)]
+    sources: Sources,
+    /// One-way delay of the link in ms; may be given several times (default: 10, 50, 100 and 300)
+    #[arg(long, value_name = "D", allow_negative_numbers = true)]
+    delay_ms: Vec<f64>,
+    /// Let matched and best learn the force on each axis from the motion of all axes
+    #[arg(long)]
+    cross_talk: bool,
+}
+
+impl Asked for Arguments {
+    type Experiment = Options;
+
+    fn experiment(&self) -> anyhow::Result<Options> {
+        let delays_ms = if self.delay_ms.is_empty() { &DELAYS_MS[..] } else { &self.delay_ms };
+        Ok(Options {
+            sources: sources(&self.sources)?,
+            delays_s: delays_s(delays_ms)?,
+            cross_talk: self.cross_talk,
+            inputs: self.sources.inputs(),
+        })
+    }
+}
+
+fn sources(asked: &Sources) -> anyhow::Result<Vec<(Source, Split)>> {
+    let recorded = asked.recordings()?.into_iter().map(|source| (Split::of_recording(&source.name), source));
+    let scenes = asked.scenes(&[VirtualClock::PERFECT], SCENE_S)?.into_iter().map(|source| (Split::Scene, source));
+    let mut sources: Vec<_> = recorded.chain(scenes).map(|(split, source)| (source, split)).collect();
+    if asked.is_empty() {
+        for (name, seed) in SCENES.into_iter().flat_map(|name| (1..=SEEDS).map(move |seed| (name, seed))) {
+            let scene = Scene { seed, ..Scene::load(name)? };
+            let mut source = Source::from_scene(&scene, RATE_HZ, SCENE_S);
+            source.name = format!("{name} {seed}");
+            sources.push((source, Split::Scene));
+        }
+    }
+    Ok(sources)
+}

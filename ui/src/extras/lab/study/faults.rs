@@ -1,0 +1,25 @@
+//! Arguments of `nima study faults`.
+
+use clap::Args;
+use nima_study::faults::Options;
+
+use super::Asked;
+use crate::command::run::positive_seconds;
+
+#[derive(Debug, Args)]
+pub(in crate::extras::lab) struct Faults {
+    /// Number of moments at which each fault is injected while engaged, 1 to 20
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
+    moments: u32,
+    /// Length of each of the 40 runs without a fault, in which none may be reported, s
+    #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = positive_seconds)]
+    calm: f64,
+}
+
+impl Asked for Faults {
+    type Experiment = Options;
+
+    fn experiment(&self) -> anyhow::Result<Options> {
+        Ok(Options { moments: self.moments, live: true, calm_s: self.calm })
+    }
+}

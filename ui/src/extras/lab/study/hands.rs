@@ -1,0 +1,39 @@
+//! Arguments of `nima study hands`.
+
+use clap::Args;
+use nima_study::hands::Options;
+
+use super::{Asked, clocks::Clocks};
+
+#[derive(Debug, Args)]
+#[expect(clippy::struct_field_names, reason = "the name of the option")]
+pub(in crate::extras::lab) struct Hands {
+    /// Hands of each kind on each clock
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    hands: u64,
+    /// Time for which each hand is there
+    #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds)]
+    seconds: f64,
+    /// Releases of each force on each clock
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    releases: u64,
+    /// Seed of the hands
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    clocks: Clocks,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse::<f64>().ok().filter(|seconds| (1.0..=3600.0).contains(seconds));
+    seconds.ok_or_else(|| "give a time from 1 to 3600 s".to_owned())
+}
+
+impl Asked for Hands {
+    type Experiment = Options;
+
+    fn experiment(&self) -> anyhow::Result<Options> {
+        let Self { hands, seconds, releases, seed, .. } = *self;
+        Ok(Options { clocks: self.clocks.chosen(), hands, seconds, releases, seed })
+    }
+}

@@ -1,0 +1,151 @@
+//! `nima study`: experiments that report figures.
+//!
+//! Each has a file with its arguments in `study/` and a line in the table below; all results are written by the same
+//! code.
+
+mod baselines;
+mod clocks;
+mod effects;
+mod faults;
+mod gates;
+mod hands;
+mod network;
+mod passivity;
+mod release;
+mod sources;
+mod stability;
+mod stability_map;
+mod timing;
+mod tradeoff;
+mod trials;
+mod validation;
+
+use std::{
+    io::{self, IsTerminal as _, Write as _},
+    path::{Path, PathBuf},
+};
+
+use clap::{Args, Subcommand};
+use nima_study::{Experiment, Findings as _};
+
+use crate::command::output;
+
+/// Arguments that describe the experiment.
+pub(super) trait Asked: Args {
+    type Experiment: Experiment;
+
+    fn experiment(&self) -> anyhow::Result<Self::Experiment>;
+
+    fn carry_out(&self, results: &Results) -> anyhow::Result<()> {
+        results.of(&self.experiment()?)
+    }
+}
+
+/// Arguments of one study, and where to write its results.
+#[derive(Debug, Args)]
+pub(super) struct Study<A: Args> {
+    #[command(flatten)]
+    asked: A,
+    #[command(flatten)]
+    results: Results,
+}
+
+/// Where to write the results of a study.
+#[derive(Debug, Args)]
+pub(super) struct Results {
+    /// Write the results into this folder: JSON, tables (Markdown or CSV) and pictures (SVG), named after the study (created if
+    /// missing; replaces files, whose mode stays; follows links; refuses inputs, devices and pipes)
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the results as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+macro_rules! studies {
+    ($($(#[$meaning:meta])* $name:ident($asked:ty),)*) => {
+        #[derive(Debug, Subcommand)]
+        pub(super) enum StudyCommand {
+            $($(#[$meaning])* $name(Study<$asked>),)*
+        }
+
+        pub(super) fn run(command: &StudyCommand) -> anyhow::Result<()> {
+            match command {
+                $(StudyCommand::$name(study) => study.asked.carry_out(&study.results),)*
+            }
+        }
+    };
+}
+
+studies! {
+    /// Compare the methods of others with every mode, on recordings and scenes: error at the horizon over delayed reflection
+    Baselines(baselines::Arguments),
+    /// Measure what each effect of a scene costs in a tick, and what leaving it out changes in the force
+    Effects(effects::Arguments),
+    /// Inject every kind of fault in every state; report what is detected, how soon, and the force error at the hand
+    Faults(faults::Faults),
+    /// Send extreme force requests through the gates and count violations of their limits
+    Gates(gates::Gates),
+    /// Move hands that hold the handle, and let go, in front of the last gate: how often, how hard and how late it acts
+    Hands(hands::Hands),
+    /// Run two machines over a bad line, in every mode: force error, energy, stops, over delay, jitter, loss, outages and clock faults
+    Network(network::Network),
+    /// Let go of a handle pressed with up to 5 N: every mode, method of others and delay, without and with the governor
+    Release(release::Release),
+    /// Measure whether the loop gives the hand energy, and whether a loose grip oscillates, in every mode and at every delay
+    Passivity(passivity::Passivity),
+    /// Compare every solver with an arbitrary-precision reference in extreme cases
+    Stability(stability::Stability),
+    /// Find by simulation which gain, delay and stiffness are stable with a gripping hand (takes minutes)
+    StabilityMap(stability_map::StabilityMap),
+    /// Measure computing time and accuracy for every setting of the identification
+    Tradeoff(tradeoff::Arguments),
+    /// Compare the conditions of a user study, from a table of trials: tests, intervals, effect sizes, a mixed model
+    Trials(trials::Arguments),
+    /// Measure the loop's timing beside its console, busy cores, a blocked window and heavy disk writing
+    Timing(timing::Arguments),
+    /// Repeat the paper's three validations on the simulated rig and compare the results
+    Validation(validation::Validation),
+}
+
+impl Results {
+    fn of<E: Experiment>(&self, experiment: &E) -> anyhow::Result<()> {
+        let inputs = experiment.inputs();
+        let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
+        if let Some(out) = &self.out {
+            // Checked before the work, so that an invalid name does not waste its time.
+            let names: Vec<String> = [".json"].iter().chain(E::FILES).map(|end| name::<E>(end)).collect();
+            output::folder(out, &names.iter().map(String::as_str).collect::<Vec<_>>(), &inputs)?;
+        }
+        let findings = experiment.run(&mut progress)?;
+        if let Some(out) = &self.out {
+            let json = (".json".to_owned(), serde_json::to_string_pretty(&findings)?);
+            let files = [json].into_iter().chain(findings.files());
+            let files: Vec<_> = files.map(|(end, text)| (name::<E>(&end), text)).collect();
+            // Some names depend on the results, so only now can they be compared with the inputs.
+            files.iter().try_for_each(|(name, _)| output::check(&out.join(name), &inputs))?;
+            files.iter().try_for_each(|(name, text)| output::write(out, name, text))?;
+        }
+        if self.json { output::json(&findings) } else { output::line(findings.text().trim_end()) }?;
+        findings.judge().map_err(anyhow::Error::msg)
+    }
+}
+
+fn name<E: Experiment>(end: &str) -> String {
+    format!("{}{end}", E::NAME)
+}
+
+/// Shows progress in one line of the terminal, which is rewritten in place and cleared at the end.
+fn progress(done: usize, of: usize, what: &str) {
+    let mut stderr = io::stderr().lock();
+    if !stderr.is_terminal() {
+        return;
+    }
+    // Errors are ignored: a closed terminal is no reason to stop a study.
+    if done < of {
+        write!(stderr, "\r\x1b[K{}/{of} {what}", done + 1).ok();
+    } else {
+        write!(stderr, "\r\x1b[K").ok();
+    }
+    stderr.flush().ok();
+}

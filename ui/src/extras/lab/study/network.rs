@@ -1,0 +1,40 @@
+//! Arguments of `nima study network`.
+
+use clap::Args;
+use nima_core::impedance::{Mode, OwnMotion};
+use nima_study::network::{Extent, Options};
+
+use super::{Asked, clocks::Clocks};
+
+#[derive(Debug, Args)]
+pub(in crate::extras::lab) struct Network {
+    /// Six short cells, in seconds
+    #[arg(long, conflicts_with = "full")]
+    quick: bool,
+    /// Every combination of delay, jitter, loss, bursts, outages, faults of the clock and modes (more than 100 000 cells: days)
+    #[arg(long)]
+    full: bool,
+    /// Only in this mode, beside delayed reflection; may be given several times, and the first is judged (default: all modes, and best
+    /// is judged)
+    #[arg(long, value_name = "M")]
+    mode: Vec<Mode>,
+    /// Make the force from the motion of the handle, as the rig key `own_motion = "handle"` does
+    #[arg(long)]
+    own_motion_handle: bool,
+    #[command(flatten)]
+    clocks: Clocks,
+}
+
+impl Asked for Network {
+    type Experiment = Options;
+
+    fn experiment(&self) -> anyhow::Result<Options> {
+        let extent = match (self.quick, self.full) {
+            (true, _) => Extent::Quick,
+            (_, true) => Extent::Full,
+            _ => Extent::Usual,
+        };
+        let own_motion = if self.own_motion_handle { OwnMotion::Handle } else { OwnMotion::Follower };
+        Ok(Options { extent, clocks: self.clocks.chosen(), modes: self.mode.clone(), own_motion })
+    }
+}

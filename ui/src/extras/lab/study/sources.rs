@@ -1,0 +1,76 @@
+//! What a study of the identification runs over: recordings and scenes.
+
+use std::path::PathBuf;
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use nima_core::limits::DELAY_S;
+use nima_machine::{rig::Side, runtime::VirtualClock};
+use nima_recording::csv::Mapping;
+use nima_simulation::scene::Scene;
+use nima_study::tradeoff::Source;
+
+use crate::{command::setup::side, extras::lab::motion};
+
+/// Rate of a scene, Hz.
+pub(super) const RATE_HZ: f64 = 1000.0;
+
+#[derive(Debug, Args)]
+pub(super) struct Sources {
+    /// CSV file with motion and force, or session, as for `nima identify`; one or several
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    recording: Vec<PathBuf>,
+    /// Which arm of the sessions, right or left (needed where one has both)
+    #[arg(long, value_name = "ARM", value_parser = side)]
+    arm: Option<Side>,
+    /// Other column names in the recordings, with an optional factor: `x=px_mm*0.001`
+    #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
+    map: Vec<String>,
+    /// Scene, recorded open-loop: built-in name or TOML file; may be given several times (default: scenes of this study, or none
+    /// with --recording)
+    #[arg(long, value_name = "SCENE")]
+    scene: Vec<String>,
+}
+
+impl Sources {
+    /// Whether neither a recording nor a scene is given.
+    pub(super) fn is_empty(&self) -> bool {
+        self.recording.is_empty() && self.scene.is_empty()
+    }
+
+    /// Files that are read; results must not overwrite them.
+    pub(super) fn inputs(&self) -> Vec<PathBuf> {
+        self.recording.iter().cloned().chain(self.scene.iter().map(PathBuf::from)).collect()
+    }
+
+    pub(super) fn recordings(&self) -> anyhow::Result<Vec<Source>> {
+        if !self.map.is_empty() && self.recording.is_empty() {
+            bail!("--map names columns of a recording: give one with --recording");
+        }
+        if self.arm.is_some() && self.recording.is_empty() {
+            bail!("--arm chooses an arm of a session: give one with --recording");
+        }
+        let mapping = Mapping::parse(&self.map)?;
+        let forces = ["fx_n", "fy_n", "fz_n"];
+        let unit = if forces.into_iter().any(|force| mapping.names(force)) { "recorded unit" } else { "N" };
+        let read = |path: &PathBuf| Ok(Source::from_recording(motion::read(path, &self.map, self.arm)?, unit));
+        self.recording.iter().map(read).collect()
+    }
+
+    /// The scenes given, each for this long (s), on each of these clocks.
+    pub(super) fn scenes(&self, clocks: &[VirtualClock], seconds: f64) -> anyhow::Result<Vec<Source>> {
+        let load = |name: &String| Scene::load(name).with_context(|| format!("--scene {name}"));
+        let scenes = self.scene.iter().map(load).collect::<anyhow::Result<Vec<_>>>()?;
+        let on = |scene| clocks.iter().map(move |clock| Source::on_clock(*clock, scene, RATE_HZ, seconds));
+        Ok(scenes.iter().flat_map(on).collect())
+    }
+}
+
+/// Delays in seconds from `--delay-ms`, all within what the link can do.
+pub(super) fn delays_s(asked_ms: &[f64]) -> anyhow::Result<Vec<f64>> {
+    let limits_ms = DELAY_S.per(1e-3, "ms");
+    if let Some(delay_ms) = asked_ms.iter().find(|delay_ms| !limits_ms.contains(**delay_ms)) {
+        bail!("--delay-ms {delay_ms}: give {limits_ms}");
+    }
+    Ok(asked_ms.iter().map(|ms| ms * 1e-3).collect())
+}

@@ -1,0 +1,24 @@
+//! Arguments of `nima study stability`.
+
+use clap::Args;
+use nima_study::stability::Options;
+
+use super::Asked;
+
+#[derive(Debug, Args)]
+pub(in crate::extras::lab) struct Stability {
+    /// Ticks of the run that tests for numerical drift, about 3 µs each
+    #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+    ticks: u64,
+    /// Skip windows longer than 300 samples
+    #[arg(long)]
+    quick: bool,
+}
+
+impl Asked for Stability {
+    type Experiment = Options;
+
+    fn experiment(&self) -> anyhow::Result<Options> {
+        Ok(Options { ticks: self.ticks, quick: self.quick })
+    }
+}

@@ -1,0 +1,261 @@
+//! `nima study timing`: the loop on the real clock while other activities may delay it, with each scheduling class.
+//!
+//! Each case runs in a process of its own, as in normal use; the loads run in this process. Cases with a window need a
+//! display.
+
+use std::{
+    convert::Infallible,
+    fmt::Write as _,
+    io::Write as _,
+    path::PathBuf,
+    process::{Command, Stdio},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::{self, JoinHandle},
+};
+
+use anyhow::Context as _;
+use clap::Args;
+use nima_machine::config::SchedulingClass;
+use nima_study::{Experiment, Findings};
+use serde::{Deserialize, Serialize};
+
+use super::Asked;
+use crate::{command::run::positive_seconds, telling::tell};
+
+#[derive(Clone, Debug, Args)]
+pub(in crate::extras::lab) struct Arguments {
+    /// Length of each case, s
+    #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = positive_seconds)]
+    seconds: f64,
+    /// Scene of the loop
+    #[arg(long, default_value = "bimanual")]
+    scene: String,
+}
+
+/// Activity in parallel with the loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Beside {
+    Nothing,
+    Console,
+    Hogs,
+    StalledConsole,
+    Disk,
+}
+
+impl Beside {
+    const ALL: [Self; 5] = [Self::Nothing, Self::Console, Self::Hogs, Self::StalledConsole, Self::Disk];
+
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Nothing => "nothing else",
+            Self::Console => "its console rendering",
+            Self::Hogs => "a busy thread on each core",
+            Self::StalledConsole => "its console, held up for 5 s",
+            Self::Disk => "heavy disk writing",
+        }
+    }
+
+    const fn has_window(self) -> bool {
+        matches!(self, Self::Console | Self::StalledConsole)
+    }
+}
+
+/// The fields of [`nima_core::statistics::Quantiles`] that are shown.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Quantiles {
+    p50: f64,
+    p99: f64,
+    p999: f64,
+    max: f64,
+}
+
+/// The fields of [`nima_machine::runtime::Summary`] that are shown.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Figures {
+    ticks: u64,
+    missed: u64,
+    wake_us: Quantiles,
+    work_us: Quantiles,
+    scheduling: Scheduling,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Scheduling {
+    fifo: bool,
+    deadline: bool,
+    memory_locked: bool,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Case {
+    beside: Beside,
+    /// Scheduling class that was requested.
+    asked: SchedulingClass,
+    #[serde(flatten)]
+    figures: Option<Figures>,
+    /// Why there are no figures; `None` if there are some.
+    skipped: Option<String>,
+}
+
+/// All cases.
+#[derive(Debug, Serialize)]
+#[serde(transparent)]
+pub(in crate::extras::lab) struct Cases(Vec<Case>);
+
+impl Asked for Arguments {
+    type Experiment = Self;
+
+    fn experiment(&self) -> anyhow::Result<Self> {
+        Ok(self.clone())
+    }
+}
+
+impl Experiment for Arguments {
+    const NAME: &'static str = "timing";
+    type Findings = Cases;
+    type Error = Infallible;
+
+    fn inputs(&self) -> Vec<PathBuf> {
+        vec![PathBuf::from(&self.scene)]
+    }
+
+    /// Prints one line per case, because each takes a while.
+    fn run(&self, _: &mut dyn FnMut(usize, usize, &str)) -> Result<Cases, Infallible> {
+        let mut cases = Vec::new();
+        for beside in Beside::ALL {
+            for asked in [SchedulingClass::Fifo, SchedulingClass::Deadline, SchedulingClass::Ordinary] {
+                tell(format_args!("{}, {}", beside.words(), asked.name()));
+                let measured = measure(self, beside, asked);
+                let skipped = measured.as_ref().err().map(|error| format!("{error:#}"));
+                cases.push(Case { beside, asked, figures: measured.ok(), skipped });
+            }
+        }
+        Ok(Cases(cases))
+    }
+}
+
+impl Findings for Cases {
+    fn text(&self) -> String {
+        table(&self.0)
+    }
+}
+
+fn measure(arguments: &Arguments, beside: Beside, asked: SchedulingClass) -> anyhow::Result<Figures> {
+    let program = std::env::current_exe().context("cannot find the path of this program")?;
+    let folder = tempfile::tempdir()?;
+    let load = match beside {
+        Beside::Hogs => Load::hogs(),
+        Beside::Disk => Load::disk(folder.path().join("load")),
+        _ => Load::default(),
+    };
+    let mut command = Command::new(program);
+    let seconds = arguments.seconds.to_string();
+    let summary = folder.path().join("summary.json");
+    if beside.has_window() {
+        command.args(["console", "--exit-after", &seconds, "--summary"]).arg(&summary);
+    } else {
+        command.args(["run", "--seconds", &seconds, "--json"]);
+    }
+    if beside == Beside::StalledConsole {
+        command.args(["--stall", "5"]);
+    }
+    command.args(["--scene", &arguments.scene]);
+    command.args(["--scheduling", asked.name()]);
+    // Its standard input closes when this process ends for whatever reason, so no loop keeps running.
+    command.arg("--until-input-ends");
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
+    let held = child.stdin.take();
+    let done = child.wait_with_output()?;
+    drop((held, load));
+    let text = if beside.has_window() { std::fs::read(&summary).unwrap_or_default() } else { done.stdout };
+    // A loop that was delayed ends in a fault; its figures are still wanted.
+    serde_json::from_slice(&text).map_err(|error| {
+        let told = String::from_utf8_lossy(&done.stderr).lines().next_back().map(str::to_owned);
+        told.filter(|_| !done.status.success()).map_or_else(|| error.into(), anyhow::Error::msg)
+    })
+}
+
+/// Threads that generate load until this is dropped.
+#[derive(Default)]
+struct Load {
+    stop: Arc<AtomicBool>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl Load {
+    fn start(count: usize, work: impl Fn() + Clone + Send + 'static) -> Self {
+        let stop = Arc::new(AtomicBool::new(false));
+        let threads = (0..count).map(|_| {
+            let (flag, work) = (Arc::clone(&stop), work.clone());
+            thread::spawn(move || {
+                while !flag.load(Ordering::Relaxed) {
+                    work();
+                }
+            })
+        });
+        Self { threads: threads.collect(), stop }
+    }
+
+    fn hogs() -> Self {
+        let cores = thread::available_parallelism().map_or(2, std::num::NonZero::get);
+        Self::start(cores, || {
+            std::hint::black_box((0..100_000_u64).fold(1.0_f64, |sum, k| (sum + k as f64).sqrt()));
+        })
+    }
+
+    /// Writes 4 MB at a time to the disk, with synchronisation.
+    fn disk(path: PathBuf) -> Self {
+        let bytes = vec![0x5a_u8; 4 << 20];
+        Self::start(1, move || {
+            let written = std::fs::File::create(&path).and_then(|mut file| {
+                file.write_all(&bytes)?;
+                file.sync_all()
+            });
+            if written.is_err() {
+                thread::sleep(std::time::Duration::from_millis(10));
+            }
+        })
+    }
+}
+
+impl Drop for Load {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        for thread in self.threads.drain(..) {
+            thread.join().ok();
+        }
+    }
+}
+
+fn table(cases: &[Case]) -> String {
+    let mut out = String::from(
+        "| beside the loop | class | ticks | missed | wake-up us p50 | p99 | p99.9 | max | work us p50 | p99 |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for Case { beside, asked, figures, skipped } in cases {
+        // Writing into a String cannot fail.
+        write!(out, "| {} | {} |", beside.words(), asked.name()).ok();
+        let Some(Figures { ticks, missed, wake_us: wake, work_us: work, scheduling }) = figures else {
+            let why = skipped.as_deref().unwrap_or("not measured");
+            writeln!(out, " {why} | | | | | | | |").ok();
+            continue;
+        };
+        let granted = match asked {
+            SchedulingClass::Ordinary => true,
+            SchedulingClass::Fifo => scheduling.fifo,
+            SchedulingClass::Deadline => scheduling.deadline,
+        };
+        let refused = if granted { "" } else { " (refused)" };
+        writeln!(
+            out,
+            " {ticks}{refused} | {missed} | {:.0} | {:.0} | {:.0} | {:.0} | {:.1} | {:.1} |",
+            wake.p50, wake.p99, wake.p999, wake.max, work.p50, work.p99
+        )
+        .ok();
+    }
+    out
+}

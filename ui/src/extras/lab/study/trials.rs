@@ -1,0 +1,49 @@
+//! `nima study trials`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use nima_study::trials::Trials;
+
+use super::Asked;
+
+#[derive(Debug, Args)]
+pub(in crate::extras::lab) struct Arguments {
+    /// The table (CSV): a row per trial with `participant`, `condition`, if known `trial`, and a column per measure
+    #[arg(value_name = "TRIALS.csv")]
+    table: PathBuf,
+    /// Measures: names of columns; may be repeated (default: every column of numbers)
+    #[arg(long, value_name = "COLUMN")]
+    measure: Vec<String>,
+    /// The condition with which the others are compared (default: the first in alphabetical order)
+    #[arg(long, value_name = "CONDITION")]
+    reference: Option<String>,
+    /// Confidence of the intervals, as a share
+    #[arg(long, value_name = "SHARE", value_parser = share, default_value = "0.95")]
+    confidence: f64,
+    /// Tell how many participants give this power, as a share, if the differences are as measured here
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    power: Option<f64>,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(share) if (0.5..1.0).contains(&share) => Ok(share),
+        _ => Err("give a share from 0.5 to below 1, such as 0.95".to_owned()),
+    }
+}
+
+impl Asked for Arguments {
+    type Experiment = Trials;
+
+    fn experiment(&self) -> anyhow::Result<Trials> {
+        let Self { table, measure, reference, confidence, power } = self;
+        Ok(Trials {
+            path: table.clone(),
+            measures: measure.clone(),
+            reference: reference.clone(),
+            confidence: *confidence,
+            power: *power,
+        })
+    }
+}

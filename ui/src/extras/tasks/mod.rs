@@ -1,0 +1,43 @@
+//! Training tasks: what a run or a recorded session scored.
+
+mod score;
+pub(super) mod scoring;
+
+use clap::{ArgMatches, Subcommand};
+use nima_score::{TaskFile, provide_tasks};
+use nima_simulation::{Plan, Watched};
+
+use super::{Extra, given};
+use crate::scoring::Scorer;
+use scoring::Scoring;
+
+/// The extra.
+pub(super) struct Tasks;
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Score recorded sessions: time, path, speed, smoothness, force of each hand; also as a table of trials
+    Score(score::Arguments),
+}
+
+impl Extra for Tasks {
+    fn begin(&self) {
+        provide_tasks();
+    }
+
+    fn commands(&self, line: clap::Command) -> clap::Command {
+        Command::augment_subcommands(line)
+    }
+
+    fn run(&self, matches: &ArgMatches) -> Option<anyhow::Result<()>> {
+        Some(match given(matches)? {
+            Ok(Command::Score(arguments)) => score::run(&arguments),
+            Err(error) => Err(error.into()),
+        })
+    }
+
+    fn scorer(&self, plan: &Plan, watched: &mut Option<Watched>) -> Option<anyhow::Result<Box<dyn Scorer>>> {
+        let task = TaskFile::of(plan.scene.task.as_ref()?);
+        Some(task.map(|task| Box::new(Scoring::new(&task, watched.take())) as _).map_err(Into::into))
+    }
+}

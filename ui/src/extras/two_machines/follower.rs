@@ -1,0 +1,48 @@
+//! `nima follower`: the arm and its sensor at this machine, for a console at another one.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use nima_machine::config::SchedulingClass;
+
+use super::network;
+use crate::{
+    command::{run, setup::Setup},
+    telling::tell,
+    watching::Watching,
+};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    setup: Setup,
+    /// Address of this machine at which to listen; without one only consoles on this machine reach it
+    #[arg(long, value_name = "ADDRESS[:PORT]")]
+    listen: Option<String>,
+    /// Seconds to run (default: until Ctrl-C)
+    #[arg(long, value_name = "S", value_parser = run::positive_seconds, allow_negative_numbers = true)]
+    seconds: Option<f64>,
+    /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
+    #[arg(long, value_name = "CLASS")]
+    scheduling: Option<SchedulingClass>,
+    /// Record the session of this machine into a new file
+    #[arg(long, value_name = "FILE.mcap")]
+    record: Option<PathBuf>,
+    #[command(flatten)]
+    watching: Watching,
+    /// Print the results as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: Arguments) -> anyhow::Result<()> {
+    let at = network::listening(arguments.listen.as_deref())?;
+    let Arguments { setup, seconds, scheduling, record, watching, json, .. } = arguments;
+    // What is rendered, and how, is the console's.
+    let run = run::Arguments { setup, seconds, scheduling, record, watching, json, ..run::Arguments::default() };
+    run::run_with(&run, |rig, scene| {
+        let line = network::listen(rig, scene, at)?;
+        tell(format_args!("the follower listens at {at}"));
+        Ok(Some(line))
+    })
+}

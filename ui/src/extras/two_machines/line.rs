@@ -1,0 +1,245 @@
+//! The line to the other machine as the loop uses it, and what is told of it.
+
+use crossbeam_channel::{Receiver, Sender, bounded};
+use egui::Ui;
+use nima_machine::{
+    remote::{Wire, joined},
+    rig::Ends,
+    runtime::Assembly,
+};
+use nima_network::{
+    endpoint::{Control, Endpoint, LinkState},
+    figures::{Dropped, Figures},
+};
+use serde::Serialize;
+
+use super::{
+    screen::link_ui,
+    text,
+    words::{link_rows, link_trouble, state_in_words},
+};
+use crate::link::{Line, LineDoor};
+
+/// What is told is renewed so often, s.
+const TOLD_EVERY_S: f64 = 0.1;
+
+/// Reports and wishes that wait.
+const WAITING: usize = 4;
+
+/// One end of the line. The loop's thread drives it.
+pub(super) struct NetworkLine {
+    endpoint: Endpoint,
+    here: Ends,
+    told: Sender<LineReport>,
+    wishes: Receiver<LineWish>,
+    door: Channels,
+    next_s: f64,
+}
+
+/// The ends of the channels that are for another thread.
+#[derive(Clone, Debug)]
+struct Channels {
+    reports: Receiver<LineReport>,
+    wishes: Sender<LineWish>,
+}
+
+/// What other threads hold of a line.
+#[derive(Debug)]
+pub(super) struct NetworkDoor {
+    channels: Channels,
+    newest: Option<LineReport>,
+    /// The state that was told last, in words.
+    told: Option<String>,
+}
+
+/// What an operator wants of the follower at the other end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum LineWish {
+    /// Control, which another console has.
+    Control,
+    /// Control no longer.
+    Nothing,
+    /// To give control to the console that asks for it, or to keep it.
+    Answer { consents: bool },
+}
+
+impl NetworkDoor {
+    /// The newest report, if there was one.
+    pub(super) const fn newest(&self) -> Option<&LineReport> {
+        self.newest.as_ref()
+    }
+
+    /// Hands a wish to the line. With more than a few waiting it is lost, and the next report shows that nothing has changed.
+    pub(super) fn wish(&self, wish: LineWish) {
+        self.channels.wishes.try_send(wish).ok();
+    }
+}
+
+impl LineDoor for NetworkDoor {
+    fn hear(&mut self) -> Option<String> {
+        let newest = self.channels.reports.try_iter().last()?;
+        self.newest = Some(newest);
+        let words = state_in_words(newest.state);
+        (self.told.as_ref() != Some(&words)).then(|| self.told.insert(words).clone())
+    }
+
+    fn has_reported(&self) -> bool {
+        self.newest.is_some()
+    }
+
+    fn ui(&self, ui: &mut Ui, drives: bool) {
+        link_ui(ui, self, drives);
+    }
+
+    fn trouble(&self) -> Option<[String; 2]> {
+        link_trouble(self.newest?.state)
+    }
+
+    fn has_delivered(&self) -> bool {
+        self.newest.is_some_and(|report| report.figures.counts.delivered > 0)
+    }
+
+    fn question(&self) -> Option<[&'static str; 2]> {
+        let asks = self.newest?.control == Control::HoldsAsked;
+        asks.then(|| [text::CONTROL_ASKED_CAUSE.get(), text::CONTROL_ASKED_CURE.get()])
+    }
+
+    fn rows(&self) -> Vec<[String; 2]> {
+        let rows = self.newest.as_ref().map(link_rows).unwrap_or_default();
+        rows.into_iter().map(|row| [row.name.to_owned(), row.value]).collect()
+    }
+
+    fn figures(&self) -> Option<serde_json::Value> {
+        serde_json::to_value(self.newest.as_ref().map(LinkFigures::from)?).ok()
+    }
+}
+
+/// What is told of a line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LineReport {
+    pub(super) state: LinkState,
+    /// Who holds the follower.
+    pub(super) control: Control,
+    pub(super) figures: Figures,
+    pub(super) dropped: Dropped,
+}
+
+impl NetworkLine {
+    /// Over this endpoint, with these devices at this end.
+    pub(super) fn new(endpoint: Endpoint, here: Ends) -> Self {
+        let (told, reports) = bounded(WAITING);
+        let (wish, wishes) = bounded(WAITING);
+        Self { endpoint, here, told, wishes, door: Channels { reports, wishes: wish }, next_s: 0.0 }
+    }
+
+    /// What other threads hold of it.
+    pub(super) fn network_door(&self) -> NetworkDoor {
+        NetworkDoor { channels: self.door.clone(), newest: None, told: None }
+    }
+
+    /// One wish in a tick, if one waits.
+    fn obey(&mut self) {
+        match self.wishes.try_recv() {
+            Ok(LineWish::Control) => self.endpoint.ask_for_control(),
+            Ok(LineWish::Nothing) => self.endpoint.withdraw(),
+            Ok(LineWish::Answer { consents }) => self.endpoint.answer(consents),
+            Err(_) => {}
+        }
+    }
+
+    fn tell(&mut self, now_s: f64) {
+        if now_s < self.next_s {
+            return;
+        }
+        self.next_s = now_s + TOLD_EVERY_S;
+        let Self { endpoint, told, .. } = self;
+        let report = LineReport {
+            state: endpoint.state(),
+            control: endpoint.control(),
+            figures: endpoint.figures(),
+            dropped: endpoint.dropped(),
+        };
+        // Nobody may be reading: the newest four wait.
+        told.try_send(report).ok();
+    }
+}
+
+impl Line for NetworkLine {
+    fn here(&self) -> Ends {
+        self.here
+    }
+
+    fn door(&self) -> Box<dyn LineDoor> {
+        Box::new(self.network_door())
+    }
+
+    fn join(self: Box<Self>, assembly: Assembly) -> Assembly {
+        let here = self.here;
+        joined(assembly, self, here)
+    }
+}
+
+impl Wire for NetworkLine {
+    fn send(&mut self, now_s: f64, message: &[u8]) {
+        self.endpoint.send(now_s, message);
+    }
+
+    fn receive(&mut self, now_s: f64, take: &mut dyn FnMut(&[u8])) {
+        let mut received = self.endpoint.poll(now_s);
+        while let Some(payload) = received.next_due() {
+            take(payload.bytes);
+        }
+        self.obey();
+        self.tell(now_s);
+    }
+}
+
+/// The figures of a line, as they are printed.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct LinkFigures {
+    /// Whether messages pass.
+    open: bool,
+    /// Least round trip, s, and how wrong the other clock may be known by it, s.
+    round_trip_s: Option<f64>,
+    clock_bound_s: Option<f64>,
+    clock_offset_s: Option<f64>,
+    one_way_mean_s: Option<f64>,
+    one_way_p999_s: Option<f64>,
+    playout_s: Option<f64>,
+    /// Shares of datagrams.
+    loss: f64,
+    loss_there: f64,
+    copies: usize,
+    sent_bit_s: f64,
+    received_bit_s: f64,
+    delivered: u64,
+    late: u64,
+    lost: u64,
+    recovered: u64,
+    dropped: u64,
+}
+
+impl From<&LineReport> for LinkFigures {
+    fn from(report: &LineReport) -> Self {
+        let LineReport { state, figures, dropped, control: _ } = report;
+        Self {
+            open: *state == LinkState::Open,
+            round_trip_s: figures.clock.map(|clock| clock.round_trip_s),
+            clock_bound_s: figures.clock.map(|clock| clock.bound_s),
+            clock_offset_s: figures.clock.map(|clock| clock.offset_s),
+            one_way_mean_s: figures.one_way.map(|delays| delays.mean_s),
+            one_way_p999_s: figures.one_way.map(|delays| delays.p999_s),
+            playout_s: figures.playout_s,
+            loss: figures.loss,
+            loss_there: figures.loss_there,
+            copies: figures.copies.used,
+            sent_bit_s: figures.sent.rate_bit_s,
+            received_bit_s: figures.received.rate_bit_s,
+            delivered: figures.counts.delivered,
+            late: figures.counts.late,
+            lost: figures.counts.lost,
+            recovered: figures.counts.recovered,
+            dropped: dropped.total(),
+        }
+    }
+}

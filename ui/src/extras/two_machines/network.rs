@@ -1,0 +1,134 @@
+//! Opens the line between two machines, at either end.
+
+use std::net::{Ipv4Addr, SocketAddr, ToSocketAddrs as _};
+
+use anyhow::{Context as _, bail};
+use nima_machine::{
+    config::RigConfig,
+    remote::at_follower,
+    rig::{Ends, Side},
+};
+use nima_network::{
+    endpoint::{Config, Endpoint, PORT, Role},
+    keys::{Keys, Peers, PublicKey},
+    stream::StreamSettings,
+};
+use nima_simulation::scene::Scene;
+
+use super::line::NetworkLine;
+use crate::link::{Line, Way};
+
+/// The way to a machine where `nima follower` runs.
+pub(super) struct Network;
+
+impl Way for Network {
+    fn is_loopback(&self, host: &str) -> bool {
+        address(host).is_ok_and(|follower| follower.ip().is_loopback())
+    }
+
+    fn open(&self, host: &str, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Box<dyn Line>> {
+        without_objects(scene)?;
+        let follower = address(host)?;
+        let (keys, peers) = own_keys()?;
+        let paired = peers.list().iter().find(|peer| peer.name == name_of(host)).map(|peer| peer.key);
+        // A follower of the same user on the same machine has the same key.
+        let key = paired.or_else(|| follower.ip().is_loopback().then(|| keys.public()));
+        let Some(key) = key else {
+            bail!("this machine is not paired with {host}: run `nima pair {host}` here and `nima pair --offer` there");
+        };
+        here(rig, Ends::Leader);
+        open(arms(rig, scene), Role::Console { follower, key }, keys, Ends::Leader)
+    }
+}
+
+/// Opens the follower's end at this address; changes the rig to what is here.
+pub(super) fn listen(rig: &mut RigConfig, scene: &Scene, at: SocketAddr) -> anyhow::Result<Box<dyn Line>> {
+    without_objects(scene)?;
+    let (keys, mut consoles) = own_keys()?;
+    // The same user's console on this machine.
+    let own: PublicKey = keys.public();
+    if consoles.with_key(&own).is_none() {
+        consoles.add("this machine", own)?;
+    }
+    *rig = at_follower(rig);
+    here(rig, Ends::Follower);
+    open(arms(rig, scene), Role::Follower { at: Some(at), consoles }, keys, Ends::Follower)
+}
+
+/// The tools of a follower are those of its own simulated hand, which would do the task by itself.
+fn without_objects(scene: &Scene) -> anyhow::Result<()> {
+    anyhow::ensure!(
+        !scene.is_played(),
+        "scene \"{}\" has a training task, which is on one machine only: choose another scene",
+        scene.name
+    );
+    Ok(())
+}
+
+fn here(rig: &mut RigConfig, ends: Ends) {
+    if let Some(devices) = &mut rig.devices {
+        devices.ends = ends;
+    }
+}
+
+fn arms(rig: &RigConfig, scene: &Scene) -> usize {
+    Side::ALL.into_iter().filter(|side| scene.has(rig, *side)).count()
+}
+
+fn open(arms: usize, role: Role, keys: Keys, ends: Ends) -> anyhow::Result<Box<dyn Line>> {
+    let endpoint = Endpoint::open(Config { stream: StreamSettings::of_arms(arms), ..Config::new(role, keys) })?;
+    Ok(Box::new(NetworkLine::new(endpoint, ends)))
+}
+
+/// The folder of this machine's key and of the machines that it is paired with.
+pub(super) fn folder() -> anyhow::Result<std::path::PathBuf> {
+    let store = nima_recording::store::Store::of_user()?;
+    let folder = store.folder().parent().context("no folder for your files was found; set NIMA_DATA_DIR")?;
+    let folder = folder.join("network");
+    std::fs::create_dir_all(&folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
+    Ok(folder)
+}
+
+/// This machine's key, and the machines that it is paired with.
+pub(super) fn own_keys() -> anyhow::Result<(Keys, Peers)> {
+    let folder = folder()?;
+    Ok((Keys::open(&folder)?, Peers::open(&folder)?))
+}
+
+/// The name by which a paired machine is found again: as it was addressed, without the port.
+pub(super) fn name_of(host: &str) -> &str {
+    if host.parse::<std::net::Ipv6Addr>().is_ok() {
+        return host;
+    }
+    host.rsplit_once(':').map_or(host, |(name, _)| name)
+}
+
+/// The address of a host, with the usual port unless it names one.
+pub(crate) fn address(host: &str) -> anyhow::Result<SocketAddr> {
+    let with_port = host.to_socket_addrs();
+    let mut found = with_port.or_else(|_| (host, PORT).to_socket_addrs()).with_context(|| {
+        format!(
+            "cannot find the machine \"{host}\": give its name or address, and a port after a colon if it is not {PORT}"
+        )
+    })?;
+    found.next().with_context(|| format!("the machine \"{host}\" has no address"))
+}
+
+/// Where a follower listens: this address, with the usual port unless it names one; loopback if there is none.
+pub(super) fn listening(at: Option<&str>) -> anyhow::Result<SocketAddr> {
+    at.map_or_else(|| Ok((Ipv4Addr::LOCALHOST, PORT).into()), address)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_host_may_name_its_port() {
+        assert_eq!(address("127.0.0.1").unwrap(), SocketAddr::from(([127, 0, 0, 1], PORT)));
+        assert_eq!(address("127.0.0.1:99").unwrap(), SocketAddr::from(([127, 0, 0, 1], 99)));
+        assert_eq!((name_of("theatre-2:99"), name_of("theatre-2"), name_of("::1")), ("theatre-2", "theatre-2", "::1"));
+        assert!(address("no such host").unwrap_err().to_string().contains("no such host"));
+        assert_eq!(listening(None).unwrap(), SocketAddr::from(([127, 0, 0, 1], PORT)));
+    }
+}

@@ -1,0 +1,64 @@
+//! `nima pair`: two machines learn each other's key, and two people see by a code that nobody stands between them.
+
+use std::{
+    io::BufRead as _,
+    sync::Arc,
+    sync::atomic::{AtomicBool, Ordering::Relaxed},
+    time::Duration,
+};
+
+use anyhow::Context as _;
+use clap::Args;
+use nima_network::pairing::{Attempts, Pairing};
+
+use super::network;
+use crate::{
+    command::{output, run::positive_seconds},
+    leaving::Leave,
+};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The follower's machine, from the console's
+    #[arg(value_name = "HOST[:PORT]", required_unless_present = "offer", conflicts_with = "offer")]
+    host: Option<String>,
+    /// Wait for a console, at the follower's machine
+    #[arg(long)]
+    offer: bool,
+    /// With --offer: address of this machine at which to listen (default: consoles on this machine only)
+    #[arg(long, value_name = "ADDRESS[:PORT]", requires = "offer")]
+    listen: Option<String>,
+    /// With --offer: the name of the console in the list of this machine
+    #[arg(long, value_name = "NAME", requires = "offer", default_value = "console")]
+    name: String,
+    /// Seconds to wait for the other machine
+    #[arg(long, value_name = "S", value_parser = positive_seconds, default_value = "120")]
+    wait: f64,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let folder = network::folder()?;
+    let (keys, mut peers) = network::own_keys()?;
+    let called_off = Arc::new(AtomicBool::new(false));
+    let leave = Leave::on_signals()?;
+    let off = Arc::clone(&called_off);
+    leave.at_once(move || off.store(true, Relaxed));
+    let (mut attempts, wait) = (Attempts::default(), Duration::from_secs_f64(arguments.wait));
+    let pairing = Pairing { keys: &keys, attempts: &mut attempts, wait, called_off: &called_off };
+    let (name, pending) = if let Some(host) = &arguments.host {
+        (network::name_of(host), pairing.ask(network::address(host)?)?)
+    } else {
+        let at = network::listening(arguments.listen.as_deref())?;
+        output::line(&format!("waiting at {at} for `nima pair HOST` at the console's machine"))?;
+        (arguments.name.as_str(), pairing.offer(at)?)
+    };
+    output::line(&format!("code to enter at the other machine: {}", pending.code()))?;
+    output::line("Enter the code that the other screen shows:")?;
+    let mut entered = String::new();
+    std::io::stdin().lock().read_line(&mut entered).context("cannot read the code")?;
+    let key = pending.confirm(entered.trim(), &mut attempts)?;
+    peers.add(name, key)?;
+    peers.save(&folder)?;
+    output::line(&format!("paired with {name}"))?;
+    Ok(())
+}

@@ -1,0 +1,177 @@
+//! The line to the machine with the arm: whether messages pass, who holds the follower, and what the network takes.
+
+use egui::{Button, RichText, Ui, vec2};
+use nima_network::endpoint::Control;
+
+use super::{
+    line::{LineReport, LineWish, NetworkDoor},
+    text,
+    words::{link_rows, link_trouble},
+};
+use crate::console::{
+    alarms::sentence,
+    theme,
+    widgets::{figure, small},
+};
+
+/// What a line does. It sends wishes to the line; who holds a follower is not the loop's matter.
+pub(super) fn link_ui(ui: &mut Ui, door: &NetworkDoor, drives: bool) {
+    let Some(report) = door.newest() else {
+        ui.label(text::NOTHING_YET.get());
+        return;
+    };
+    if let Some([cause, cure]) = link_trouble(report.state) {
+        ui.label(RichText::new(sentence(&cause)).font(theme::strong(14.0)));
+        ui.label(small(sentence(&cure)));
+        ui.add_space(4.0);
+    }
+    control_ui(ui, report, drives, door);
+    ui.add_space(4.0);
+    for row in link_rows(report) {
+        figure(ui, row.name, row.value, row.meaning);
+    }
+}
+
+/// Who holds the follower, and the buttons with which it changes hands.
+fn control_ui(ui: &mut Ui, report: &LineReport, drives: bool, door: &NetworkDoor) {
+    let words = match report.control {
+        Control::None => return,
+        Control::Holds => text::HOLDS.get(),
+        Control::HoldsAsked => text::ASKED.get(),
+        Control::Waits => text::WAITS.get(),
+        Control::Asks => text::ASKS.get(),
+        Control::Denied => text::DENIED.get(),
+    };
+    ui.label(words).on_hover_text(text::CONTROL_HOVER.get());
+    let size = vec2(ui.available_width(), 28.0);
+    let button = |ui: &mut Ui, enabled: bool, words: &str, meaning: &str| {
+        ui.add_enabled(enabled, Button::new(words).min_size(size))
+            .on_hover_text(meaning)
+            .on_disabled_hover_text(text::GIVE_AT_REST.get())
+            .clicked()
+    };
+    match report.control {
+        Control::HoldsAsked => {
+            // The arm must not change hands while it is driven: it would stop in a fault.
+            if button(ui, !drives, text::GIVE.get(), text::GIVE_HOVER.get()) {
+                door.wish(LineWish::Answer { consents: true });
+            }
+            if drives {
+                ui.label(small(text::GIVE_AT_REST.get()));
+            }
+            if button(ui, true, text::KEEP.get(), text::KEEP_HOVER.get()) {
+                door.wish(LineWish::Answer { consents: false });
+            }
+        }
+        Control::Waits | Control::Denied => {
+            if button(ui, true, text::ASK.get(), text::ASK_HOVER.get()) {
+                door.wish(LineWish::Control);
+            }
+        }
+        Control::Asks => {
+            if button(ui, true, text::WITHDRAW.get(), text::WITHDRAW_HOVER.get()) {
+                door.wish(LineWish::Nothing);
+            }
+        }
+        Control::None | Control::Holds => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::Ipv4Addr;
+    use std::time::{Duration, Instant};
+
+    use egui_kittest::{Harness, kittest::Queryable as _};
+    use nima_machine::{remote::Wire as _, rig::Ends};
+    use nima_network::{
+        endpoint::{Config, Endpoint, Role},
+        keys::{Keys, Peers},
+    };
+
+    use super::*;
+    use crate::{extras::two_machines::line::NetworkLine, link::LineDoor as _};
+
+    /// A follower and two consoles over loopback.
+    struct Three {
+        _folder: tempfile::TempDir,
+        ends: [NetworkLine; 3],
+        /// How many of them run: who comes first holds the follower.
+        running: usize,
+        begun: Instant,
+    }
+
+    impl Three {
+        fn new() -> Self {
+            let folder = tempfile::tempdir().unwrap();
+            let keys = |name: &str| {
+                let own = folder.path().join(name);
+                std::fs::create_dir_all(&own).unwrap();
+                Keys::open(&own).unwrap()
+            };
+            let (follower, first, second) = (keys("follower"), keys("first"), keys("second"));
+            let mut consoles = Peers::open(&folder.path().join("follower")).unwrap();
+            consoles.add("first", first.public()).unwrap();
+            consoles.add("second", second.public()).unwrap();
+            let key = follower.public();
+            let role = Role::Follower { at: Some((Ipv4Addr::LOCALHOST, 0).into()), consoles };
+            let follower = Endpoint::open(Config::new(role, follower)).unwrap();
+            let at = follower.address().unwrap();
+            let console = |keys| {
+                let role = Role::Console { follower: at, key };
+                NetworkLine::new(Endpoint::open(Config::new(role, keys)).unwrap(), Ends::Leader)
+            };
+            let ends = [NetworkLine::new(follower, Ends::Follower), console(first), console(second)];
+            Self { _folder: folder, ends, running: 2, begun: Instant::now() }
+        }
+
+        /// Drives those that run until this console's report is as wanted, and shows it in the panel.
+        fn until(&mut self, window: &mut Harness<'_, NetworkDoor>, control: Control) {
+            while window.state().newest().is_none_or(|report| report.control != control) {
+                assert!(self.begun.elapsed() < Duration::from_mins(1), "never {control:?}: {:?}", window.state());
+                let now_s = self.begun.elapsed().as_secs_f64();
+                for end in &mut self.ends[..self.running] {
+                    end.receive(now_s, &mut |_| {});
+                    end.send(now_s, b"payload");
+                }
+                window.state_mut().hear();
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            window.run_steps(2);
+        }
+
+        fn panel(&self, console: usize) -> Harness<'static, NetworkDoor> {
+            let panel = |ui: &mut Ui, door: &mut NetworkDoor| {
+                theme::apply(ui.ctx());
+                link_ui(ui, door, false);
+            };
+            let door = self.ends[console].network_door();
+            Harness::builder().with_size([330.0, 600.0]).build_ui_state(panel, door)
+        }
+    }
+
+    #[test]
+    fn control_changes_hands_by_a_question_and_consent() {
+        let mut three = Three::new();
+        let (mut first, mut second) = (three.panel(1), three.panel(2));
+        three.until(&mut first, Control::Holds);
+        three.running = 3;
+        three.until(&mut second, Control::Waits);
+        second.get_by_label(text::ASK.get()).click();
+        second.run_steps(2);
+        three.until(&mut second, Control::Asks);
+        three.until(&mut first, Control::HoldsAsked);
+        first.get_by_label(text::KEEP.get()).click();
+        first.run_steps(2);
+        three.until(&mut second, Control::Denied);
+        three.until(&mut first, Control::Holds);
+        second.get_by_label(text::ASK.get()).click();
+        second.run_steps(2);
+        three.until(&mut first, Control::HoldsAsked);
+        first.get_by_label(text::GIVE.get()).click();
+        first.run_steps(2);
+        three.until(&mut second, Control::Holds);
+        three.until(&mut first, Control::Waits);
+        first.get_by_label_contains("nother console holds the follower");
+    }
+}

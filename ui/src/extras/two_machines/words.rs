@@ -1,0 +1,237 @@
+//! Texts: what the line to the other machine does, and what the operator can do.
+
+use nima_network::{
+    control::{Cause, Refusal},
+    endpoint::LinkState,
+    figures::Figures,
+};
+
+use super::line::LineReport;
+use crate::language::{told, word};
+
+/// The state, a clause without a full stop.
+pub(super) fn state_in_words(state: LinkState) -> String {
+    match link_trouble(state) {
+        None => word("connected to the other machine", "mit der Gegenstelle verbunden").to_owned(),
+        Some([cause, cure]) => format!("{cause}: {cure}"),
+    }
+}
+
+/// Why nothing passes, and what to do, clauses without a full stop; `None` if all is well.
+pub(super) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
+    let cause = match state {
+        LinkState::Open => return None,
+        LinkState::Waiting => {
+            return Some([
+                word("the other machine has not been heard of yet", "von der Gegenstelle kam noch nichts").to_owned(),
+                word(
+                    "see whether it runs, and whether a firewall stops UDP",
+                    "prüfen, ob sie läuft und ob eine Firewall UDP sperrt",
+                )
+                .to_owned(),
+            ]);
+        }
+        LinkState::Down(cause) => cause,
+    };
+    if let Cause::ClockJumped { by_s } = cause {
+        return Some([
+            told!(
+                "a clock of the two machines jumped by {:.0} ms",
+                "eine Uhr der beiden Rechner sprang um {:.0} ms",
+                by_s * 1e3
+            ),
+            word("find out what sets it", "klären, was sie stellt").to_owned(),
+        ]);
+    }
+    if let Cause::Refused(Refusal::Version(version)) = cause {
+        return Some([
+            told!(
+                "the other machine speaks version {version} of the protocol",
+                "die Gegenstelle spricht Version {version} des Protokolls"
+            ),
+            word("install the same program on both", "auf beiden dasselbe Programm installieren").to_owned(),
+        ]);
+    }
+    let [cause, cure] = match cause {
+        Cause::PeerClosed => [
+            word("the program at the other machine was closed", "das Programm der Gegenstelle wurde geschlossen"),
+            word("start it again there", "dort neu starten"),
+        ],
+        Cause::HeldByAnother => [
+            word("another console holds the follower", "eine andere Konsole steuert den Folgearm"),
+            word(
+                "ask for control in the panel Link, or wait until it is free",
+                "Steuerung im Panel Verbindung anfragen oder warten, bis er frei ist",
+            ),
+        ],
+        Cause::NotAsked => [
+            word("nobody holds the follower", "niemand steuert den Folgearm"),
+            word("ask for control in the panel Link", "Steuerung im Panel Verbindung anfragen"),
+        ],
+        Cause::Refused(Refusal::Full) => [
+            word(
+                "too many consoles are connected to the other machine",
+                "zu viele Konsolen sind mit der Gegenstelle verbunden",
+            ),
+            word("close one of them", "eine davon schließen"),
+        ],
+        Cause::Refused(_) => [
+            word(
+                "the other machine refuses the key of this one",
+                "die Gegenstelle lehnt den Schlüssel dieses Rechners \
+             ab",
+            ),
+            word("pair the two machines with `nima pair`", "beide Rechner mit `nima pair` paaren"),
+        ],
+        Cause::Silent { .. } | Cause::ClockJumped { .. } => [
+            word("nothing comes from the other machine", "von der Gegenstelle kommt nichts"),
+            word(
+                "check cable and network, and whether that machine runs",
+                "Kabel und Netzwerk prüfen, und ob der Rechner läuft",
+            ),
+        ],
+    };
+    Some([cause.to_owned(), cure.to_owned()])
+}
+
+/// A figure of a line.
+#[derive(Clone)]
+pub(super) struct LinkRow {
+    pub(super) name: &'static str,
+    pub(super) value: String,
+    /// A sentence.
+    pub(super) meaning: &'static str,
+}
+
+/// The figures of a line, one to a row.
+pub(super) fn link_rows(report: &LineReport) -> Vec<LinkRow> {
+    let figures = &report.figures;
+    let state = match report.state {
+        LinkState::Open => word("connected", "verbunden"),
+        LinkState::Waiting => word("waiting", "wartet"),
+        LinkState::Down(_) => word("down", "getrennt"),
+    };
+    let open = LinkRow {
+        name: word("Link", "Verbindung"),
+        value: state.to_owned(),
+        meaning: word(
+            "Whether messages pass between the two machines.",
+            "Ob Nachrichten zwischen den beiden Rechnern laufen.",
+        ),
+    };
+    [vec![open], times(figures), amounts(report)].concat()
+}
+
+fn ms(seconds: f64) -> String {
+    format!("{:.1} ms", seconds * 1e3)
+}
+
+/// What a message takes.
+fn times(figures: &Figures) -> Vec<LinkRow> {
+    let mut rows = Vec::new();
+    let mut row = |name, value, meaning| rows.push(LinkRow { name, value, meaning });
+    if let Some(clock) = &figures.clock {
+        row(
+            word("Round trip", "Umlaufzeit"),
+            told!("{} at least", "mindestens {}", ms(clock.round_trip_s)),
+            word(
+                "The shortest time there and back that was measured lately (ms).",
+                "Die kürzeste zuletzt gemessene Zeit hin und zurück (ms).",
+            ),
+        );
+        row(
+            word("Clock offset", "Uhrenversatz"),
+            format!("{} ± {}", ms(clock.offset_s), ms(clock.bound_s)),
+            word(
+                "The other machine's clock minus this one's. It is wrong by half the shortest round trip at most.",
+                "Uhr der Gegenstelle minus Uhr dieses Rechners. Höchstens um die halbe kürzeste Umlaufzeit falsch.",
+            ),
+        );
+    }
+    if let Some(delays) = &figures.one_way {
+        row(
+            word("One way", "Einfacher Weg"),
+            told!("{} mean, {} p99.9", "{} Mittel, {} p99.9", ms(delays.mean_s), ms(delays.p999_s)),
+            word(
+                "From the other machine to this one (ms), by the clock offset above.",
+                "Von der Gegenstelle hierher (ms), nach dem Uhrenversatz oben.",
+            ),
+        );
+        row(
+            word("Jitter", "Jitter"),
+            ms(delays.p999_s - delays.mean_s),
+            word(
+                "How much longer than the mean the slowest of a thousand messages takes (ms).",
+                "Wie viel länger als das Mittel die langsamste von tausend Nachrichten braucht (ms).",
+            ),
+        );
+    }
+    if let Some(playout_s) = figures.playout_s {
+        row(
+            word("Play-out delay", "Ausgabeverzögerung"),
+            ms(playout_s),
+            word(
+                "Every message is held until it is this old (ms), so that jitter is not felt in the hand.",
+                "Jede Nachricht wird bis zu diesem Alter (ms) gehalten, damit die Hand keinen Jitter spürt.",
+            ),
+        );
+    }
+    rows
+}
+
+/// What is lost, and what it takes of the network.
+fn amounts(report: &LineReport) -> Vec<LinkRow> {
+    let (figures, counts) = (&report.figures, &report.figures.counts);
+    let mut rows = Vec::new();
+    let mut row = |name, value, meaning| rows.push(LinkRow { name, value, meaning });
+    row(
+        word("Loss", "Verlust"),
+        told!(
+            "{:.1} % to here, {:.1} % to there",
+            "{:.1} % hierher, {:.1} % dorthin",
+            figures.loss * 1e2,
+            figures.loss_there * 1e2
+        ),
+        word("Share of the datagrams that never arrived.", "Anteil der Datagramme, die nie ankamen."),
+    );
+    row(
+        word("Copies", "Kopien"),
+        figures.copies.used.to_string(),
+        word(
+            "How often each message is sent. The worse the loss, the more copies, as far as the rate allows.",
+            "Wie oft jede Nachricht gesendet wird. Je mehr Verlust, desto mehr Kopien, soweit die Rate es erlaubt.",
+        ),
+    );
+    row(
+        word("Rate", "Rate"),
+        told!(
+            "{:.2} Mbit/s out, {:.2} in",
+            "{:.2} Mbit/s aus, {:.2} ein",
+            figures.sent.rate_bit_s / 1e6,
+            figures.received.rate_bit_s / 1e6
+        ),
+        word(
+            "What the link takes of the network, with all headers.",
+            "Was die Verbindung vom Netzwerk belegt, mit allen Headern.",
+        ),
+    );
+    row(
+        word("Messages", "Nachrichten"),
+        told!("{}, {} late, {} lost", "{}, {} verspätet, {} verloren", counts.delivered, counts.late, counts.lost),
+        word(
+            "Messages that arrived, and of these late for their play-out; lost are those of which no copy arrived.",
+            "Angekommene Nachrichten, davon für die Ausgabe verspätete; verloren sind solche, von denen keine Kopie \
+             ankam.",
+        ),
+    );
+    row(
+        word("Foreign datagrams", "Fremde Datagramme"),
+        report.dropped.total().to_string(),
+        word(
+            "Dropped because they were forged, repeated, too old, of another version, or not meant for this link.",
+            "Verworfen, weil gefälscht, wiederholt, zu alt, von anderer Version oder nicht für diese Verbindung \
+             bestimmt.",
+        ),
+    );
+    rows
+}

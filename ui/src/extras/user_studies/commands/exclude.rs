@@ -1,0 +1,28 @@
+//! `nima user-study exclude`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use nima_recording::store::utc_now;
+use nima_user_study::Study;
+
+#[derive(Debug, Args)]
+pub(in crate::extras::user_studies) struct Arguments {
+    /// The folder of the study
+    #[arg(value_name = "DIR")]
+    study: PathBuf,
+    /// Who
+    #[arg(long, value_name = "P01")]
+    participant: String,
+    /// This trial only
+    #[arg(long, value_name = "N")]
+    trial: Option<u32>,
+    /// Why; it stands in the report
+    #[arg(long, value_name = "TEXT")]
+    reason: String,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let Arguments { study, participant, trial, reason } = arguments;
+    Ok(Study::open(study, &utc_now())?.exclude(participant, *trial, reason, &utc_now())?)
+}

@@ -1,0 +1,55 @@
+//! `nima user-study new`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::json;
+
+use crate::{
+    command::output,
+    extras::user_studies::study::{create, study_file},
+};
+
+#[derive(Debug, Args)]
+pub(in crate::extras::user_studies) struct Arguments {
+    /// Study: `paper`, `short`, or a TOML file
+    #[arg(value_name = "STUDY")]
+    file: String,
+    /// The folder, which must be new or empty
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Print the result as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let Arguments { file, out, json } = arguments;
+    let study = study_file(file)?;
+    let made = create(out, &study)?;
+    let plan = made.plan();
+    let (participants, rows) = (plan.participants.len(), plan.rows());
+    let balanced = participants.is_multiple_of(rows);
+    if *json {
+        return output::json(&json!({
+            "study": out,
+            "participants": participants,
+            "labels": plan.labels,
+            "balanced": balanced,
+            "commitment": plan.commitment,
+        }));
+    }
+    let balance = if balanced {
+        format!("each order is there {} times", participants / rows)
+    } else {
+        format!("the orders are not balanced: take a multiple of {rows}")
+    };
+    output::line(&format!(
+        "made {}: {participants} participants, {} conditions ({balance}), {} trials of each\n\
+         commitment (BLAKE2b-256): {}\nkeep it outside of the folder: it proves later that nobody changed the assignment",
+        out.display(),
+        plan.labels.len(),
+        plan.trials_of_each(),
+        plan.commitment
+    ))
+}

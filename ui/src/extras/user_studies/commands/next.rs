@@ -1,0 +1,84 @@
+//! `nima user-study next`.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use nima_recording::store::utc_now;
+use nima_user_study::{Answers, Progress, Questionnaire, Step, Study};
+use serde_json::json;
+
+use crate::{
+    command::output,
+    extras::user_studies::study::{next_in_words, plain_hand, run_virtual},
+    leaving::Leave,
+};
+
+#[derive(Debug, Args)]
+pub(in crate::extras::user_studies) struct Arguments {
+    /// The folder of the study
+    #[arg(value_name = "DIR")]
+    study: PathBuf,
+    /// Who
+    #[arg(long, value_name = "P01")]
+    participant: String,
+    /// Run a trial in the simulated rig, by its simulated hand, on a virtual clock; a break takes no time
+    #[arg(long = "virtual")]
+    virtual_clock: bool,
+    /// Answers to the questionnaire that comes next, as TOML: `realism = 5`
+    #[arg(long, value_name = "TOML", conflicts_with = "answers_file")]
+    answers: Option<String>,
+    /// The same from a file; it may hold the answers to several questionnaires
+    #[arg(long, value_name = "FILE")]
+    answers_file: Option<PathBuf>,
+    /// Print the result as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let Arguments { study, participant, virtual_clock, answers, answers_file, json } = arguments;
+    let mut study = Study::open(study, &utc_now())?;
+    let step = study.next(participant)?;
+    let words = match step {
+        Step::Done { .. } => bail!("{participant}: there is {step}"),
+        Step::Questionnaire { questionnaire, .. } => {
+            let given = given(questionnaire, answers.as_deref(), answers_file.as_deref())?;
+            study.answer(participant, given, false, &utc_now())?;
+            format!("{step}: kept")
+        }
+        _ if answers.is_some() || answers_file.is_some() => {
+            bail!("{participant}: next is {step}, which takes no answers")
+        }
+        _ if !virtual_clock => {
+            bail!("{participant}: next is {step}; add --virtual to run it in the simulated rig")
+        }
+        Step::Break { least_s } => {
+            study.take_break(participant, least_s, true, &utc_now())?;
+            "break (simulated)".to_owned()
+        }
+        Step::Practice { .. } | Step::Trial { .. } | Step::Running { .. } => {
+            let leave = Leave::on_signals()?;
+            let hand = plain_hand(&study, participant)?;
+            let ran = run_virtual(&mut study, participant, &hand, &leave)?;
+            let shows = study.state().progress(participant).is_none_or(Progress::shows_result);
+            ran.in_words(shows)
+        }
+    };
+    let next = study.next(participant)?;
+    if *json {
+        return output::json(&json!({ "participant": participant, "step": step, "result": words, "next": next }));
+    }
+    output::line(&format!("{participant}: {words}; {}", next_in_words(&next)))
+}
+
+fn given(asked: Questionnaire, text: Option<&str>, file: Option<&Path>) -> anyhow::Result<Answers> {
+    let text = match (text, file) {
+        (Some(text), _) => text.to_owned(),
+        (None, Some(file)) => {
+            nima_files::read_text(file, nima_files::CONFIG_MAX).with_context(|| file.display().to_string())?
+        }
+        (None, None) => String::new(),
+    };
+    Answers::from_toml(&text, asked).map_err(|why| anyhow::anyhow!("{why}; give it with --answers or --answers-file"))
+}

@@ -1,0 +1,30 @@
+//! `nima study-report`: the analysis of a user study.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use nima_user_study::Study;
+
+use crate::command::output;
+use crate::extras::user_studies::report;
+
+#[derive(Debug, Args)]
+pub(in crate::extras::user_studies) struct Arguments {
+    /// The folder of the study
+    #[arg(value_name = "DIR")]
+    study: PathBuf,
+    /// Where to write report.html, the tables (CSV) and the scripts for R (default: `report` in the folder of the study)
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Every measure, not only those that the study file named
+    #[arg(long)]
+    all: bool,
+}
+
+pub(in crate::extras::user_studies) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let Arguments { study, out, all } = arguments;
+    let study = Study::read(study)?;
+    let out = out.clone().unwrap_or_else(|| study.folder().join("report"));
+    let page = report::write(&study, &out, *all)?;
+    output::line(&format!("written: {}", page.display()))
+}

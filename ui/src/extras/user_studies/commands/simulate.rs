@@ -1,0 +1,71 @@
+//! `nima user-study simulate`.
+
+use std::path::PathBuf;
+
+use anyhow::bail;
+use clap::Args;
+use nima_recording::store::utc_now;
+use nima_user_study::{Step, Study, simulated::Person};
+
+use crate::{
+    command::output,
+    extras::user_studies::study::{made, run_virtual},
+    leaving::Leave,
+};
+
+#[derive(Debug, Args)]
+pub(in crate::extras::user_studies) struct Arguments {
+    /// The folder of the study, in which no real person has taken part
+    #[arg(value_name = "DIR")]
+    study: PathBuf,
+    /// Seed of the simulated people
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Stop after so many steps; a later call goes on
+    #[arg(long, value_name = "N")]
+    steps: Option<usize>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let Arguments { study, seed, steps } = arguments;
+    let mut study = Study::open(study, &utc_now())?;
+    let is_real = |(_, one): (&str, &nima_user_study::Progress)| {
+        one.trials.iter().any(|made| !made.simulated) || one.answers.iter().any(|given| !given.2)
+    };
+    if study.state().participants().any(is_real) {
+        bail!("real people have taken part in this study: make another folder for a simulation");
+    }
+    let leave = Leave::on_signals()?;
+    let names: Vec<String> = study.plan().participants.iter().map(|one| one.name.clone()).collect();
+    let mut left = steps.unwrap_or(usize::MAX);
+    for (number, name) in (0..).zip(names) {
+        let person = Person::new(*seed, number);
+        while left > 0 {
+            let (before, since_break) = made(&study, &name);
+            match study.next(&name)? {
+                Step::Done { .. } => break,
+                Step::Break { least_s } => study.take_break(&name, least_s, true, &utc_now())?,
+                Step::Questionnaire { questionnaire, .. } => {
+                    study.answer(&name, person.answers(questionnaire, before), true, &utc_now())?;
+                }
+                Step::Running { .. } => bail!("{name}: a trial is running"),
+                Step::Practice { attempt, .. } | Step::Trial { attempt, .. } => {
+                    run_virtual(&mut study, &name, &person.hand(before, since_break, attempt), &leave)?;
+                }
+            }
+            if leave.is_asked() {
+                bail!("ended as asked; the same command goes on");
+            }
+            left -= 1;
+        }
+        let results = study
+            .state()
+            .progress(&name)
+            .map_or(0, |one| one.trials.iter().filter(|made| made.ending.is_some()).count());
+        output::line(&format!("{name}: {results} trials with a result; next: {}", study.next(&name)?))?;
+        if left == 0 {
+            break;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,126 @@
+//! `nima user-study status`.
+
+use std::{fmt::Write as _, path::PathBuf};
+
+use clap::Args;
+use nima_user_study::{Label, Step, Study};
+use serde::Serialize;
+
+use crate::command::output;
+
+#[derive(Debug, Args)]
+pub(in crate::extras::user_studies) struct Arguments {
+    /// The folder of the study
+    #[arg(value_name = "DIR")]
+    study: PathBuf,
+    /// Print it as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// One participant.
+#[derive(Serialize)]
+struct Standing<'a> {
+    participant: &'a str,
+    order: &'a [Label],
+    practice: usize,
+    trials: usize,
+    without_result: usize,
+    interruptions: u32,
+    excluded: Option<&'a str>,
+    next: Step,
+}
+
+#[derive(Serialize)]
+struct Status<'a> {
+    name: &'a str,
+    blind: bool,
+    unblinded: Option<&'a nima_user_study::Unblinding>,
+    simulated: bool,
+    commitment: &'a str,
+    trials_of_each: u32,
+    participants: Vec<Standing<'a>>,
+    excluded: Vec<nima_user_study::Exclusion>,
+    notes: &'a [(String, Option<String>, String)],
+    torn_bytes: &'a [u64],
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let study = Study::read(&arguments.study)?;
+    let status = Status::of(&study)?;
+    if arguments.json { output::json(&status) } else { output::line(status.in_words().trim_end()) }
+}
+
+impl<'a> Status<'a> {
+    fn of(study: &'a Study) -> anyhow::Result<Self> {
+        let (plan, state) = (study.plan(), study.state());
+        let standing = |participant: &'a nima_user_study::Participant| {
+            let progress = state.progress(&participant.name);
+            let results = |with: bool| {
+                progress.map_or(0, |one| one.trials.iter().filter(|made| made.measures.is_some() == with).count())
+            };
+            Ok(Standing {
+                participant: &participant.name,
+                order: &participant.order,
+                practice: progress.map_or(0, |one| one.practice_s.len()),
+                trials: results(true),
+                without_result: results(false),
+                interruptions: progress.map_or(0, |one| one.interruptions),
+                excluded: progress.and_then(|one| one.excluded.as_deref()),
+                next: study.next(&participant.name)?,
+            })
+        };
+        Ok(Self {
+            name: &plan.name,
+            blind: plan.blind,
+            unblinded: state.unblinding.as_ref(),
+            simulated: state.is_simulated(),
+            commitment: &plan.commitment,
+            trials_of_each: plan.trials_of_each(),
+            participants: plan.participants.iter().map(standing).collect::<anyhow::Result<_>>()?,
+            excluded: study.exclusions(),
+            notes: &state.notes,
+            torn_bytes: &state.torn,
+        })
+    }
+
+    fn in_words(&self) -> String {
+        let sealed = match (self.blind, self.unblinded) {
+            (false, _) => "not blind".to_owned(),
+            (true, None) => "blind".to_owned(),
+            (true, Some(by)) => format!("unblinded by {} at {} ({})", by.who, by.at, by.why),
+        };
+        let mut text = format!("{}: {sealed}\ncommitment {}\n", self.name, self.commitment);
+        if self.simulated {
+            text.push_str("SIMULATED: trials or answers of simulated people are in it\n");
+        }
+        for one in &self.participants {
+            let order: Vec<String> = one.order.iter().map(ToString::to_string).collect();
+            let lost = if one.without_result > 0 {
+                format!(", {} without a result", one.without_result)
+            } else {
+                String::new()
+            };
+            writeln!(
+                text,
+                "{} ({}): practice {}, trials {} of {}{lost}; next: {}",
+                one.participant,
+                order.join(" "),
+                one.practice,
+                one.trials,
+                self.trials_of_each,
+                one.next
+            )
+            .ok();
+        }
+        for nima_user_study::Exclusion { participant, trial, why } in &self.excluded {
+            let what = trial.map_or_else(|| "everything".to_owned(), |trial| format!("trial {trial}"));
+            writeln!(text, "left out of the analysis: {participant}, {what}: {why}").ok();
+        }
+        for (at, about, words) in self.notes {
+            writeln!(text, "note {at}{}: {words}", about.as_ref().map_or_else(String::new, |name| format!(" {name}")))
+                .ok();
+        }
+        text
+    }
+}

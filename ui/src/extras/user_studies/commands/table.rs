@@ -1,0 +1,40 @@
+//! `nima user-study table`.
+
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use clap::Args;
+use nima_files::write_atomically;
+use nima_user_study::{Study, Table};
+
+use crate::command::output;
+
+#[derive(Debug, Args)]
+pub(in crate::extras::user_studies) struct Arguments {
+    /// The folder of the study
+    #[arg(value_name = "DIR")]
+    study: PathBuf,
+    /// The table (CSV)
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Scores of the questionnaires in place of the trials
+    #[arg(long)]
+    questionnaires: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let Arguments { study, out, questionnaires } = arguments;
+    let study = Study::read(study)?;
+    output::check(out, &[&study.folder().join(nima_user_study::JOURNAL)])?;
+    let Table { csv, rows, excluded, missing } = if *questionnaires { study.questionnaires() } else { study.trials() };
+    write_atomically(out, |file| file.write_all(csv.as_bytes()))
+        .with_context(|| format!("cannot write {}", out.display()))?;
+    output::line(&format!("{rows} rows in {}", out.display()))?;
+    for nima_user_study::Exclusion { participant, trial, why } in excluded {
+        let what = trial.map_or_else(|| "everything".to_owned(), |trial| format!("trial {trial}"));
+        output::line(&format!("left out: {participant}, {what}: {why}"))?;
+    }
+    missing
+        .iter()
+        .try_for_each(|(participant, trial)| output::line(&format!("without a result: {participant}, trial {trial}")))
+}

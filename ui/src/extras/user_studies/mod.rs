@@ -1,0 +1,42 @@
+//! User studies: orders, blind conditions, trials, questionnaires, and their analysis.
+
+mod commands;
+mod report;
+mod screen;
+mod study;
+mod text;
+
+use clap::{ArgMatches, Subcommand};
+
+use super::{Extra, given};
+use crate::console::page::Page;
+
+/// The extra.
+pub(super) struct UserStudies;
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a user study: orders, blind conditions, trials, questionnaires
+    #[command(subcommand, arg_required_else_help = false)]
+    UserStudy(commands::UserStudyCommand),
+    /// Analyse a user study: one page with tables and pictures, the tables as CSV, and a script for R
+    StudyReport(commands::report::Arguments),
+}
+
+impl Extra for UserStudies {
+    fn commands(&self, line: clap::Command) -> clap::Command {
+        Command::augment_subcommands(line)
+    }
+
+    fn run(&self, matches: &ArgMatches) -> Option<anyhow::Result<()>> {
+        Some(match given(matches)? {
+            Ok(Command::UserStudy(command)) => commands::run(&command),
+            Ok(Command::StudyReport(arguments)) => commands::report::run(&arguments),
+            Err(error) => Err(error.into()),
+        })
+    }
+
+    fn page(&self) -> Option<fn() -> Box<dyn Page>> {
+        Some(|| Box::new(screen::Studies::default()))
+    }
+}

@@ -1,0 +1,248 @@
+//! The report of a user study: one page that needs nothing beside it, the tables it was made from, and scripts for R.
+//!
+//! The statistics are those of `nima study trials`, on the same tables.
+
+mod boxes;
+mod markdown;
+mod people;
+
+use std::{
+    collections::BTreeSet,
+    fmt::Write as _,
+    path::{Path, PathBuf},
+};
+
+use anyhow::Context as _;
+use nima_core::Side;
+use nima_score::{Definition, MEASURES};
+use nima_study::{
+    Experiment as _, Findings as _,
+    trials::{Report, Table, Trials},
+};
+use nima_user_study::{Label, Study};
+
+use crate::{
+    command::output,
+    report::{
+        STYLE,
+        html::{escape, table},
+    },
+};
+
+pub(super) const PAGE: &str = "report.html";
+const TRIALS: &str = "trials.csv";
+const QUESTIONNAIRES: &str = "questionnaires.csv";
+/// Scores of questionnaires that are compared; the single scales of the NASA-TLX are in the table alone.
+const SCORES: [&str; 4] = ["nasa_tlx_weighted", "nasa_tlx_raw", "sus", "realism"];
+
+/// Writes the report of a study into a folder, which is made if it is missing; gives the page.
+pub(super) fn write(study: &Study, out: &Path, all: bool) -> anyhow::Result<PathBuf> {
+    let journal = study.folder().join(nima_user_study::JOURNAL);
+    output::folder(out, &[PAGE, TRIALS, QUESTIONNAIRES], &[&journal])?;
+    let (trials, questionnaires) = (study.trials(), study.questionnaires());
+    output::write(out, TRIALS, &trials.csv)?;
+    output::write(out, QUESTIONNAIRES, &questionnaires.csv)?;
+    let plan = study.plan();
+    let named: Vec<String> = std::iter::once(&plan.primary).chain(&plan.secondary).cloned().collect();
+    let wanted = if all { columns(&trials.csv, |name| !named.iter().any(|known| known == name)) } else { Vec::new() };
+    let wanted: Vec<String> = named.into_iter().chain(wanted).collect();
+    let measures = Analysed::of(study, out, TRIALS, &trials.csv, &wanted, "trials")?;
+    // Only those that were asked.
+    let scores = columns(&questionnaires.csv, |name| SCORES.contains(&name));
+    let scores = Analysed::of(study, out, QUESTIONNAIRES, &questionnaires.csv, &scores, "questionnaires")?;
+    let page = page(study, &trials, measures.as_ref(), scores.as_ref());
+    output::write(out, PAGE, &page).context("the report")?;
+    Ok(out.join(PAGE))
+}
+
+/// Names of the columns of numbers that a filter lets through.
+fn columns(csv: &str, filter: impl Fn(&str) -> bool) -> Vec<String> {
+    let names = csv.lines().next().unwrap_or_default().split(',');
+    names
+        .filter(|name| !["participant", "condition", "trial", "simulated"].contains(name) && filter(name))
+        .map(str::to_owned)
+        .collect()
+}
+
+/// A table with its analysis.
+struct Analysed {
+    table: Table,
+    report: Report,
+    /// Measures that no trial has.
+    absent: Vec<String>,
+}
+
+impl Analysed {
+    /// `None` if nothing can be compared: no rows, or none of the measures.
+    fn of(
+        study: &Study,
+        out: &Path,
+        file: &str,
+        csv: &str,
+        wanted: &[String],
+        name: &str,
+    ) -> anyhow::Result<Option<Self>> {
+        let known = columns(csv, |_| true);
+        let (measures, absent): (Vec<String>, Vec<String>) =
+            wanted.iter().cloned().partition(|key| known.contains(key));
+        if measures.is_empty() || csv.lines().count() < 2 {
+            return Ok(None);
+        }
+        let path = out.join(file);
+        let table = Table::read(&path, &measures)?;
+        // Before the unblinding the reference would tell its condition.
+        let reference = study.opened().and_then(|opened| opened.reference().map(str::to_owned));
+        let reference = reference.filter(|name| table.conditions().contains(name));
+        let trials = Trials { path, measures, reference, confidence: 0.95, power: None };
+        let report = trials.run(&mut |_, _, _| ())?;
+        let json = (".json".to_owned(), serde_json::to_string_pretty(&report)?);
+        for (end, text) in std::iter::once(json).chain(report.files()) {
+            output::write(out, &format!("{name}-{}{end}", Trials::NAME), &text)?;
+        }
+        Ok(Some(Self { table, report, absent }))
+    }
+}
+
+fn page(
+    study: &Study,
+    trials: &nima_user_study::Table,
+    measures: Option<&Analysed>,
+    scores: Option<&Analysed>,
+) -> String {
+    let plan = study.plan();
+    let name = escape(&plan.name);
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width\">\n<title>{name}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+         <h1>{name}</h1>\n<p class=\"note\">NIMA Console, research use only.</p>\n"
+    );
+    if study.state().is_simulated() {
+        page.push_str(
+            "<p class=\"error\">Simulated: trials or answers of simulated people are in this study. It says nothing about people.</p>\n",
+        );
+    }
+    page.push_str(&conditions(study));
+    page.push_str(&people::participants(study));
+    page.push_str(&people::left_out(trials));
+    section(&mut page, "Primary measure", study, measures, |key| key == plan.primary);
+    section(&mut page, "Further measures", study, measures, |key| key != plan.primary);
+    section(&mut page, "Questionnaires", study, scores, |_| true);
+    page.push_str(&people::remarks(study));
+    page.push_str(&people::learning(study));
+    page.push_str(&methods(measures, scores));
+    page.push_str("</body>\n</html>\n");
+    page
+}
+
+/// Whether the study is blind, and what its conditions are.
+fn conditions(study: &Study) -> String {
+    let (plan, state) = (study.plan(), study.state());
+    let mut text = "<section>\n<h2>Conditions</h2>\n".to_owned();
+    match (&state.unblinding, plan.blind) {
+        (_, false) => text.push_str("<p>The study is not blind.</p>\n"),
+        (None, true) => text.push_str(
+            "<p class=\"warning\">Blind: the conditions are shown by their labels. They are compared with the first label. \
+             Measures that would tell the condition are left out until the unblinding.</p>\n",
+        ),
+        (Some(by), true) => {
+            let after = state.results() - by.trials_before.min(state.results());
+            let [who, why, at] = [&by.who, &by.why, &by.at].map(|words| escape(words));
+            let when = if by.complete { "after everybody had finished" } else { "before everybody had finished" };
+            writeln!(
+                text,
+                "<p class=\"{}\">Unblinded by {who} at {at}, {when}: {why}. Trials with a result after that: {after}.</p>",
+                if by.complete && after == 0 { "note" } else { "warning" }
+            )
+            .ok();
+        }
+    }
+    writeln!(
+        text,
+        "<p class=\"note\">Commitment to the assignment (BLAKE2b-256): <code>{}</code></p>",
+        plan.commitment
+    )
+    .ok();
+    if let Some(opened) = study.opened() {
+        let row = |(label, name): (Label, &str)| {
+            let condition = opened.condition(label);
+            let mode = condition.map_or_else(String::new, |one| match one.mode {
+                Some(mode) => format!("{mode}, gain {}", one.gain.unwrap_or(1.0)),
+                None => "no force".to_owned(),
+            });
+            let delay = condition
+                .and_then(|one| one.delay_ms)
+                .map_or_else(|| "-".to_owned(), |delay_ms| format!("{delay_ms} ms"));
+            vec![label.to_string(), escape(name), mode, delay]
+        };
+        text.push_str(&table(
+            &["label", "condition", "feedback", "delay"],
+            &opened.labels().map(row).collect::<Vec<_>>(),
+        ));
+    }
+    text.push_str("</section>\n");
+    text
+}
+
+/// What a measure is.
+fn definition(key: &str) -> Option<&'static Definition> {
+    let is = |definition: &&Definition| {
+        let of = |side: Side| format!("{}_{}", definition.id, side.word()) == key;
+        if definition.per_hand { Side::ALL.into_iter().any(of) } else { definition.id == key }
+    };
+    MEASURES.iter().find(is)
+}
+
+/// The tables and the picture of each measure that a filter lets through.
+fn section(page: &mut String, title: &str, study: &Study, analysed: Option<&Analysed>, filter: impl Fn(&str) -> bool) {
+    writeln!(page, "<section>\n<h2>{title}</h2>").ok();
+    let Some(Analysed { table, report, absent }) = analysed else {
+        page.push_str("<p>There is nothing to compare yet.</p>\n</section>\n");
+        return;
+    };
+    let order: Vec<String> = match study.opened() {
+        Some(opened) => opened.labels().map(|(_, name)| name.to_owned()).collect(),
+        None => study.plan().labels.iter().map(ToString::to_string).collect(),
+    };
+    let text = report.text();
+    for part in text.split("\n## ").skip(1) {
+        let (name, tables) = part.split_once('\n').unwrap_or((part, ""));
+        if !filter(name) {
+            continue;
+        }
+        let about = definition(name);
+        writeln!(page, "<h3>{}</h3>", escape(name)).ok();
+        if let Some(definition) = about {
+            let unit = if definition.unit == "1" { "a ratio" } else { definition.unit };
+            writeln!(page, "<p class=\"note\">{} ({})</p>", escape(definition.words), escape(unit)).ok();
+        }
+        let unit = about.map(|definition| definition.unit).filter(|unit| !["1", "count"].contains(unit));
+        let axis = unit.map_or_else(|| name.to_owned(), |unit| format!("{name} ({unit})"));
+        page.push_str(&boxes::svg(table, name, &order, &axis));
+        page.push_str(&markdown::html(tables));
+    }
+    let absent: BTreeSet<&str> = absent.iter().map(String::as_str).filter(|key| filter(key)).collect();
+    for key in absent {
+        writeln!(page, "<p>{}: no trial has a value that may be shown.</p>", escape(key)).ok();
+    }
+    page.push_str("</section>\n");
+}
+
+fn methods(measures: Option<&Analysed>, scores: Option<&Analysed>) -> String {
+    let mut rows = vec![[TRIALS, "every trial that counts, with all measures"]];
+    if measures.is_some() {
+        rows.push(["trials-analysis.R", "repeats the tests in R: Rscript trials-analysis.R trials.csv"]);
+        rows.push(["trials-analysis.csv, .json, .md", "the comparisons of this page"]);
+    }
+    rows.push([QUESTIONNAIRES, "the scores of the questionnaires after each condition"]);
+    if scores.is_some() {
+        rows.push(["questionnaires-analysis.R, .csv, .json, .md", "the same for them"]);
+    }
+    let rows: Vec<Vec<String>> = rows.iter().map(|row| row.iter().map(|cell| escape(cell)).collect()).collect();
+    format!(
+        "<section>\n<h2>How it was computed</h2>\n<p>As <code>nima study trials</code> does it: several trials of a participant under a \
+         condition count as their mean, the mixed model takes each trial. p (Holm) is corrected for the pairs of one measure, not for \
+         several measures: the primary measure decides. A box goes from the first to the third quartile of the participants' means, with \
+         the median; the lines reach the farthest value within 1.5 of its height; every participant is a point.</p>\n{}</section>\n",
+        table(&["file", "holds"], &rows)
+    )
+}

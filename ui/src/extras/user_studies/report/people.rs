@@ -1,0 +1,160 @@
+//! The participants in the report: what they did, what is left out, what they said, how they learnt.
+
+use std::fmt::Write as _;
+
+use nima_charts::{Axis, Chart, Series, Style, svg};
+use nima_score::{LearningCurve, Shape, Standing};
+use nima_user_study::{Answers, Exclusion, Learning, Study, Table};
+
+use crate::report::html::{digits, escape, table};
+
+/// Most participants whose times are drawn: more lines cannot be told apart.
+const DRAWN: usize = 7;
+
+/// Who did what.
+pub(super) fn participants(study: &Study) -> String {
+    let (plan, state) = (study.plan(), study.state());
+    let row = |participant: &nima_user_study::Participant| {
+        let order: Vec<String> = participant.order.iter().map(ToString::to_string).collect();
+        let progress = state.progress(&participant.name);
+        let count = |of: &dyn Fn(&nima_user_study::Progress) -> usize| progress.map_or(0, of).to_string();
+        let next = study.next(&participant.name).map_or_else(|error| error.to_string(), |step| step.to_string());
+        vec![
+            participant.name.clone(),
+            order.join(" "),
+            count(&|one| one.practice_s.len()),
+            count(&|one| one.trials.iter().filter(|made| made.measures.is_some()).count()),
+            count(&|one| one.trials.iter().filter(|made| made.measures.is_none()).count()),
+            count(&|one| one.interruptions as usize),
+            count(&|one| one.breaks_s.len()),
+            escape(&next),
+        ]
+    };
+    let rows: Vec<Vec<String>> = plan.participants.iter().map(row).collect();
+    let heads = ["participant", "order", "practice", "trials", "without result", "interruptions", "breaks", "next"];
+    format!("<section>\n<h2>Participants</h2>\n{}</section>\n", table(&heads, &rows))
+}
+
+/// What the analysis leaves out, and why.
+pub(super) fn left_out(trials: &Table) -> String {
+    let excluded = trials.excluded.iter().map(|Exclusion { participant, trial, why }| {
+        let what = trial.map_or_else(|| "everything".to_owned(), |trial| format!("trial {trial}"));
+        vec![participant.clone(), what, escape(why)]
+    });
+    let missing = trials.missing.iter().map(|(participant, trial)| {
+        vec![participant.clone(), format!("trial {trial}"), "interrupted: no result".to_owned()]
+    });
+    let rows: Vec<Vec<String>> = excluded.chain(missing).collect();
+    let body =
+        if rows.is_empty() { "<p>Nothing.</p>\n".to_owned() } else { table(&["participant", "what", "why"], &rows) };
+    format!("<section>\n<h2>Left out of the analysis</h2>\n{body}</section>\n")
+}
+
+/// Scores at the end, free texts, and notes of the people who ran the study.
+pub(super) fn remarks(study: &Study) -> String {
+    let (mut scores, mut rows) = (Vec::new(), Vec::new());
+    for (name, progress) in study.state().participants() {
+        for (after, answers, _) in &progress.answers {
+            let about = after.map_or_else(|| "at the end".to_owned(), |label| format!("after {label}"));
+            if let Answers::FreeText(text) = answers {
+                rows.push(vec![name.to_owned(), about, escape(text)]);
+            } else if after.is_none() {
+                let of = |(score, value): (&str, f64)| vec![name.to_owned(), score.to_owned(), digits(value)];
+                scores.extend(answers.scores().into_iter().map(of));
+            }
+        }
+    }
+    let notes = study.state().notes.iter().map(|(at, about, text)| {
+        vec![about.clone().unwrap_or_else(|| "-".to_owned()), format!("note of {}", escape(at)), escape(text)]
+    });
+    rows.extend(notes);
+    let mut text = String::new();
+    if !scores.is_empty() {
+        write!(
+            text,
+            "<section>\n<h2>Scores at the end</h2>\n{}</section>\n",
+            table(&["participant", "score", "value"], &scores)
+        )
+        .ok();
+    }
+    if !rows.is_empty() {
+        write!(
+            text,
+            "<section>\n<h2>Remarks and notes</h2>\n{}</section>\n",
+            table(&["participant", "when", "text"], &rows)
+        )
+        .ok();
+    }
+    text
+}
+
+/// Proficiency and learning curves.
+pub(super) fn learning(study: &Study) -> String {
+    let all = study.learning();
+    // A task without an end, such as touching for a time, has no completion times.
+    if all.iter().all(|of| of.practice == 0 && of.times_s.iter().all(Option::is_none)) {
+        return String::new();
+    }
+    let row = |of: &Learning| {
+        let standing = of.standing.map_or_else(|| "-".to_owned(), standing_in_words);
+        let last = of.times_s.iter().rev().find_map(|time_s| *time_s).map_or_else(|| "-".to_owned(), digits);
+        let first = of.times_s.iter().find_map(|time_s| *time_s).map_or_else(|| "-".to_owned(), digits);
+        let curve = of.curve.as_ref().map_or_else(|| "too few times".to_owned(), curve_in_words);
+        vec![of.participant.clone(), of.practice.to_string(), standing, first, last, curve]
+    };
+    let rows: Vec<Vec<String>> = all.iter().map(row).collect();
+    let heads = ["participant", "practice", "criterion", "first time (s)", "last time (s)", "curve"];
+    let mut text = format!("<section>\n<h2>Learning</h2>\n{}", table(&heads, &rows));
+    text.push_str(&times(&all));
+    text.push_str("</section>\n");
+    text
+}
+
+fn standing_in_words(standing: Standing) -> String {
+    match standing {
+        Standing::Practising { in_a_row } => format!("not yet ({in_a_row} in a row)"),
+        Standing::Confirming { additional } => format!("not yet ({additional} additional)"),
+        Standing::Reached { trial } => format!("reached in trial {trial}"),
+        Standing::GivenUp => "not reached".to_owned(),
+    }
+}
+
+fn curve_in_words(curve: &LearningCurve) -> String {
+    let shape = match curve.shape {
+        Shape::Exponential => "exponential",
+        Shape::Power => "power law",
+        Shape::Flat => return format!("flat at {} s", digits(curve.asymptote_s)),
+    };
+    let plateau = match (curve.trials_to_plateau, curve.plateau_seen) {
+        (Some(trial), true) => format!("reached in trial {trial}"),
+        (Some(trial), false) => format!("not seen; expected in trial {trial}"),
+        (None, _) => "out of reach".to_owned(),
+    };
+    format!("{shape}, plateau {} s, {plateau}", digits(curve.asymptote_s))
+}
+
+/// Completion times over the trials, of the first participants.
+fn times(all: &[Learning]) -> String {
+    let known = |of: &&Learning| of.times_s.iter().flatten().count() > 1;
+    let drawn: Vec<&Learning> = all.iter().filter(known).take(DRAWN).collect();
+    if drawn.is_empty() {
+        return String::new();
+    }
+    let points = |of: &Learning| {
+        let numbered = of.times_s.iter().zip(1_u32..);
+        numbered.filter_map(|(time_s, number)| Some([f64::from(number), (*time_s)?])).collect::<Vec<_>>()
+    };
+    let series: Vec<Series> = drawn
+        .iter()
+        .enumerate()
+        .map(|(colour, of)| Series { name: of.participant.clone(), colour, style: Style::Line, points: points(of) })
+        .collect();
+    let values = |axis: usize| series.iter().flat_map(move |one| one.points.iter().map(move |point| point[axis]));
+    let chart = Chart {
+        title: "Completion time".to_owned(),
+        x: Axis::around("trial, practice first", values(0), false),
+        y: Axis::around("completion time (s)", values(1), false),
+        series: series.clone(),
+    };
+    svg(&[chart])
+}

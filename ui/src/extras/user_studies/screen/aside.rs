@@ -1,0 +1,145 @@
+//! The study beside its participants: what everybody may know, the report, the unblinding.
+
+use std::path::PathBuf;
+
+use egui::{Button, Label, RichText, Ui, vec2};
+use nima_recording::store::utc_now;
+use nima_user_study::Study;
+
+use super::{
+    field_ui,
+    list::{blindness, finished},
+};
+use crate::{
+    console::{
+        opener,
+        start::Looked,
+        theme,
+        widgets::{card, small},
+    },
+    extras::user_studies::{report, text},
+};
+
+/// The folder of the report in that of the study.
+const REPORT: &str = "report";
+
+/// State of the column.
+#[derive(Debug, Default)]
+pub(super) struct Aside {
+    name: String,
+    why: String,
+    told: Option<String>,
+    report: Looked<Result<PathBuf, String>>,
+    /// Whether a program opened the page.
+    opened: Looked<bool>,
+}
+
+impl Aside {
+    /// Draws the column.
+    pub(super) fn ui(&mut self, ui: &mut Ui, study: &mut Study) {
+        about_ui(ui, study);
+        self.report_ui(ui, study);
+        self.unblinding_ui(ui, study);
+    }
+
+    /// The report is written from the folder by a thread of its own: the statistics take some seconds.
+    fn report_ui(&mut self, ui: &mut Ui, study: &Study) {
+        card(ui, text::studies::REPORT.get(), text::studies::REPORT_HOVER.get(), |ui| {
+            let running = self.report.is_running();
+            let words = if running { text::studies::REPORT_WRITING.get() } else { text::studies::REPORT_WRITE.get() };
+            let button = Button::new(words).min_size(vec2(ui.available_width(), 32.0));
+            if ui.add_enabled(!running, button).clicked() {
+                let (folder, ctx) = (study.folder().to_owned(), ui.ctx().clone());
+                self.report.forget();
+                self.opened.forget();
+                self.report.begin(&ctx, move || {
+                    let study = Study::read(&folder).map_err(|error| error.to_string())?;
+                    report::write(&study, &folder.join(REPORT), false).map_err(|error| format!("{error:#}"))
+                });
+            }
+            let told = self.report.found().map(|found| match found {
+                Ok(page) => text::studies::report_written(page),
+                Err(why) => text::studies::report_failed(why),
+            });
+            ui.add(Label::new(small(told.unwrap_or_default())).wrap());
+            let page = self.report.found().and_then(|found| found.as_ref().ok()).cloned();
+            if let Some(page) = page.or_else(|| written_before(study).filter(|_| !running)) {
+                self.open_ui(ui, page);
+            }
+        });
+    }
+
+    /// The page in the user's program for it.
+    fn open_ui(&mut self, ui: &mut Ui, page: PathBuf) {
+        let running = self.opened.is_running();
+        let button = Button::new(text::studies::REPORT_OPEN.get()).min_size(vec2(ui.available_width(), 28.0));
+        if ui.add_enabled(!running, button).on_hover_text(page.display().to_string()).clicked() {
+            self.opened.forget();
+            self.opened.begin(ui.ctx(), move || opener::open(&page));
+        }
+        if self.opened.found() == Some(&false) {
+            ui.add(Label::new(small(text::studies::REPORT_NOT_OPENED.get())).wrap());
+        }
+    }
+
+    fn unblinding_ui(&mut self, ui: &mut Ui, study: &mut Study) {
+        let mut pressed = false;
+        card(ui, text::studies::UNBLINDING.get(), text::studies::UNBLINDING_HOVER.get(), |ui| {
+            if let Some(opened) = study.opened() {
+                let told = study.state().unblinding.as_ref();
+                let told = told.map(|by| text::studies::unblinded(&by.who, &by.at, &by.why));
+                let told = told.unwrap_or_else(|| text::studies::NOT_BLIND.get().to_owned());
+                ui.add(Label::new(small(told)).wrap());
+                for (label, name) in opened.labels() {
+                    ui.add(
+                        Label::new(RichText::new(text::studies::stands_for(label, name)).font(theme::strong(14.0)))
+                            .wrap(),
+                    );
+                }
+                return;
+            }
+            field_ui(ui, text::studies::UNBLIND_NAME.get(), &mut self.name);
+            field_ui(ui, text::studies::UNBLIND_WHY.get(), &mut self.why);
+            if finished(study) < study.plan().participants.len() {
+                ui.add(Label::new(small(text::studies::UNBLIND_EARLY.get())).wrap());
+            }
+            let complete = !self.name.trim().is_empty() && !self.why.trim().is_empty();
+            let button = Button::new(text::studies::UNBLIND.get()).min_size(vec2(ui.available_width(), 32.0));
+            pressed = ui.add_enabled(complete, button).clicked();
+            if let Some(told) = &self.told {
+                ui.add(Label::new(told).wrap());
+            }
+        });
+        if pressed {
+            self.told = study.unblind(&self.name, &self.why, &utc_now()).err().map(|error| error.to_string());
+        }
+    }
+}
+
+/// The report that was written last.
+fn written_before(study: &Study) -> Option<PathBuf> {
+    let page = study.folder().join(REPORT).join(report::PAGE);
+    page.is_file().then_some(page)
+}
+
+fn about_ui(ui: &mut Ui, study: &Study) {
+    let (plan, state) = (study.plan(), study.state());
+    card(ui, text::studies::ABOUT.get(), text::studies::ABOUT_HOVER.get(), |ui| {
+        ui.add(Label::new(RichText::new(&plan.name).font(theme::strong(15.0))).wrap());
+        let (count, blind) = (plan.participants.len(), blindness(study));
+        let facts = text::studies::facts(&plan.rig, finished(study), count, state.results(), blind);
+        ui.add(Label::new(facts).wrap());
+        if state.is_simulated() {
+            ui.add(Label::new(small(text::studies::SIMULATED.get())).wrap());
+        }
+        ui.add(Label::new(small(study.folder().display().to_string())).wrap());
+        ui.add_space(4.0);
+        ui.label(small(text::studies::COMMITMENT.get())).on_hover_text(text::studies::COMMITMENT_HOVER.get());
+        ui.add(Label::new(RichText::new(&plan.commitment).monospace().size(11.0)).wrap())
+            .on_hover_text(text::studies::COMMITMENT_HOVER.get());
+        let copy = Button::new(text::studies::COPY.get()).min_size(vec2(ui.available_width(), 28.0));
+        if ui.add(copy).on_hover_text(text::studies::COMMITMENT_HOVER.get()).clicked() {
+            ui.ctx().copy_text(plan.commitment.clone());
+        }
+    });
+}

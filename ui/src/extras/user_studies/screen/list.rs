@@ -1,0 +1,171 @@
+//! The studies of the user's data folder, and others that were opened here before.
+
+use std::path::{Path, PathBuf};
+
+use egui::{Button, Label, RichText, Ui, vec2};
+use nima_recording::store::utc_now;
+use nima_user_study::{Step, Study};
+
+use super::{column, field_ui};
+use crate::{
+    console::{
+        theme,
+        widgets::{card, next_button, small, weak},
+    },
+    extras::user_studies::text,
+};
+
+/// The folder of studies among the user's data.
+const FOLDER: &str = "studies";
+const PLAN: &str = "study.toml";
+const BUTTON: egui::Vec2 = vec2(150.0, 36.0);
+
+/// State of the page.
+#[derive(Debug, Default)]
+pub(super) struct List {
+    rows: Vec<Row>,
+    /// The folder that the user wrote.
+    other: String,
+    told: Option<String>,
+}
+
+#[derive(Debug)]
+struct Row {
+    folder: PathBuf,
+    name: String,
+    about: Result<String, String>,
+}
+
+/// What was chosen.
+pub(super) enum Done {
+    Back,
+    New,
+    Open(Box<Study>),
+}
+
+/// The folder of studies.
+pub(super) fn folder_of(data: &Path) -> PathBuf {
+    data.join(FOLDER)
+}
+
+/// Whether the list finds this folder by itself.
+pub(super) fn is_in(data: Option<&Path>, folder: &Path) -> bool {
+    data.is_some_and(|data| folder.parent() == Some(&folder_of(data)))
+}
+
+impl List {
+    /// Reads the list anew.
+    pub(super) fn read(&mut self, data: Option<&Path>, known: &[PathBuf]) {
+        let entries = data.map(folder_of).and_then(|folder| std::fs::read_dir(folder).ok());
+        let mut folders: Vec<PathBuf> = entries.into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+        folders.retain(|folder| folder.join(PLAN).is_file());
+        folders.sort();
+        folders.extend(known.iter().cloned());
+        self.rows = folders.into_iter().map(Row::of).collect();
+        self.told = data.is_none().then(|| text::studies::NO_FOLDER.get().to_owned());
+    }
+
+    fn open(&mut self, folder: &Path) -> Option<Done> {
+        match Study::open(folder, &utc_now()) {
+            Ok(study) => Some(Done::Open(Box::new(study))),
+            Err(error) => {
+                self.told = Some(error.to_string());
+                None
+            }
+        }
+    }
+
+    /// Draws the page.
+    pub(super) fn ui(&mut self, ui: &mut Ui) -> Option<Done> {
+        let (mut done, mut wanted) = (None, None);
+        ui.horizontal(|ui| {
+            if ui.add(Button::new(text::studies::BACK.get()).min_size(BUTTON)).clicked() {
+                done = Some(Done::Back);
+            }
+            ui.label(RichText::new(text::studies::OPEN.get()).font(theme::strong(19.0)));
+        });
+        // A line of its own, so that what is below never moves.
+        ui.add(Label::new(weak(self.told.clone().unwrap_or_default())).wrap());
+        ui.add_space(4.0);
+        let (room, gap) = (ui.available_size(), theme::GAP);
+        ui.horizontal_top(|ui| {
+            ui.spacing_mut().item_spacing.x = gap;
+            column(ui, "studies", vec2(0.62 * room.x - gap, room.y), |ui| {
+                card(ui, text::studies::YOURS.get(), text::studies::YOURS_HOVER.get(), |ui| {
+                    if self.rows.is_empty() {
+                        ui.label(weak(text::studies::NONE.get()));
+                    }
+                    for row in &self.rows {
+                        if row.ui(ui) {
+                            wanted = Some(row.folder.clone());
+                        }
+                    }
+                });
+            });
+            column(ui, "new", vec2(0.38 * room.x, room.y), |ui| {
+                let name = RichText::new(text::studies::NEW.get()).font(theme::strong(17.0));
+                let button = next_button(name, self.rows.is_empty()).min_size(vec2(ui.available_width(), 44.0));
+                if ui.add(button).on_hover_text(text::study_form::READY_HOVER.get()).clicked() {
+                    done = Some(Done::New);
+                }
+                ui.add_space(theme::GAP);
+                card(ui, text::studies::OTHER.get(), text::studies::YOURS_HOVER.get(), |ui| {
+                    field_ui(ui, text::studies::OTHER_FOLDER.get(), &mut self.other);
+                    let written = !self.other.trim().is_empty();
+                    let button =
+                        Button::new(text::studies::OTHER_OPEN.get()).min_size(vec2(ui.available_width(), 32.0));
+                    if ui.add_enabled(written, button).clicked() {
+                        wanted = Some(PathBuf::from(self.other.trim()));
+                    }
+                });
+            });
+        });
+        done.or_else(|| self.open(&wanted?))
+    }
+}
+
+impl Row {
+    fn of(folder: PathBuf) -> Self {
+        match Study::read(&folder) {
+            Ok(study) => Self { name: study.plan().name.clone(), about: Ok(standing(&study)), folder },
+            Err(error) => Self { name: folder.display().to_string(), about: Err(error.to_string()), folder },
+        }
+    }
+
+    /// Returns true when it is to be opened.
+    fn ui(&self, ui: &mut Ui) -> bool {
+        ui.add_space(2.0);
+        ui.add(Label::new(RichText::new(&self.name).font(theme::strong(15.0))).wrap());
+        let mut clicked = false;
+        ui.horizontal(|ui| {
+            let button = Button::new(text::studies::OPEN_THIS.get()).min_size(vec2(74.0, 28.0));
+            let response = ui.add_enabled(self.about.is_ok(), button);
+            let name = text::studies::open_named(&self.name);
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, self.about.is_ok(), &name));
+            clicked = response.clicked();
+            let about = self.about.as_ref().unwrap_or_else(|why| why);
+            ui.vertical(|ui| {
+                ui.add(Label::new(about).wrap());
+                ui.add(Label::new(small(self.folder.display().to_string())).wrap());
+            });
+        });
+        ui.add_space(6.0);
+        clicked
+    }
+}
+
+/// Those who have finished, or are excluded.
+pub(super) fn finished(study: &Study) -> usize {
+    let (plan, state) = (study.plan(), study.state());
+    plan.participants.iter().filter(|one| matches!(state.next(plan, one), Step::Done { .. })).count()
+}
+
+/// Whether it is blind, in a word.
+pub(super) fn blindness(study: &Study) -> &'static str {
+    text::studies::blindness(study.plan().blind, study.state().unblinding.is_some())
+}
+
+fn standing(study: &Study) -> String {
+    let participants = study.plan().participants.len();
+    text::studies::standing(finished(study), participants, study.state().results(), blindness(study))
+}

@@ -1,0 +1,235 @@
+//! User studies in the window: the list of studies, the form of a new one, the experimenter's page, and a participant's trials, breaks and
+//! questionnaires.
+//!
+//! Of a blind study nothing here shows a mode, a gain or a delay: the form of a new study knows them and is dropped when the study is made,
+//! and a trial hands its condition to the loop alone. While a trial runs the window shows [`trial`] and nothing else.
+
+mod aside;
+mod curve;
+mod desk;
+mod draft;
+mod form;
+mod list;
+mod measures;
+mod questions;
+mod rest;
+mod trial;
+
+use std::path::Path;
+
+use egui::{Align, CentralPanel, Frame, Layout, Margin, Response, ScrollArea, TextEdit, Ui, vec2};
+use nima_machine::config::RigConfig;
+use nima_recording::store::utc_now;
+use nima_user_study::Study;
+
+use crate::{
+    console::{
+        chain,
+        page::{Broken, Closed, Now, Page, Prepared, Room, Run, Wish},
+        start::Choice,
+    },
+    extras::user_studies::{study, text},
+};
+use desk::{Desk, Hand};
+use trial::Trial;
+
+/// The pages, and the study that is open.
+#[derive(Debug, Default)]
+pub(super) struct Studies {
+    is_shown: bool,
+    list: list::List,
+    form: Option<form::Form>,
+    desk: Option<Desk>,
+    trial: Option<Trial>,
+    /// A trial that begins as soon as the rig of the study runs.
+    wanted: Option<Wanted>,
+    /// What ran before the study.
+    before: Option<Choice>,
+}
+
+/// A trial that is to begin.
+#[derive(Clone, Debug)]
+struct Wanted {
+    participant: String,
+    hand: Hand,
+    /// The rig of the study was started for it.
+    is_starting: bool,
+}
+
+/// What the page of a study is left for.
+#[derive(Debug)]
+enum Leaves {
+    /// Begin the next trial of this participant.
+    Trial(String, Hand),
+    /// The study was closed.
+    Closed,
+}
+
+impl Studies {
+    fn take_study(&mut self, study: Study, told: Option<String>, room: &mut Room<'_>) {
+        let folder = study.folder().to_owned();
+        if !list::is_in(room.folder, &folder) && !room.known.contains(&folder) {
+            room.known.push(folder);
+        }
+        self.desk = Some(Desk::new(study, told));
+        self.form = None;
+    }
+
+    /// Draws the list, the form, or the study that is open.
+    fn page_ui(&mut self, ui: &mut Ui, mut room: Room<'_>) -> Option<Leaves> {
+        if let Some(desk) = &mut self.desk {
+            let closed = if room.is_over_a_line { Some(text::studies::NOT_OVER_A_LINE.get()) } else { room.closed };
+            let starting = room.is_starting || self.wanted.is_some();
+            let leaves = desk.ui(ui, closed, starting);
+            if matches!(leaves, Some(Leaves::Closed)) {
+                self.desk = None;
+                self.list.read(room.folder, room.known);
+            }
+            return leaves;
+        }
+        if let Some(form) = &mut self.form {
+            match form.ui(ui, room.folder) {
+                Some(form::Done::Back) => self.form = None,
+                Some(form::Done::Made(study)) => {
+                    let told = text::study_form::made(study.folder());
+                    self.take_study(*study, Some(told), &mut room);
+                }
+                None => {}
+            }
+            return None;
+        }
+        match self.list.ui(ui) {
+            Some(list::Done::Back) => self.is_shown = false,
+            Some(list::Done::New) => self.form = form::Form::new(),
+            Some(list::Done::Open(study)) => self.take_study(*study, None, &mut room),
+            None => {}
+        }
+        None
+    }
+
+    /// A trial begins when the rig of its study runs.
+    fn begin(&mut self, now: &Now<'_>) -> Option<Wish> {
+        let wanted = self.wanted.as_mut().filter(|_| !now.is_starting)?;
+        let Some(desk) = &mut self.desk else {
+            self.wanted = None;
+            return None;
+        };
+        let scene = study::scene_file(&desk.study).display().to_string();
+        let choice = Choice { rig: desk.study.plan().rig.clone(), scene };
+        if *now.running == choice {
+            return Some(Wish::Run);
+        }
+        if wanted.is_starting {
+            self.wanted = None;
+            desk.told = Some(text::studies::NOT_STARTED.get().to_owned());
+            return None;
+        }
+        wanted.is_starting = true;
+        self.before.get_or_insert_with(|| now.running.clone());
+        Some(Wish::Start(choice))
+    }
+}
+
+impl Page for Studies {
+    fn name(&self) -> [&'static str; 2] {
+        [text::studies::OPEN.get(), text::studies::OPEN_HOVER.get()]
+    }
+
+    fn is_shown(&self) -> bool {
+        self.is_shown
+    }
+
+    fn show(&mut self, folder: Option<&Path>, known: &[std::path::PathBuf]) {
+        self.is_shown = true;
+        self.list.read(folder, known);
+    }
+
+    fn hide(&mut self) {
+        self.is_shown = false;
+    }
+
+    fn holds_machine(&self) -> bool {
+        self.desk.is_some()
+    }
+
+    fn ui(&mut self, ui: &mut Ui, room: Room<'_>) -> Option<Closed> {
+        let frame = Frame::new().inner_margin(Margin::symmetric(14, 12));
+        let leaves = CentralPanel::default().frame(frame).show(ui, |ui| self.page_ui(ui, room)).inner?;
+        match leaves {
+            Leaves::Trial(participant, hand) => {
+                self.wanted = Some(Wanted { participant, hand, is_starting: false });
+                None
+            }
+            Leaves::Closed => Some(Closed(self.before.take())),
+        }
+    }
+
+    fn go_on(&mut self, now: &Now<'_>) -> Option<Wish> {
+        let Some(trial) = &mut self.trial else { return self.begin(now) };
+        if let Some(why) = now.ended {
+            trial.break_off(why);
+            return Some(Wish::End { again: why == Broken::LoopEnded });
+        }
+        (trial.is_over() && !now.is_latched).then_some(Wish::End { again: true })
+    }
+
+    fn tell(&mut self, why: Option<String>) {
+        self.wanted = None;
+        if let Some(desk) = &mut self.desk {
+            desk.told = why;
+        }
+    }
+
+    fn prepare(&mut self) -> Result<Prepared, String> {
+        let (Some(desk), Some(wanted)) = (&mut self.desk, self.wanted.take()) else {
+            return Err(text::studies::NOT_STARTED.get().to_owned());
+        };
+        let participant = wanted.participant.as_str();
+        let of = &mut desk.study;
+        let rig = RigConfig::load(&of.plan().rig).map_err(|error| chain(&error))?;
+        let hand = study::plain_hand(of, participant).map_err(|error| format!("{error:#}"))?;
+        let (scene, task) = study::scene_for(of, &rig, &hand).map_err(|error| format!("{error:#}"))?;
+        let running = of.begin_trial(participant, wanted.hand.is_simulated(), &utc_now());
+        let running = running.map_err(|error| error.to_string())?;
+        // Why a rig does not allow a condition would tell it.
+        let rig = study::under(rig, running.condition()).ok();
+        let trial = Trial::new(participant, running, task, wanted.hand, of.plan().trials_of_each());
+        let is_by_mouse = trial.is_by_mouse();
+        self.trial = Some(trial);
+        Ok(Prepared { rig, scene, is_by_mouse })
+    }
+
+    fn run(&self) -> Option<&dyn Run> {
+        self.trial.as_ref().map(|trial| trial as &dyn Run)
+    }
+
+    fn run_mut(&mut self) -> Option<&mut (dyn Run + 'static)> {
+        self.trial.as_mut().map(|trial| trial as &mut dyn Run)
+    }
+
+    fn finish_run(&mut self) {
+        if let (Some(trial), Some(desk)) = (self.trial.take(), &mut self.desk) {
+            desk.finish(trial);
+        }
+    }
+}
+
+/// A column of this size that scrolls.
+fn column<R>(ui: &mut Ui, name: &str, size: egui::Vec2, content: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
+        let area = ScrollArea::vertical().id_salt(name).auto_shrink(false).max_height(size.y);
+        area.show(ui, |ui| {
+            ui.set_width(size.x - 12.0);
+            content(ui)
+        })
+        .inner
+    })
+    .inner
+}
+
+/// A field with its name above it.
+fn field_ui(ui: &mut Ui, name: &str, value: &mut String) -> Response {
+    let label = ui.label(crate::console::widgets::small(name));
+    let field = TextEdit::singleline(value).char_limit(200);
+    ui.add_sized(vec2(ui.available_width(), 26.0), field).labelled_by(label.id)
+}

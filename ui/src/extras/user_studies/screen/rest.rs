@@ -1,0 +1,69 @@
+//! A participant's break.
+
+use std::time::{Duration, Instant};
+
+use egui::{Align, Button, Layout, RichText, Ui, vec2};
+
+use crate::{
+    console::{
+        theme,
+        widgets::{next_button, small, weak},
+    },
+    extras::user_studies::text,
+};
+
+/// The clock on the screen goes on so often.
+const AGAIN: Duration = Duration::from_millis(250);
+
+/// A break that has begun.
+#[derive(Debug)]
+pub(super) struct Rest {
+    began: Instant,
+    least_s: f64,
+}
+
+/// What was chosen.
+pub(super) enum Done {
+    /// Back to the experimenter's page: the break did not happen.
+    Back,
+    /// It lasted so long, s.
+    Over(f64),
+}
+
+impl Rest {
+    pub(super) fn begin(least_s: f64) -> Self {
+        Self { began: Instant::now(), least_s }
+    }
+
+    /// Draws the page.
+    pub(super) fn ui(&self, ui: &mut Ui) -> Option<Done> {
+        let seconds = self.began.elapsed().as_secs_f64();
+        let left_s = self.least_s - seconds;
+        let mut done = None;
+        ui.ctx().request_repaint_after(AGAIN);
+        ui.add_space(0.25 * ui.available_height());
+        ui.with_layout(Layout::top_down(Align::Center), |ui| {
+            ui.label(RichText::new(text::studies::BREAK.get()).font(theme::strong(34.0)));
+            let words = if left_s > 0.0 {
+                text::studies::clock(left_s.ceil())
+            } else {
+                text::studies::BREAK_OVER.get().to_owned()
+            };
+            ui.label(RichText::new(words).font(theme::strong(46.0)));
+            let least = text::studies::break_least(self.least_s);
+            ui.label(weak(if left_s > 0.0 { least.as_str() } else { text::studies::BREAK_MAY_END.get() }));
+            ui.add_space(24.0);
+            let end = RichText::new(text::studies::BREAK_END.get()).font(theme::strong(17.0));
+            let button = next_button(end, left_s <= 0.0).min_size(vec2(220.0, 48.0));
+            if ui.add_enabled(left_s <= 0.0, button).clicked() {
+                done = Some(Done::Over(seconds));
+            }
+            ui.add_space(8.0);
+            if ui.add(Button::new(text::studies::BACK.get()).min_size(vec2(220.0, 36.0))).clicked() {
+                done = Some(Done::Back);
+            }
+            ui.label(small(text::studies::BREAK_BACK.get()));
+        });
+        done
+    }
+}

@@ -1,0 +1,238 @@
+//! A trial in the window: what the loop does is scored, and the participant sees the field, the task, the time and the label. Nothing else is
+//! on the screen but alarms and stop.
+
+use egui::{Align, Button, CentralPanel, Frame, Label, Layout, Margin, Panel, RichText, Ui, vec2};
+use nima_endoscope::Reel;
+use nima_machine::{
+    config::SchedulingClass,
+    messages::{LoopState, Tick},
+    rig::SIDES,
+    runtime::{self, Assembly, Clock},
+};
+use nima_score::TaskFile;
+use nima_session::{
+    outlet::{Audience, Destination},
+    recorder::Recorder,
+};
+use nima_simulation::{Plan, Watched};
+use nima_user_study::{Phase, Progress, Running, Study, TrialId};
+
+use super::desk::Hand;
+use crate::{
+    console::{
+        alarms,
+        app::Started,
+        chain,
+        live::Live,
+        outbox::Outbox,
+        page::{Broken, Run},
+        scene3d::{Look, SceneView, scene_ui},
+        text::top_bar,
+        theme,
+        widgets::weak,
+    },
+    extras::{
+        tasks::scoring::Scoring,
+        user_studies::{study, text},
+    },
+    objects::OfSimulation,
+    pictures, recording,
+};
+
+/// Height of the line above the field.
+const HEAD: f32 = 64.0;
+
+/// A trial that has begun.
+#[derive(Debug)]
+pub(super) struct Trial {
+    participant: String,
+    running: Running,
+    task: TaskFile,
+    hand: Hand,
+    /// Trials of a participant.
+    of: u32,
+    scoring: Option<Scoring>,
+    recorder: Option<Recorder>,
+    over: Option<Over>,
+    /// Number of the newest tick of each side, and how many did not come.
+    newest: [Option<u64>; SIDES],
+    lost: u64,
+    /// The next press on the button gives up.
+    is_asked: bool,
+}
+
+/// How it is over.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Over {
+    /// The task is done, or the time is.
+    Done,
+    /// Why it was broken off.
+    Broken(String),
+}
+
+impl Trial {
+    pub(super) fn new(participant: &str, running: Running, task: TaskFile, hand: Hand, of: u32) -> Self {
+        Self {
+            participant: participant.to_owned(),
+            running,
+            task,
+            hand,
+            of,
+            scoring: None,
+            recorder: None,
+            over: None,
+            newest: [None; SIDES],
+            lost: 0,
+            is_asked: false,
+        }
+    }
+
+    /// It is broken off, if it is not over yet.
+    fn break_off_because(&mut self, why: &str) {
+        self.over.get_or_insert_with(|| Over::Broken(why.to_owned()));
+    }
+
+    /// Whether nothing more happens in it.
+    pub(super) const fn is_over(&self) -> bool {
+        self.over.is_some()
+    }
+
+    /// The instruments are moved from the screen.
+    pub(super) fn is_by_mouse(&self) -> bool {
+        self.hand == Hand::Mouse
+    }
+
+    /// Writes down how it ended; gives that in words, and what must be noted besides. The loop must have ended.
+    pub(super) fn close(self, study: &mut Study) -> (String, Vec<String>) {
+        let Self { participant, running, scoring, recorder, over, lost, .. } = self;
+        let trial = running.trial();
+        let mut notes = Vec::new();
+        if let Some(Err(error)) = recorder.map(Recorder::finish) {
+            notes.push(text::studies::record_failed(&chain(&error)));
+        }
+        if lost > 0 {
+            notes.push(text::studies::note_lost(trial, lost));
+        }
+        let why = match over {
+            Some(Over::Done) => None,
+            Some(Over::Broken(why)) => Some(why),
+            None => Some(study::CLOSED.to_owned()),
+        };
+        let closed = study::close(study, running, why, scoring);
+        let shows = study.state().progress(&participant).is_none_or(Progress::shows_result);
+        let words = closed.map_or_else(|error| error.to_string(), |ran| alarms::sentence(&ran.in_words(shows)));
+        (words, notes)
+    }
+
+    fn head_ui(&mut self, ui: &mut Ui, live: &Live) {
+        ui.horizontal_centered(|ui| {
+            ui.vertical(|ui| {
+                ui.add_space(4.0);
+                ui.label(RichText::new(&self.task.name).font(theme::strong(17.0)));
+                ui.label(weak(text::studies::trial(self.running.trial(), self.of, self.running.label())));
+            });
+            ui.add_space(24.0);
+            let elapsed_s = self.scoring.as_ref().map_or(0.0, |scoring| scoring.trial.elapsed_s());
+            let clock = text::studies::time_of(elapsed_s, self.task.time_limit_s);
+            ui.label(RichText::new(clock).font(theme::strong(22.0)));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let words = if self.is_asked { text::studies::GIVE_UP_NOW.get() } else { text::studies::GIVE_UP.get() };
+                let button = Button::selectable(self.is_asked, words).frame_when_inactive(true);
+                let button = ui.add_enabled(self.over.is_none(), button.min_size(vec2(150.0, 36.0)));
+                if button.on_hover_text(text::studies::GIVE_UP_HOVER.get()).clicked() {
+                    if self.is_asked {
+                        self.break_off_because(study::GIVEN_UP);
+                    }
+                    self.is_asked = true;
+                }
+                ui.add_space(12.0);
+                ui.add(Label::new(state_words(live)).wrap());
+            });
+        });
+    }
+}
+
+impl Run for Trial {
+    fn participant(&self) -> &str {
+        &self.participant
+    }
+
+    fn name(&self) -> String {
+        let TrialId { phase, number, attempt } = self.running.trial();
+        let practice = if phase == Phase::Practice { " practice" } else { "" };
+        let again = if attempt > 1 { format!(" attempt {attempt}") } else { String::new() };
+        format!("{}{practice} {number}{again}", self.participant)
+    }
+
+    fn start(
+        &mut self,
+        plan: &Plan,
+        speed: Option<f64>,
+        (reel, audiences): (&Reel, Vec<Box<dyn Audience>>),
+    ) -> Result<Started, String> {
+        let to = Destination { file: self.running.session(), audiences, ..Destination::default() };
+        let is_heard = to.file.is_some() || !to.audiences.is_empty();
+        let recorded = is_heard.then(|| recording::begin(to, plan, None));
+        let (tap, recorder) = recorded.transpose().map_err(|error| chain(&error))?.unzip();
+        self.recorder = recorder;
+        if let Some(recorder) = &self.recorder {
+            pictures::film(recorder, &plan.rig, reel);
+        }
+        let (assembly, mut watched) = match speed {
+            Some(speed) => {
+                let (assembly, watched) = plan.watched().map_err(|error| chain(&error))?;
+                let scheduling = SchedulingClass::Ordinary;
+                (Assembly { clock: Clock::Simulated { speed }, scheduling, ..assembly }, watched)
+            }
+            None => plan.watched_assembly().map_err(|error| chain(&error))?,
+        };
+        if let Some((recorder, watched)) = self.recorder.as_ref().zip(watched.as_mut().and_then(Watched::another)) {
+            recorder.watch(OfSimulation::source(plan, watched));
+        }
+        self.scoring = Some(Scoring::new(&self.task, watched.as_mut().and_then(Watched::another)));
+        let handle = runtime::start(Assembly { tap, ..assembly }).map_err(|error| chain(&error))?;
+        Ok((handle, watched))
+    }
+
+    fn tick(&mut self, tick: &Tick) {
+        let Some(scoring) = self.scoring.as_mut().filter(|_| self.over.is_none()) else { return };
+        let before = self.newest[tick.side.index()].replace(tick.index);
+        self.lost += before.map_or(0, |before| tick.index.saturating_sub(before + 1));
+        scoring.tick(tick);
+        self.over = match tick.state {
+            LoopState::Faulted(fault) => Some(Over::Broken(study::ended_by(fault))),
+            LoopState::Stopped => Some(Over::Broken(study::STOPPED.to_owned())),
+            _ => scoring.trial.is_over().then_some(Over::Done),
+        };
+    }
+
+    fn break_off(&mut self, why: Broken) {
+        self.break_off_because(match why {
+            Broken::Closed => study::CLOSED,
+            Broken::LoopEnded => study::LOOP_ENDED,
+            Broken::NotStarted => study::NOT_STARTED,
+        });
+    }
+
+    fn ui(&mut self, ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Outbox) {
+        view.look = Look::Endoscope;
+        view.figures = false;
+        let frame = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 6));
+        Panel::top("trial").exact_size(HEAD).resizable(false).frame(frame).show(ui, |ui| self.head_ui(ui, live));
+        CentralPanel::no_frame().show(ui, |ui| scene_ui(ui, live, view, outbox));
+    }
+}
+
+/// What the participant does now.
+fn state_words(live: &Live) -> &'static str {
+    match live.state() {
+        _ if live.first_tick().is_none() => text::studies::STATE_STARTING.get(),
+        LoopState::Stopped | LoopState::Faulted(_) => text::studies::STATE_STOPPED.get(),
+        LoopState::Idle => text::studies::STATE_IDLE.get(),
+        LoopState::Ready => text::studies::STATE_HOLD.get(),
+        LoopState::Clutched => top_bar::CLUTCHED_MEANING.get(),
+        LoopState::Disconnected => top_bar::DISCONNECTED_MEANING.get(),
+        LoopState::Engaged if live.scene.is_searched() => text::studies::KEYS_SEARCH.get(),
+        LoopState::Engaged => "",
+    }
+}

@@ -1,0 +1,241 @@
+//! Trials of a user study in the loop: from the sealed condition to a rig, from a simulated person to a scene, from a run to a score.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, anyhow, bail};
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::{ConfigError, RigConfig, text},
+    messages::{Command, Fault, LoopState, Tick},
+    runtime::{self, Assembly, VirtualClock},
+};
+use nima_recording::store::utc_now;
+use nima_score::TaskFile;
+use nima_session::outlet::Destination;
+use nima_simulation::{Plan, Watched, scene::Scene};
+use nima_user_study::{
+    Condition, Ending, Mistakes, Phase, Running, Step, Study, StudyError, StudyFile, TrialId, simulated::Hand,
+};
+
+use crate::{extras::tasks::scoring::Scoring, leaving::Leave, objects::OfSimulation, recording, words::Remedy as _};
+
+/// Names of the ready studies.
+pub(super) const READY: [&str; 2] = ["paper", "short"];
+/// The ready study files.
+const STUDIES: [(&str, &str); 2] = [
+    ("paper", include_str!("../../../../config/studies/paper.toml")),
+    ("short", include_str!("../../../../config/studies/short.toml")),
+];
+/// Why a trial was broken off that somebody gave up, for the journal.
+pub(super) const GIVEN_UP: &str = "given up by the operator";
+/// The same for one that somebody stopped, whose loop ended, or whose window was closed.
+pub(super) const STOPPED: &str = "stopped by the operator";
+pub(super) const LOOP_ENDED: &str = "the loop ended";
+pub(super) const CLOSED: &str = "the console was closed";
+pub(super) const NOT_STARTED: &str = "the loop did not start";
+/// The loop engages within this time, s.
+const ENGAGES_S: f64 = 5.0;
+
+/// How a trial went.
+pub(super) struct Ran {
+    pub(super) trial: TrialId,
+    /// Nothing if it was broken off.
+    pub(super) ending: Option<Ending>,
+    pub(super) completion_time_s: Option<f64>,
+    /// Why it was broken off.
+    pub(super) why: Option<String>,
+}
+
+/// Reads the ready study file of this name, or a file.
+pub(super) fn study_file(name: &str) -> anyhow::Result<StudyFile> {
+    let (path, text) = text("study", name, &STUDIES)?;
+    StudyFile::from_toml(&text).with_context(|| path.display().to_string())
+}
+
+/// Everything that is wrong with a study: its file, its scene, and whether its rig allows every condition.
+pub(super) fn mistakes(file: &StudyFile) -> Vec<String> {
+    let mut wrong = file.check().err().map_or_else(Vec::new, |Mistakes(wrong)| wrong);
+    wrong.extend(scene_of(file).err().map(|error| format!("{error:#}")));
+    match RigConfig::load(&file.rig) {
+        Err(error) => wrong.push(error.to_string()),
+        Ok(rig) if wrong.is_empty() => wrong.extend(file.conditions.iter().filter_map(|condition| {
+            let error = under(rig.clone(), condition).err()?;
+            Some(format!("condition \"{}\": {error}", condition.name))
+        })),
+        Ok(_) => {}
+    }
+    wrong
+}
+
+/// Makes the folder of a study.
+pub(super) fn create(folder: &Path, file: &StudyFile) -> anyhow::Result<Study> {
+    let scene = scene_of(file)?;
+    let rig = RigConfig::load(&file.rig)?;
+    for condition in &file.conditions {
+        under(rig.clone(), condition).with_context(|| format!("condition \"{}\"", condition.name))?;
+    }
+    let scene = toml::to_string(&scene).context("the scene cannot be written")?;
+    Ok(Study::create(folder, file, &scene, &utc_now())?)
+}
+
+/// The scene of a study: with its task, and with so many rings as it asks for.
+pub(super) fn scene_of(file: &StudyFile) -> anyhow::Result<Scene> {
+    let mut scene = Scene::load(&file.scene)?;
+    if let Some(task) = &file.task {
+        scene.task = Some(task.to_scene()?);
+    }
+    if let Some(rings) = file.rings {
+        let Some(objects) = &mut scene.objects else { bail!("rings = {rings}: scene \"{}\" has none", scene.name) };
+        if objects.rings.len() < rings as usize {
+            bail!("rings = {rings}: scene \"{}\" has {}", scene.name, objects.rings.len());
+        }
+        objects.rings.truncate(rings as usize);
+    }
+    if scene.task.is_none() {
+        bail!(
+            "scene \"{}\" has no task: add a table [task] to the study file, with name, kind and time_limit_s",
+            scene.name
+        );
+    }
+    Ok(scene)
+}
+
+/// The same rig under a condition.
+pub(super) fn under(mut rig: RigConfig, condition: &Condition) -> Result<RigConfig, ConfigError> {
+    rig.delay_s = condition.delay_ms.unwrap_or(0.0) * 1e-3;
+    // Without force the cheapest mode computes what the gain then takes away.
+    rig.mode = condition.mode.unwrap_or(Mode::Dfr);
+    rig.gates.gain = if condition.no_force { 0.0 } else { condition.gain.unwrap_or(1.0) };
+    rig.identification.own_motion = condition.own_motion.unwrap_or(rig.identification.own_motion);
+    rig.validate()?;
+    Ok(rig)
+}
+
+/// The hand of the scene, with other random sequences in each trial.
+pub(super) fn plain_hand(study: &Study, participant: &str) -> anyhow::Result<Hand> {
+    let scene = scene_in(study)?;
+    // Trials and interruptions, so that a repetition is not the same.
+    let of = study.state().progress(participant).map_or(0, |one| u64::from(one.interruptions));
+    let seed = scene.seed.wrapping_add(u64::from(made(study, participant).0) + 1000 * of);
+    let nima_simulation::scene::Hand { pace, tremor_m, intended_n, .. } = scene.hand;
+    Ok(Hand { pace, tremor_m, intended_n, seed })
+}
+
+/// Trials that a participant has made, practice included; all, and since the last break.
+pub(super) fn made(study: &Study, participant: &str) -> (u32, u32) {
+    let progress = study.state().progress(participant);
+    progress.map_or((0, 0), |one| ((one.practice_s.len() + one.trials.len()) as u32, one.since_break()))
+}
+
+fn scene_in(study: &Study) -> anyhow::Result<Scene> {
+    Ok(Scene::parse(&scene_file(study), study.scene())?)
+}
+
+/// The scene file of a study.
+pub(super) fn scene_file(study: &Study) -> PathBuf {
+    study.folder().join("scene.toml")
+}
+
+/// The scene for a trial on this rig, with this hand and its random sequences, and its task.
+pub(super) fn scene_for(study: &Study, rig: &RigConfig, hand: &Hand) -> anyhow::Result<(Scene, TaskFile)> {
+    let mut scene = scene_in(study)?;
+    (scene.hand.pace, scene.hand.tremor_m, scene.seed) = (hand.pace, hand.tremor_m, hand.seed);
+    scene.hand.intended_n = hand.intended_n;
+    let task = TaskFile::of(scene.task.as_ref().context("the scene of the study has no task")?)?;
+    Ok((scene.mounted_at(rig)?, task))
+}
+
+/// Writes down how a trial ended; `why` it was broken off, if it was.
+pub(super) fn close(
+    study: &mut Study,
+    running: Running,
+    why: Option<String>,
+    scoring: Option<Scoring>,
+) -> Result<Ran, StudyError> {
+    let trial = running.trial();
+    let score = scoring.and_then(Scoring::end);
+    let ended = score.as_ref().and_then(|score| Some((Ending::of(score.outcome())?, score)));
+    match (why, ended) {
+        (None, Some((ending, score))) => {
+            study.end_trial(running, ending, score, &utc_now())?;
+            let completion_time_s = score.value("completion_time_s");
+            Ok(Ran { trial, ending: Some(ending), completion_time_s, why: None })
+        }
+        (why, _) => {
+            let why = why.unwrap_or_else(|| "the loop was never engaged".to_owned());
+            study.abort_trial(running, &why, &utc_now())?;
+            Ok(Ran { trial, ending: None, completion_time_s: None, why: Some(why) })
+        }
+    }
+}
+
+/// Why a trial was broken off by a fault, for the journal.
+pub(super) fn ended_by(fault: Fault) -> String {
+    format!("the loop ended in a fault: {}", fault.cause())
+}
+
+/// Runs the trial that comes next, in the simulated rig on the virtual clock, by a simulated hand. `what` it was, it tells; under which
+/// condition it does not.
+pub(super) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, leave: &Leave) -> anyhow::Result<Ran> {
+    let rig = RigConfig::load(&study.plan().rig)?;
+    if !rig.has_simulated_hand() {
+        bail!("rig \"{}\" has devices, which need the real clock: --virtual is for simulated rigs", rig.name);
+    }
+    let (scene, task) = scene_for(study, &rig, hand)?;
+    let mut plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    if !plan.may_engage() {
+        bail!("scene \"{}\" cannot be engaged: the force at its tip is not known", plan.scene.name);
+    }
+    let running = study.begin_trial(participant, true, &utc_now())?;
+    // The reason would tell the condition. A rig that was changed since `new` is the only one.
+    plan.rig = under(plan.rig, running.condition())
+        .map_err(|_| anyhow!("the rig of the study does not allow this condition any more: was its file changed?"))?;
+    let recorded =
+        running.session().map(|file| recording::begin(Destination::file(file), &plan, Some(VirtualClock::PERFECT)));
+    let (tap, recorder) = recorded.transpose()?.unzip();
+    let (assembly, mut watched) = plan.watched()?;
+    if let Some((recorder, watched)) = recorder.as_ref().zip(watched.as_mut().and_then(Watched::another)) {
+        recorder.watch(OfSimulation::source(&plan, watched));
+    }
+    let mut scoring = Scoring::new(&task, watched);
+    let mut fault = None;
+    let each = |tick: &Tick| {
+        scoring.tick(tick);
+        if let LoopState::Faulted(found) = tick.state {
+            fault.get_or_insert(found);
+        }
+        (scoring.trial.is_over() || fault.is_some() || leave.is_asked()).then_some(Command::Shutdown)
+    };
+    runtime::run_virtual(Assembly { tap, ..assembly }, task.time_limit_s + ENGAGES_S, each);
+    recorder.map_or(Ok(()), |mut recorder| {
+        recorder.end();
+        recorder.finish().map(drop)
+    })?;
+    let why = match (fault, leave.is_asked()) {
+        (_, true) => Some(GIVEN_UP.to_owned()),
+        (Some(fault), _) => Some(ended_by(fault)),
+        _ => None,
+    };
+    Ok(close(study, running, why, Some(scoring))?)
+}
+
+impl Ran {
+    /// In words, without the condition; and without the result, unless it is shown.
+    pub(super) fn in_words(&self, shows_result: bool) -> String {
+        let Self { trial, ending, completion_time_s, why } = self;
+        let what = if trial.phase == Phase::Practice { "practice trial" } else { "trial" };
+        let how = match (ending, completion_time_s, why) {
+            (Some(_), ..) if !shows_result => "over (this time without its result)".to_owned(),
+            (_, Some(time_s), _) => format!("completed in {time_s:.1} s"),
+            (Some(Ending::OutOfTime), ..) => "the time is over".to_owned(),
+            (.., Some(why)) => format!("broken off ({why})"),
+            _ => "ended".to_owned(),
+        };
+        format!("{what} {}: {how}", trial.number)
+    }
+}
+
+/// What comes next, for a sentence.
+pub(super) fn next_in_words(step: &Step) -> String {
+    format!("next: {step}")
+}

@@ -1,0 +1,124 @@
+//! The three rings of the workspace: the product names neither what proves it nor an extra, and an extra names no other one in silence.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use toml::{Table, Value};
+
+/// Where a crate belongs, by its folder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Ring {
+    /// Ring 1.
+    Product,
+    /// Ring 2.
+    Lab,
+    /// Ring 3, by the name of its folder.
+    Extra(String),
+    /// The program and the tests across crates, which put the rings together.
+    Around,
+}
+
+impl Ring {
+    fn of(folder: &str) -> Self {
+        match folder.split('/').collect::<Vec<_>>()[..] {
+            ["src", "lab", _] => Self::Lab,
+            ["src", "extras", name] => Self::Extra(name.to_owned()),
+            ["src", ..] => Self::Product,
+            _ => Self::Around,
+        }
+    }
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
+}
+
+fn manifest(folder: &Path) -> Table {
+    std::fs::read_to_string(folder.join("Cargo.toml")).unwrap().parse().unwrap()
+}
+
+/// What a manifest names anywhere, for tests and for one system too.
+fn named(manifest: &Table) -> Vec<String> {
+    let mut all = Vec::new();
+    for (key, value) in manifest {
+        match (key.as_str(), value) {
+            ("dependencies" | "dev-dependencies" | "build-dependencies", Value::Table(named)) => {
+                all.extend(named.keys().cloned());
+            }
+            ("target", Value::Table(systems)) => {
+                all.extend(systems.values().filter_map(Value::as_table).flat_map(named));
+            }
+            _ => {}
+        }
+    }
+    all
+}
+
+/// Why this crate must not name that one; `readme` is that of an extra.
+fn fault(from: &Ring, to: &Ring, readme: &str) -> Option<String> {
+    match (from, to) {
+        (Ring::Product, Ring::Lab | Ring::Extra(_) | Ring::Around) => Some("the product names another ring".to_owned()),
+        (Ring::Extra(_), Ring::Lab | Ring::Around) => Some("an extra stands on the product alone".to_owned()),
+        (Ring::Extra(_), Ring::Extra(other)) => {
+            let says = |line: &str| line.starts_with("| other extras |") && line.contains(&format!("`{other}`: "));
+            (!readme.lines().any(says)).then(|| format!("its README does not say why it uses the extra `{other}`"))
+        }
+        _ => None,
+    }
+}
+
+/// Every crate of the workspace by its name: folder and manifest.
+fn crates() -> BTreeMap<String, (String, Table)> {
+    let workspace = manifest(&root());
+    let members = workspace["workspace"]["members"].as_array().unwrap();
+    let of = |folder: &Value| {
+        let folder = folder.as_str().unwrap().to_owned();
+        let manifest = manifest(&root().join(&folder));
+        (manifest["package"]["name"].as_str().unwrap().to_owned(), (folder, manifest))
+    };
+    members.iter().map(of).collect()
+}
+
+#[test]
+fn no_crate_names_one_of_a_ring_that_it_must_not_know() {
+    let crates = crates();
+    let (mut faults, mut edges) = (Vec::new(), 0);
+    for (name, (folder, manifest)) in &crates {
+        let ring = Ring::of(folder);
+        let readme = std::fs::read_to_string(root().join(folder).join("README.md")).unwrap_or_default();
+        if ring == Ring::Extra(folder.rsplit('/').next().unwrap_or_default().to_owned()) && readme.is_empty() {
+            faults.push(format!("{folder} has no README.md"));
+        }
+        for (other, (to, _)) in named(manifest).iter().filter_map(|other| crates.get_key_value(other)) {
+            edges += 1;
+            faults.extend(fault(&ring, &Ring::of(to), &readme).map(|why| format!("{name} names {other}: {why}")));
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    assert!(edges > 80, "{edges} edges among {} crates", crates.len());
+}
+
+#[test]
+fn what_it_must_not_know_is_found() {
+    let [score, network] = ["score", "network"].map(|name| Ring::Extra(name.to_owned()));
+    let readme = "| other extras | `score`: practice goes by it |";
+    for (from, to, is_wrong) in [
+        (&Ring::Product, &Ring::Product, false),
+        (&Ring::Product, &Ring::Lab, true),
+        (&Ring::Product, &network, true),
+        (&Ring::Lab, &Ring::Product, false),
+        (&network, &Ring::Product, false),
+        (&network, &Ring::Lab, true),
+        (&network, &score, false),
+        (&score, &network, true),
+    ] {
+        assert_eq!(fault(from, to, readme).is_some(), is_wrong, "{from:?} to {to:?}");
+    }
+    let table: Table =
+        "[dependencies]\na.workspace = true\n[target.'cfg(unix)'.dev-dependencies]\nb = '1'".parse().unwrap();
+    assert_eq!(named(&table), ["a", "b"]);
+    assert_eq!(Ring::of("src/lab/study"), Ring::Lab);
+    assert_eq!(Ring::of("src/extras/score"), score);
+}

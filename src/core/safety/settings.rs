@@ -154,7 +154,7 @@ impl ChainSettings {
 }
 
 /// Widest dead band that can be chosen, m/s.
-pub(super) const DEAD_BAND_MAX_M_S: f64 = 0.1;
+pub const DEAD_BAND_MAX_M_S: f64 = 0.1;
 
 #[cfg(test)]
 mod tests {

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use nima_core::{
     impedance::{MAX_DELAY_S, Mode},
-    safety::{Change, MAX_GAIN, Wish},
+    safety::{Change, DEAD_BAND_MAX_M_S, MAX_GAIN, Wish},
 };
 
 use super::Pair;
@@ -13,9 +13,6 @@ use crate::{
     rig::{GRIP_MAX_RAD, GUIDE_MAX_M, Identified, Prompt},
     teleop::Link,
 };
-
-/// Highest speed of the dead band, m/s.
-const DEAD_BAND_MAX_M_S: f64 = 0.1;
 
 impl<L: Link> Pair<L> {
     /// Carries out one command, or returns why it cannot. [`Command::Shutdown`] is handled by the runtime.

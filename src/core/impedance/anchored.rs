@@ -7,12 +7,14 @@
 //! reflection) is always among the experts, as the part of the weights that is missing to one.
 
 use super::{
+    Mode,
     envelope::Envelope,
-    messages::{AnchoredModel, clip},
+    messages::{AnchoredModel, Parcel, Report, clip},
+    method::{Method, Seen},
     mixture::Mixture,
     regression::{LENGTHS, NESTED, RIDGES, Regression, Solutions, predict},
     regressors::{Background, REGRESSORS, Regressors, Stance, Surroundings, at},
-    settings::{MAX_DELAY_S, Settings},
+    settings::{MAX_DELAY_S, ModeSet, Settings},
 };
 use crate::signal::{DelayLine, Lanes, settled};
 
@@ -46,6 +48,7 @@ pub(super) struct Anchored {
     mixture: Mixture<EXPERTS>,
     largest_change_n: f64,
     envelope: Envelope,
+    /// How often the regressions had to begin anew because a number was not finite.
     restarts: u64,
 }
 
@@ -80,7 +83,7 @@ impl Anchored {
 
     /// Takes the follower's newest motion and force; `good`: the sample was measured, not bridged; `learn`: there is something to
     /// learn from.
-    pub(super) fn step(&mut self, stance: &Stance, force_n: Lanes, good: bool, learn: bool) -> AnchoredModel {
+    fn step(&mut self, stance: &Stance, force_n: Lanes, good: bool, learn: bool) -> AnchoredModel {
         let d = self.delay_ticks;
         let usual = (self.tick > 2 * d).then(|| self.regression.mean_squares());
         let background = self.surroundings.step(stance, force_n, usual);
@@ -215,25 +218,6 @@ impl Anchored {
         }
     }
 
-    /// How often the regressions had to begin anew because a number was not finite.
-    pub(super) fn restarts(&self) -> u64 {
-        self.restarts
-    }
-
-    /// Learns and judges at another delay from now on; what was learnt at the old one is forgotten.
-    pub(super) fn set_delay(&mut self, delay_ticks: usize) {
-        if delay_ticks != self.delay_ticks {
-            self.delay_ticks = delay_ticks;
-            self.forget();
-        }
-    }
-
-    pub(super) fn reset(&mut self) {
-        self.surroundings.reset();
-        self.restarts = 0;
-        self.forget();
-    }
-
     fn forget(&mut self) {
         self.tick = 0;
         self.regression.reset();
@@ -242,6 +226,35 @@ impl Anchored {
         self.mixture.reset();
         self.largest_change_n = 0.0;
         self.envelope.reset();
+    }
+}
+
+impl Method for Anchored {
+    fn serves(&self, modes: ModeSet) -> bool {
+        modes.contains(Mode::Anchored)
+    }
+
+    fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, report: &mut Report) {
+        parcel.anchored = self.step(&seen.posture.stance, seen.force_n, seen.good, seen.learn);
+        if seen.learn {
+            report.degree = parcel.anchored.degree;
+            report.gain = parcel.anchored.gain;
+            report.restarts = self.restarts;
+        }
+    }
+
+    /// What was learnt at the old delay is forgotten.
+    fn set_delay(&mut self, delay_ticks: usize) {
+        if delay_ticks != self.delay_ticks {
+            self.delay_ticks = delay_ticks;
+            self.forget();
+        }
+    }
+
+    fn reset(&mut self) {
+        self.surroundings.reset();
+        self.restarts = 0;
+        self.forget();
     }
 }
 

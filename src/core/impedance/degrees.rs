@@ -1,11 +1,13 @@
 //! The degrees of the window's impedance, shown beside the paper's where modes are compared; nothing is rendered from them.
 
 use super::{
+    Mode,
     factor::{Factor, MAX_ROW},
     horizon::Horizon,
     information::{excitation, rank},
-    messages::{Posture, Report, active},
-    settings::Settings,
+    messages::{Parcel, Report, active},
+    method::{Method, Seen},
+    settings::{ModeSet, Settings},
     solution::Solution,
     window::SlidingWindow,
 };
@@ -18,6 +20,7 @@ pub(super) struct Degrees {
     ridge: f64,
     solution: Solution,
     horizon: Horizon,
+    settings: Settings,
 }
 
 impl Degrees {
@@ -29,51 +32,55 @@ impl Degrees {
             ridge,
             solution: Solution::new(columns),
             horizon: Horizon::new(settings, delay_ticks),
+            settings: settings.clone(),
         }
     }
 
-    /// Takes the newest motion and force and fills in what the report says of the window. `good`: the sample was measured;
-    /// `usable`: its features are those of a full filter, too.
-    pub(super) fn step(
-        &mut self,
-        now: &Posture,
-        force_n: Lanes,
-        good: bool,
-        usable: bool,
-        settings: &Settings,
-        report: &mut Report,
-    ) {
-        let columns = self.solution.columns();
-        let mut row = [Lanes::ZERO; MAX_ROW];
-        if usable {
-            row[0] = active(&nalgebra::Vector3::repeat(1.0), settings.axes);
-            row[1..columns].copy_from_slice(&now.features[..columns - 1]);
-            row[columns] = force_n;
-        }
-        self.window.push(&row);
-        self.solution.solve(self.window.current());
-        let chosen = self.horizon.step(&self.solution, &now.features, force_n, good);
-        report.columns = chosen as u8;
-        let condition = self.solution.condition(2.max(1 + chosen));
-        report.condition = condition.0[..settings.axes].iter().fold(1.0, |worst, c| c.max(worst));
-        report.rank = rank(self.window.current(), self.ridge, settings.axes);
-        report.excitation = excitation(self.window.current(), self.ridge, settings);
-    }
-
-    /// Goes on without learning.
-    pub(super) fn rest(&mut self, now: &Posture, force_n: Lanes) {
-        self.horizon.rest(&now.features, force_n);
+    /// Whether the degrees of the window are wanted: for comparison with the paper's.
+    pub(super) fn are_wanted(modes: ModeSet) -> bool {
+        modes.contains(Mode::Anchored) && modes.contains(Mode::Literal)
     }
 
     pub(super) const fn solution(&self) -> &Solution {
         &self.solution
     }
+}
 
-    pub(super) fn set_delay(&mut self, delay_ticks: usize) {
+impl Method for Degrees {
+    fn serves(&self, modes: ModeSet) -> bool {
+        Self::are_wanted(modes)
+    }
+
+    /// Fills in what the report says of the window.
+    fn take(&mut self, seen: &Seen<'_>, _parcel: &mut Parcel, report: &mut Report) {
+        let features = &seen.posture.features;
+        if !seen.learn {
+            self.horizon.rest(features, seen.force_n);
+            return;
+        }
+        let axes = self.settings.axes;
+        let columns = self.solution.columns();
+        let mut row = [Lanes::ZERO; MAX_ROW];
+        if seen.usable {
+            row[0] = active(&nalgebra::Vector3::repeat(1.0), axes);
+            row[1..columns].copy_from_slice(&features[..columns - 1]);
+            row[columns] = seen.force_n;
+        }
+        self.window.push(&row);
+        self.solution.solve(self.window.current());
+        let chosen = self.horizon.step(&self.solution, features, seen.force_n, seen.good);
+        report.columns = chosen as u8;
+        let condition = self.solution.condition(2.max(1 + chosen));
+        report.condition = condition.0[..axes].iter().fold(1.0, |worst, c| c.max(worst));
+        report.rank = rank(self.window.current(), self.ridge, axes);
+        report.excitation = excitation(self.window.current(), self.ridge, &self.settings);
+    }
+
+    fn set_delay(&mut self, delay_ticks: usize) {
         self.horizon.set_delay(delay_ticks);
     }
 
-    pub(super) fn reset(&mut self) {
+    fn reset(&mut self) {
         self.window.reset();
         self.horizon.reset();
     }

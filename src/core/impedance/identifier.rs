@@ -4,15 +4,12 @@ use nalgebra::Vector3;
 
 use super::{
     Mode, SLOTS,
-    anchored::Anchored,
-    baselines,
     best::Best,
-    degrees::Degrees,
     features::Features,
     literal::LiteralSolver,
-    matched::{Form, Matched, Slip},
+    matched::Slip,
     messages::{Parcel, Posture, Report, Sample, active},
-    paper::Paper,
+    method::{Method, Methods, Seen},
     settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError},
     solution::Solution,
     track::{Track, usable_force, usable_position},
@@ -63,29 +60,14 @@ pub struct Identifier {
     computed: ModeSet,
     /// Ticks since there was last something to learn.
     idle_ticks: usize,
-    paper: Option<Box<Paper>>,
-    /// The paper's linear model alone, where that is all that is computed.
-    linear: Option<Box<Paper>>,
-    anchored: Option<Box<Anchored>>,
-    /// The degrees of the window's impedance, where anchored is compared with the paper.
-    degrees: Option<Box<Degrees>>,
-    matched: Option<Box<Matched>>,
-    nima: Option<Box<Matched>>,
+    methods: Methods,
     best: Option<Best>,
-    baseline: Option<BaselineEnds>,
     /// That of a leader that makes the follower's own motion.
     slip: Slip,
     sent: DelayLine<(Parcel, Posture)>,
     forget: f64,
     parcel: Parcel,
     report: Report,
-}
-
-/// Both ends of a baseline: what it sends, and what a leader that makes the follower's own motion would render.
-#[derive(Clone, Debug)]
-struct BaselineEnds {
-    follower: baselines::Follower,
-    leader: baselines::Leader,
 }
 
 impl Identifier {
@@ -96,11 +78,6 @@ impl Identifier {
     pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         let delay_ticks = settings.delay_ticks(settings.delay_s);
-        let paper =
-            |mode: Mode, degree: usize| settings.modes.contains(mode).then(|| Box::new(Paper::new(degree, settings)));
-        let matched = |mode: Mode, form: Form| {
-            settings.modes.contains(mode).then(|| Box::new(Matched::new(form, settings, delay_ticks)))
-        };
         let max_delay = (MAX_DELAY_S * settings.rate_hz).ceil() as usize;
         Ok(Self {
             delay_ticks,
@@ -109,17 +86,8 @@ impl Identifier {
             last_force_n: Lanes::ZERO,
             computed: settings.modes,
             idle_ticks: 0,
-            paper: paper(Mode::Literal, settings.max_degree),
-            linear: paper(Mode::Linear, 1),
-            anchored: settings.modes.contains(Mode::Anchored).then(|| Box::new(Anchored::new(settings, delay_ticks))),
-            degrees: compares(settings.modes).then(|| Box::new(Degrees::new(settings, delay_ticks))),
-            matched: matched(Mode::Matched, Form::of(settings)),
-            nima: matched(Mode::Nima, Form::Paper(settings.max_degree as u8)),
+            methods: Methods::new(settings, delay_ticks),
             best: settings.modes.contains(Mode::Best).then(|| Best::new(settings)),
-            baseline: settings.modes.baseline().map(|baseline| BaselineEnds {
-                follower: baselines::Follower::new(baseline, settings, delay_ticks),
-                leader: baselines::Leader::new(settings),
-            }),
             slip: Slip::default(),
             sent: DelayLine::new(max_delay, (Parcel::BLANK, Posture::BLANK)),
             forget: 1.0 - libm::exp(-1.0 / (ERROR_MEMORY_S * settings.rate_hz)),
@@ -135,26 +103,8 @@ impl Identifier {
         let modes = modes.with(Mode::Dfr).and(self.settings.modes);
         let before = std::mem::replace(&mut self.computed, modes);
         let begins = |mode: Mode| modes.contains(mode) && !before.contains(mode);
-        if begins(Mode::Literal)
-            || begins(Mode::Linear)
-            || !modes.contains(Mode::Literal) && before.contains(Mode::Literal)
-        {
-            self.paper.iter_mut().chain(&mut self.linear).for_each(|paper| paper.reset());
-        }
-        if begins(Mode::Anchored) {
-            self.anchored.iter_mut().for_each(|anchored| anchored.reset());
-        }
-        if compares(modes) && !compares(before) {
-            self.degrees.iter_mut().for_each(|degrees| degrees.reset());
-        }
-        if begins(Mode::Matched) {
-            self.matched.iter_mut().for_each(|matched| matched.reset());
-        }
-        if begins(Mode::Nima) {
-            self.nima.iter_mut().for_each(|nima| nima.reset());
-        }
-        if modes.baseline() != before.baseline() {
-            self.baseline.iter_mut().for_each(BaselineEnds::reset);
+        for method in self.methods.each().filter(|method| method.begins(before, modes)) {
+            method.reset();
         }
         self.idle_ticks = 0;
         let Parcel { t_s, force_n, fresh, .. } = self.parcel;
@@ -195,16 +145,17 @@ impl Identifier {
         self.parcel.force_n = self.last_force_n.vector();
         self.parcel.fresh = good;
         self.parcel.resting = !learn;
-        if learn {
-            self.step_paper(&x, usable);
-        }
-        self.step_anchored(&now, good, learn);
-        self.step_degrees(&now, good, usable, learn);
-        self.step_matched(&now, good, usable, learn);
-        if self.computed.baseline().is_some()
-            && let Some(BaselineEnds { follower, .. }) = &mut self.baseline
-        {
-            self.parcel.baseline = follower.step(&now, force.filter(|_| good));
+        let seen = Seen {
+            posture: &now,
+            x: &x,
+            force_n: self.last_force_n,
+            good,
+            usable,
+            learn,
+            sent: self.sent.get(self.delay_ticks.max(1) - 1).map(|(parcel, _)| parcel),
+        };
+        for method in self.methods.each().filter(|method| method.serves(self.computed)) {
+            method.take(&seen, &mut self.parcel, &mut self.report);
         }
         self.sent.push((self.parcel, now));
         self.predict(&now, &x, good);
@@ -221,64 +172,9 @@ impl Identifier {
         self.idle_ticks > 2 * self.settings.block()
     }
 
-    fn step_paper(&mut self, x: &Features, usable: bool) {
-        let of_mode = if self.computed.contains(Mode::Literal) {
-            &mut self.paper
-        } else if self.computed.contains(Mode::Linear) {
-            &mut self.linear
-        } else {
-            return;
-        };
-        if let Some(paper) = of_mode.as_deref_mut() {
-            paper.step(x, self.last_force_n, usable, &mut self.parcel, &mut self.report);
-        }
-    }
-
-    fn step_anchored(&mut self, now: &Posture, good: bool, learn: bool) {
-        let of_mode = self.anchored.as_deref_mut().filter(|_| self.computed.contains(Mode::Anchored));
-        let Some(anchored) = of_mode else { return };
-        self.parcel.anchored = anchored.step(&now.stance, self.last_force_n, good, learn);
-        if learn {
-            self.report.degree = self.parcel.anchored.degree;
-            self.report.gain = self.parcel.anchored.gain;
-            self.report.restarts = anchored.restarts();
-        }
-    }
-
-    fn step_degrees(&mut self, now: &Posture, good: bool, usable: bool, learn: bool) {
-        let Some(degrees) = self.degrees.as_deref_mut().filter(|_| compares(self.computed)) else { return };
-        if learn {
-            degrees.step(now, self.last_force_n, good, usable, &self.settings, &mut self.report);
-        } else {
-            degrees.rest(now, self.last_force_n);
-        }
-    }
-
-    fn step_matched(&mut self, now: &Posture, good: bool, usable: bool, learn: bool) {
-        let computed = self.computed;
-        let matched = self.matched.as_mut().filter(|_| computed.contains(Mode::Matched));
-        let nima = self.nima.as_mut().filter(|_| computed.contains(Mode::Nima));
-        let sent = self.sent.get(self.delay_ticks.max(1) - 1).map(|(parcel, _)| parcel);
-        if !learn {
-            let matched = matched.map(|matched| (matched, sent.map(|parcel| &parcel.matched)));
-            let nima = nima.map(|nima| (nima, sent.map(|parcel| &parcel.nima)));
-            matched.into_iter().chain(nima).for_each(|(matched, sent)| matched.rest(now, sent));
-            return;
-        }
-        let force = Some(self.last_force_n);
-        if let Some(matched) = matched {
-            self.parcel.matched = *matched.step(now, force.filter(|_| good), sent.map(|parcel| &parcel.matched));
-            self.report.matched_degree = self.parcel.matched.degree;
-        }
-        if let Some(nima) = nima {
-            self.parcel.nima = *nima.step(now, force.filter(|_| usable), sent.map(|parcel| &parcel.nima));
-            self.report.nima_degree = self.parcel.nima.degree;
-        }
-    }
-
     /// What every mode renders for this tick from the parcel one delay old, and its running error.
     fn predict(&mut self, now: &Posture, x: &Features, good: bool) {
-        let leader = self.baseline.as_mut().map(|baseline| &mut baseline.leader);
+        let leader = self.methods.baseline.as_deref_mut().map(|baseline| &mut baseline.leader);
         let weight = self.best.as_ref().map_or(Lanes::ZERO, Best::anchored);
         let arrived = self.sent.get(self.delay_ticks).filter(|(parcel, _)| parcel.t_s.is_finite());
         let forces = arrived.map_or([None; SLOTS], |(parcel, then)| {
@@ -317,29 +213,18 @@ impl Identifier {
 
     /// Every nested solution on the newest window, in scaled columns (N); `None` unless both anchored and literal are computed.
     pub fn solution(&self) -> Option<&Solution> {
-        self.degrees.as_ref().map(|degrees| degrees.solution())
+        self.methods.degrees.as_ref().map(|degrees| degrees.solution())
     }
 
     /// The paper's solutions of every degree on the newest window; `None` if neither literal nor linear is computed.
     pub fn literal(&self) -> Option<&LiteralSolver> {
-        self.paper.as_ref().or(self.linear.as_ref()).map(|paper| paper.solver())
+        self.methods.literal.as_ref().or(self.methods.linear.as_ref()).map(|paper| paper.solver())
     }
 
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`]. The judge of anchored rendering begins anew.
     pub fn set_delay(&mut self, delay_s: f64) {
         self.delay_ticks = self.settings.delay_ticks(delay_s);
-        if let Some(anchored) = &mut self.anchored {
-            anchored.set_delay(self.delay_ticks);
-        }
-        if let Some(degrees) = &mut self.degrees {
-            degrees.set_delay(self.delay_ticks);
-        }
-        for matched in [&mut self.matched, &mut self.nima].into_iter().flatten() {
-            matched.set_delay(self.delay_ticks);
-        }
-        if let Some(baseline) = &mut self.baseline {
-            baseline.follower.set_delay(self.delay_ticks);
-        }
+        self.methods.each().for_each(|method| method.set_delay(self.delay_ticks));
     }
 
     /// Forgets everything, counters included, without allocating.
@@ -348,31 +233,13 @@ impl Identifier {
         self.last_t_s = f64::NEG_INFINITY;
         self.last_force_n = Lanes::ZERO;
         self.idle_ticks = 0;
-        self.paper.iter_mut().chain(&mut self.linear).for_each(|paper| paper.reset());
-        self.anchored.iter_mut().for_each(|anchored| anchored.reset());
-        self.degrees.iter_mut().for_each(|degrees| degrees.reset());
-        for matched in [&mut self.matched, &mut self.nima].into_iter().flatten() {
-            matched.reset();
-        }
+        self.methods.each().for_each(Method::reset);
         if let Some(best) = &mut self.best {
             best.reset();
         }
-        self.baseline.iter_mut().for_each(BaselineEnds::reset);
         self.sent.clear();
         self.slip = Slip::default();
         self.parcel = Parcel { modes: self.computed, ..Parcel::BLANK };
         self.report = Report { modes: self.computed, ..Report::BLANK };
     }
-}
-
-impl BaselineEnds {
-    fn reset(&mut self) {
-        self.follower.reset();
-        self.leader.reset();
-    }
-}
-
-/// Whether the degrees of the window are wanted: for comparison with the paper's.
-fn compares(modes: ModeSet) -> bool {
-    modes.contains(Mode::Anchored) && modes.contains(Mode::Literal)
 }

@@ -21,6 +21,7 @@
 //! | `damper` | the damping that keeps a force of the handle's own motion from driving the hand |
 //! | `baselines` | methods of others, to compare with; at most one is computed |
 //! | `pace`, `envelope` | a clock that motion drives; the range of forces seen |
+//! | `method` | the follower's part of each way to render, as one list |
 //! | `identifier`, `information`, `renderer`, `messages` | the two ends of the link, and what goes between them |
 
 mod anchored;
@@ -38,6 +39,7 @@ mod information;
 mod literal;
 mod matched;
 mod messages;
+mod method;
 mod mixture;
 mod mode;
 mod normal;

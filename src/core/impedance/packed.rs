@@ -23,8 +23,57 @@ pub struct Packed {
     pub numbers: [f32; PACKED_MAX],
 }
 
-/// The renderings that have parameters of their own, in the order in which they take turns.
-const WITH_PARAMETERS: [Mode; 5] = [Mode::Literal, Mode::Linear, Mode::Anchored, Mode::Matched, Mode::Nima];
+/// The parameters of one rendering, taken apart into numbers and put together again.
+trait Numbers: Sized {
+    /// No parameters.
+    const NONE: Self;
+
+    fn write(&self, row: &mut Writer<'_>);
+
+    /// The parameters, or `None` if the numbers make no sense or are not finite.
+    fn read(row: &mut Reader<'_>) -> Option<Self>;
+}
+
+/// The parameters of one rendering in their place in a parcel.
+trait Parameters {
+    fn write(&self, row: &mut Writer<'_>);
+
+    /// Takes new parameters; returns false, and changes nothing, if they make no sense or are not finite.
+    fn renew(&mut self, row: &mut Reader<'_>) -> bool;
+
+    fn forget(&mut self);
+}
+
+impl<T: Numbers> Parameters for T {
+    fn write(&self, row: &mut Writer<'_>) {
+        Numbers::write(self, row);
+    }
+
+    fn renew(&mut self, row: &mut Reader<'_>) -> bool {
+        T::read(row).map(|model| *self = model).is_some()
+    }
+
+    fn forget(&mut self) {
+        *self = T::NONE;
+    }
+}
+
+impl Parcel {
+    /// The parameters of the rendering in this slot; `None` if it has none of its own. Every slot after the program's own modes is the
+    /// baseline's.
+    fn parameters(&mut self, slot: usize) -> Option<&mut dyn Parameters> {
+        let parameters: &mut dyn Parameters = match Mode::ALL.get(slot) {
+            Some(Mode::Literal) => &mut self.literal,
+            Some(Mode::Linear) => &mut self.linear,
+            Some(Mode::Anchored) => &mut self.anchored,
+            Some(Mode::Matched) => &mut self.matched,
+            Some(Mode::Nima) => &mut self.nima,
+            Some(Mode::Dfr | Mode::Best | Mode::Baseline(_)) => return None,
+            None => &mut self.baseline,
+        };
+        Some(parameters)
+    }
+}
 
 impl Packed {
     /// Nothing.
@@ -37,61 +86,36 @@ impl Packed {
 
     /// How many renderings of this set have parameters to send.
     pub fn turns(modes: ModeSet) -> usize {
-        Self::renderings(modes).count() + usize::from(modes.baseline().is_some())
+        Self::renderings(modes).count()
     }
 
+    /// The renderings that have parameters of their own, in the order in which they take turns.
     fn renderings(modes: ModeSet) -> impl Iterator<Item = Mode> {
-        WITH_PARAMETERS.into_iter().filter(move |mode| modes.contains(*mode))
+        modes.modes().filter(|mode| !matches!(mode, Mode::Dfr | Mode::Best))
     }
 
     /// The parameters of the rendering whose turn it is among those that the parcel has; `None` if it has none.
     pub fn of(parcel: &Parcel, turn: usize) -> Option<Self> {
-        let turns = Self::turns(parcel.modes);
-        let turn = turn.checked_rem(turns)?;
-        let mut packed = Self::NONE;
-        let mut row = Writer { packed: &mut packed };
-        match Self::renderings(parcel.modes).nth(turn) {
-            Some(mode) => {
-                match mode {
-                    Mode::Literal => row.literal(&parcel.literal),
-                    Mode::Linear => row.literal(&parcel.linear),
-                    Mode::Anchored => row.anchored(&parcel.anchored),
-                    Mode::Nima => row.matched(&parcel.nima),
-                    _ => row.matched(&parcel.matched),
-                }
-                packed.slot = mode.index() as u8;
-            }
-            None => row.baseline(&parcel.baseline),
-        }
+        let turn = turn.checked_rem(Self::turns(parcel.modes))?;
+        let slot = Self::renderings(parcel.modes).nth(turn)?.index();
+        let mut packed = Self { slot: slot as u8, ..Self::NONE };
+        // A copy: they are listed once, to be changed.
+        let mut parcel = *parcel;
+        parcel.parameters(slot)?.write(&mut Writer { packed: &mut packed });
         Some(packed)
     }
 
     /// Takes the parameters of this slot out of the parcel: they are too old to make a force of.
     pub fn forget(slot: u8, parcel: &mut Parcel) {
-        match Mode::ALL.get(usize::from(slot)) {
-            Some(Mode::Literal) => parcel.literal = LiteralModel::NONE,
-            Some(Mode::Linear) => parcel.linear = LiteralModel::NONE,
-            Some(Mode::Anchored) => parcel.anchored = AnchoredModel::NONE,
-            Some(Mode::Matched) => parcel.matched = MatchedModel::NONE,
-            Some(Mode::Nima) => parcel.nima = MatchedModel::NONE,
-            Some(_) => {}
-            None => parcel.baseline = BaselineModel::Nothing,
+        if let Some(parameters) = parcel.parameters(usize::from(slot)) {
+            parameters.forget();
         }
     }
 
     /// Puts the parameters into the parcel. Returns false, and changes nothing, if they make no sense or are not finite.
     pub fn put_into(&self, parcel: &mut Parcel) -> bool {
-        let mut row = Reader { rest: self.used() };
-        let done = match Mode::ALL.get(usize::from(self.slot)) {
-            Some(Mode::Literal) => row.literal().map(|model| parcel.literal = model),
-            Some(Mode::Linear) => row.literal().map(|model| parcel.linear = model),
-            Some(Mode::Anchored) => row.anchored().map(|model| parcel.anchored = model),
-            Some(Mode::Matched) => row.matched().map(|model| parcel.matched = model),
-            Some(Mode::Nima) => row.matched().map(|model| parcel.nima = model),
-            Some(_) => None,
-            None => row.baseline().map(|model| parcel.baseline = model),
-        };
-        done.is_some()
+        let parameters = parcel.parameters(usize::from(self.slot));
+        parameters.is_some_and(|parameters| parameters.renew(&mut Reader { rest: self.used() }))
     }
 }
 
@@ -118,72 +142,6 @@ impl Writer<'_> {
         let used = row.iter().rposition(|lanes| *lanes != Lanes::ZERO).map_or(0, |last| last + 1);
         self.put(used as f64);
         row.iter().take(used).for_each(|lanes| self.lanes(*lanes));
-    }
-
-    fn literal(&mut self, model: &LiteralModel) {
-        self.put(f64::from(model.degree));
-        self.lanes(model.constant_n);
-        self.row(&model.coefficients);
-    }
-
-    fn anchored(&mut self, model: &AnchoredModel) {
-        self.put(f64::from(model.degree));
-        self.put(model.gain);
-        self.put(model.bound_n);
-        for lanes in [model.constant_n, model.centre_m, model.knee, model.low_n, model.high_n] {
-            self.lanes(lanes);
-        }
-        self.row(&model.motion);
-    }
-
-    fn matched(&mut self, model: &MatchedModel) {
-        let (form, degree) = match model.form {
-            Form::Tissue => (0, 0),
-            Form::Sliding => (1, 0),
-            Form::Coupled => (2, 0),
-            Form::Paper(degree) => (3, degree),
-        };
-        self.put(f64::from(form));
-        self.put(f64::from(degree));
-        self.put(f64::from(model.degree));
-        for lanes in [model.one, model.origin, model.bounds_n[0], model.bounds_n[1], model.offset_n] {
-            self.lanes(lanes);
-        }
-        model.gives.iter().for_each(|give| self.put(*give));
-        self.row(&model.parameters);
-    }
-
-    fn baseline(&mut self, model: &BaselineModel) {
-        match model {
-            BaselineModel::Nothing => self.put(0.0),
-            BaselineModel::Contact(contact) => {
-                self.put(1.0);
-                for lanes in
-                    [contact.surface_m, contact.reach_m, contact.exponent, contact.bounds_n[0], contact.bounds_n[1]]
-                {
-                    self.lanes(lanes);
-                }
-                self.row(&contact.parameters);
-            }
-            BaselineModel::Wave(wave) => {
-                self.put(2.0);
-                self.lanes(wave.returning);
-                self.lanes(wave.impedance_n_s_m);
-            }
-            BaselineModel::Returned { energy_j } => {
-                self.put(3.0);
-                self.lanes(*energy_j);
-            }
-            BaselineModel::Trend { force_n, rate_n_s } => {
-                self.put(4.0);
-                self.lanes(*force_n);
-                self.lanes(*rate_n_s);
-            }
-            BaselineModel::Forecast { force_n } => {
-                self.put(5.0);
-                self.lanes(*force_n);
-            }
-        }
     }
 }
 
@@ -217,44 +175,122 @@ impl Reader<'_> {
         }
         Some(row)
     }
+}
 
-    fn literal(&mut self) -> Option<LiteralModel> {
-        Some(LiteralModel {
-            degree: self.count(super::MAX_DEGREE)? as u8,
-            constant_n: self.lanes()?,
-            coefficients: self.row()?,
-        })
+impl Numbers for LiteralModel {
+    const NONE: Self = Self::NONE;
+
+    fn write(&self, row: &mut Writer<'_>) {
+        row.put(f64::from(self.degree));
+        row.lanes(self.constant_n);
+        row.row(&self.coefficients);
     }
 
-    fn anchored(&mut self) -> Option<AnchoredModel> {
-        let (degree, gain, bound_n) = (self.count(3)? as u8, self.take()?, self.take()?);
-        let (constant_n, centre_m, knee) = (self.lanes()?, self.lanes()?, self.lanes()?);
-        let (low_n, high_n) = (self.lanes()?, self.lanes()?);
-        Some(AnchoredModel { motion: self.row()?, constant_n, centre_m, knee, low_n, high_n, bound_n, degree, gain })
+    fn read(row: &mut Reader<'_>) -> Option<Self> {
+        Some(Self { degree: row.count(super::MAX_DEGREE)? as u8, constant_n: row.lanes()?, coefficients: row.row()? })
+    }
+}
+
+impl Numbers for AnchoredModel {
+    const NONE: Self = Self::NONE;
+
+    fn write(&self, row: &mut Writer<'_>) {
+        row.put(f64::from(self.degree));
+        row.put(self.gain);
+        row.put(self.bound_n);
+        for lanes in [self.constant_n, self.centre_m, self.knee, self.low_n, self.high_n] {
+            row.lanes(lanes);
+        }
+        row.row(&self.motion);
     }
 
-    fn matched(&mut self) -> Option<MatchedModel> {
-        let (form, paper) = (self.count(3)?, self.count(super::MAX_DEGREE)? as u8);
+    fn read(row: &mut Reader<'_>) -> Option<Self> {
+        let (degree, gain, bound_n) = (row.count(3)? as u8, row.take()?, row.take()?);
+        let (constant_n, centre_m, knee) = (row.lanes()?, row.lanes()?, row.lanes()?);
+        let (low_n, high_n) = (row.lanes()?, row.lanes()?);
+        Some(Self { motion: row.row()?, constant_n, centre_m, knee, low_n, high_n, bound_n, degree, gain })
+    }
+}
+
+impl Numbers for MatchedModel {
+    const NONE: Self = Self::NONE;
+
+    fn write(&self, row: &mut Writer<'_>) {
+        let (form, degree) = match self.form {
+            Form::Tissue => (0, 0),
+            Form::Sliding => (1, 0),
+            Form::Coupled => (2, 0),
+            Form::Paper(degree) => (3, degree),
+        };
+        row.put(f64::from(form));
+        row.put(f64::from(degree));
+        row.put(f64::from(self.degree));
+        for lanes in [self.one, self.origin, self.bounds_n[0], self.bounds_n[1], self.offset_n] {
+            row.lanes(lanes);
+        }
+        self.gives.iter().for_each(|give| row.put(*give));
+        row.row(&self.parameters);
+    }
+
+    fn read(row: &mut Reader<'_>) -> Option<Self> {
+        let (form, paper) = (row.count(3)?, row.count(super::MAX_DEGREE)? as u8);
         let form = [Form::Tissue, Form::Sliding, Form::Coupled, Form::Paper(paper)][form];
-        let degree = self.count(super::MAX_DEGREE)? as u8;
-        let (one, origin) = (self.lanes()?, self.lanes()?);
-        let (bounds_n, offset_n) = ([self.lanes()?, self.lanes()?], self.lanes()?);
-        let gives = [self.take()?, self.take()?];
-        Some(MatchedModel { form, degree, one, parameters: self.row()?, origin, gives, bounds_n, offset_n })
+        let degree = row.count(super::MAX_DEGREE)? as u8;
+        let (one, origin) = (row.lanes()?, row.lanes()?);
+        let (bounds_n, offset_n) = ([row.lanes()?, row.lanes()?], row.lanes()?);
+        let gives = [row.take()?, row.take()?];
+        Some(Self { form, degree, one, parameters: row.row()?, origin, gives, bounds_n, offset_n })
+    }
+}
+
+impl Numbers for BaselineModel {
+    const NONE: Self = Self::Nothing;
+
+    fn write(&self, row: &mut Writer<'_>) {
+        match self {
+            Self::Nothing => row.put(0.0),
+            Self::Contact(contact) => {
+                row.put(1.0);
+                for lanes in
+                    [contact.surface_m, contact.reach_m, contact.exponent, contact.bounds_n[0], contact.bounds_n[1]]
+                {
+                    row.lanes(lanes);
+                }
+                row.row(&contact.parameters);
+            }
+            Self::Wave(wave) => {
+                row.put(2.0);
+                row.lanes(wave.returning);
+                row.lanes(wave.impedance_n_s_m);
+            }
+            Self::Returned { energy_j } => {
+                row.put(3.0);
+                row.lanes(*energy_j);
+            }
+            Self::Trend { force_n, rate_n_s } => {
+                row.put(4.0);
+                row.lanes(*force_n);
+                row.lanes(*rate_n_s);
+            }
+            Self::Forecast { force_n } => {
+                row.put(5.0);
+                row.lanes(*force_n);
+            }
+        }
     }
 
-    fn baseline(&mut self) -> Option<BaselineModel> {
-        Some(match self.count(5)? {
-            0 => BaselineModel::Nothing,
+    fn read(row: &mut Reader<'_>) -> Option<Self> {
+        Some(match row.count(5)? {
+            0 => Self::Nothing,
             1 => {
-                let (surface_m, reach_m, exponent) = (self.lanes()?, self.lanes()?, self.lanes()?);
-                let bounds_n = [self.lanes()?, self.lanes()?];
-                BaselineModel::Contact(Contact { surface_m, reach_m, exponent, parameters: self.row()?, bounds_n })
+                let (surface_m, reach_m, exponent) = (row.lanes()?, row.lanes()?, row.lanes()?);
+                let bounds_n = [row.lanes()?, row.lanes()?];
+                Self::Contact(Contact { surface_m, reach_m, exponent, parameters: row.row()?, bounds_n })
             }
-            2 => BaselineModel::Wave(Wave { returning: self.lanes()?, impedance_n_s_m: self.lanes()? }),
-            3 => BaselineModel::Returned { energy_j: self.lanes()? },
-            4 => BaselineModel::Trend { force_n: self.lanes()?, rate_n_s: self.lanes()? },
-            _ => BaselineModel::Forecast { force_n: self.lanes()? },
+            2 => Self::Wave(Wave { returning: row.lanes()?, impedance_n_s_m: row.lanes()? }),
+            3 => Self::Returned { energy_j: row.lanes()? },
+            4 => Self::Trend { force_n: row.lanes()?, rate_n_s: row.lanes()? },
+            _ => Self::Forecast { force_n: row.lanes()? },
         })
     }
 }

@@ -3,19 +3,19 @@
 use nalgebra::Vector3;
 
 use super::{
-    MAX_DEGREE,
-    features::Features,
+    MAX_DEGREE, Mode,
     gram::Gram,
     literal::LiteralSolver,
     messages::{Parcel, Report, active},
+    method::{Method, Seen},
     recipe::{Choice, Next},
-    settings::Settings,
+    settings::{ModeSet, Settings},
     window::{SlidingWindow, Summary as _},
 };
-use crate::signal::Lanes;
 
 #[derive(Clone, Debug)]
 pub(super) struct Paper {
+    mode: Mode,
     window: SlidingWindow<Gram>,
     solver: LiteralSolver,
     /// Where the degree is chosen by what comes after the window.
@@ -23,36 +23,50 @@ pub(super) struct Paper {
 }
 
 impl Paper {
-    /// Up to this degree, by the recipe of the settings.
-    pub(super) fn new(degree: usize, settings: &Settings) -> Self {
+    /// For the mode literal, or linear alone, by the recipe of the settings.
+    pub(super) fn new(mode: Mode, settings: &Settings) -> Self {
+        let degree = if mode == Mode::Linear { 1 } else { settings.max_degree };
         let recipe = &settings.literal;
         let one = active(&Vector3::repeat(1.0), settings.axes);
         let empty = if recipe.constant { Gram::with_constant(3 * degree, one) } else { Gram::new(3 * degree) };
         Self {
+            mode,
             window: SlidingWindow::new(settings.block(), empty.clone(), empty),
             solver: LiteralSolver::new(degree, settings.axes, recipe, &settings.scales),
             next: (recipe.choice == Choice::Next).then(|| Next::new(settings.rate_hz)),
         }
     }
 
-    /// Takes the paper's `X` and the force (N); `usable`: both were measured.
-    pub(super) fn step(
-        &mut self,
-        x: &Features,
-        force_n: Lanes,
-        usable: bool,
-        parcel: &mut Parcel,
-        report: &mut Report,
-    ) {
-        let Self { window, solver, next } = self;
-        let row = if usable { window.current().row(x, force_n) } else { Gram::BLANK_ROW };
+    pub(super) const fn solver(&self) -> &LiteralSolver {
+        &self.solver
+    }
+}
+
+impl Method for Paper {
+    fn serves(&self, modes: ModeSet) -> bool {
+        modes.contains(self.mode) && (self.mode == Mode::Literal || !modes.contains(Mode::Literal))
+    }
+
+    /// Either model is read from the window of the other.
+    fn begins(&self, before: ModeSet, now: ModeSet) -> bool {
+        let begins = |mode: Mode| now.contains(mode) && !before.contains(mode);
+        let ends = before.contains(Mode::Literal) && !now.contains(Mode::Literal);
+        begins(Mode::Literal) || begins(Mode::Linear) || ends
+    }
+
+    fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, report: &mut Report) {
+        if !seen.learn {
+            return;
+        }
+        let Self { window, solver, next, .. } = self;
+        let row = if seen.usable { window.current().row(seen.x, seen.force_n) } else { Gram::BLANK_ROW };
         window.push(&row);
         if !window.is_full() {
             return;
         }
         solver.solve(window.current(), window.len());
         let choice = match next {
-            Some(next) => next.step(usable.then_some((x, force_n)), solver),
+            Some(next) => next.step(seen.usable.then_some((seen.x, seen.force_n)), solver),
             None => solver.choice(),
         };
         parcel.linear = *solver.model(1);
@@ -60,15 +74,11 @@ impl Paper {
         report.paper_degree = choice as u8;
         report.literal_failures = solver.failures();
         for degree in 1..=MAX_DEGREE {
-            report.reconstruction_n[degree - 1] = (force_n - solver.model(degree).product(x)).vector();
+            report.reconstruction_n[degree - 1] = (seen.force_n - solver.model(degree).product(seen.x)).vector();
         }
     }
 
-    pub(super) const fn solver(&self) -> &LiteralSolver {
-        &self.solver
-    }
-
-    pub(super) fn reset(&mut self) {
+    fn reset(&mut self) {
         self.window.reset();
         self.solver.reset();
         self.next.iter_mut().for_each(Next::reset);

@@ -23,7 +23,13 @@ use self::{
     passivity::{Controller, Returned},
     waves::Waves,
 };
-use super::{Baseline, features::Scales, messages::Posture, settings::Settings};
+use super::{
+    Baseline,
+    features::Scales,
+    messages::{Parcel, Posture, Report},
+    method::{self, Seen},
+    settings::{ModeSet, Settings},
+};
 use crate::signal::{Lanes, Motion};
 
 /// What a baseline sends besides the force: plain numbers, fixed size.
@@ -72,7 +78,7 @@ enum Method {
 }
 
 impl Follower {
-    pub(super) fn new(baseline: Baseline, settings: &Settings, delay_ticks: usize) -> Self {
+    fn new(baseline: Baseline, settings: &Settings, delay_ticks: usize) -> Self {
         let rate_hz = settings.rate_hz;
         let method = match baseline {
             Baseline::ModelMediated => Method::ModelMediated(Box::new(ModelMediated::new(rate_hz))),
@@ -156,6 +162,43 @@ impl Leader {
 
     pub(super) fn reset(&mut self) {
         self.controller.reset();
+    }
+}
+
+/// Both ends of a baseline: what it sends, and what a leader that makes the follower's own motion would render.
+#[derive(Clone, Debug)]
+pub(super) struct Ends {
+    follower: Follower,
+    pub(super) leader: Leader,
+}
+
+impl Ends {
+    pub(super) fn new(baseline: Baseline, settings: &Settings, delay_ticks: usize) -> Self {
+        Self { follower: Follower::new(baseline, settings, delay_ticks), leader: Leader::new(settings) }
+    }
+}
+
+impl method::Method for Ends {
+    /// Of all baselines there is memory for one.
+    fn serves(&self, modes: ModeSet) -> bool {
+        modes.baseline().is_some()
+    }
+
+    fn begins(&self, before: ModeSet, now: ModeSet) -> bool {
+        now.baseline() != before.baseline()
+    }
+
+    fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, _report: &mut Report) {
+        parcel.baseline = self.follower.step(seen.posture, seen.good.then_some(seen.force_n));
+    }
+
+    fn set_delay(&mut self, delay_ticks: usize) {
+        self.follower.set_delay(delay_ticks);
+    }
+
+    fn reset(&mut self) {
+        self.follower.reset();
+        self.leader.reset();
     }
 }
 

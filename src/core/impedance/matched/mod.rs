@@ -30,11 +30,13 @@ use self::{
     sums::Sums,
 };
 use super::{
+    Mode,
     best::eighth_power,
     envelope::Envelope,
-    messages::Posture,
+    messages::{Parcel, Posture, Report},
+    method::{Method, Seen},
     pace::newest_share,
-    settings::{MAX_DELAY_S, Settings},
+    settings::{MAX_DELAY_S, ModeSet, Settings},
 };
 use crate::signal::{DelayLine, Lanes};
 
@@ -153,6 +155,11 @@ impl Matched {
         };
         matched.reset();
         matched
+    }
+
+    /// Whether it is the mode nima, in the paper's columns.
+    fn is_paper(&self) -> bool {
+        matches!(self.form, Form::Paper(_))
     }
 
     /// Ticks back to the parcel that the leader has now; without a delay the last one stands for it.
@@ -322,14 +329,35 @@ impl Matched {
         let said_n = self.model.clipped(product(&parameters, &self.row, self.form.columns()));
         self.model.offset_n = self.drift.step(force_n - said_n, force_n);
     }
+}
 
-    /// Judges at another delay from now on.
-    pub(super) fn set_delay(&mut self, delay_ticks: usize) {
+impl Method for Matched {
+    fn serves(&self, modes: ModeSet) -> bool {
+        modes.contains(if self.is_paper() { Mode::Nima } else { Mode::Matched })
+    }
+
+    fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, report: &mut Report) {
+        let is_paper = self.is_paper();
+        let sent = seen.sent.map(|sent| if is_paper { &sent.nima } else { &sent.matched });
+        if !seen.learn {
+            return self.rest(seen.posture, sent);
+        }
+        let measured = if is_paper { seen.usable } else { seen.good };
+        let model = *self.step(seen.posture, measured.then_some(seen.force_n), sent);
+        if is_paper {
+            report.nima_degree = model.degree;
+            parcel.nima = model;
+        } else {
+            report.matched_degree = model.degree;
+            parcel.matched = model;
+        }
+    }
+
+    fn set_delay(&mut self, delay_ticks: usize) {
         self.delay_ticks = delay_ticks;
     }
 
-    /// Forgets everything.
-    pub(super) fn reset(&mut self) {
+    fn reset(&mut self) {
         self.tick = 0;
         self.sums.iter_mut().for_each(Sums::reset);
         let weight = self.one * (1.0 / self.experts.len() as f64);

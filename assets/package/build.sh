@@ -2,7 +2,6 @@
 #   ./dev package           all packages into target/packages
 #   ./dev package --twice   and again from another folder; fails where a byte differs
 #   ./dev package --try     and installs them in minimal systems, as a newcomer would (assets/package/try.sh)
-#   ./dev package --try-rpm and the .rpm that lies there, in the system of dnf and rpm alone; builds nothing
 #   ./dev package --sizes   what the program is made of
 # shellcheck shell=bash
 
@@ -216,15 +215,10 @@ make_packages_again() {
 
 package() {
   local version target=${CARGO_TARGET_DIR:-$PWD/target} out what=${1:-} status=0
-  case $what in '' | --twice | --try | --try-rpm | --sizes) ;; *) say "give nothing, --twice, --try, --try-rpm or --sizes"; exit 2 ;; esac
+  case $what in '' | --twice | --try | --sizes) ;; *) say "give nothing, --twice, --try or --sizes"; exit 2 ;; esac
   # shellcheck source=assets/package/try.sh
   source assets/package/try.sh
   out=$target/packages
-  if [ "$what" = --try-rpm ]; then
-    try_rpm_root "$(echo "$out"/*.rpm)" || { say "FAILED: the root managed by dnf and rpm"; status=1; }
-    tell_left_out
-    return $status
-  fi
   need_cargo
   need "${build_packages[@]}" "${package_tools[@]}" || exit 1
   need rpm "${windows_tools[@]}" || true

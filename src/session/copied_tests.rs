@@ -42,7 +42,7 @@ const START_NS: u64 = 1_700_000_000_000_000_000;
 /// A session of 100 messages of two channels, a table in their middle; its head, and its bundles of ten parts.
 fn made(path: &Path) -> (Head, Vec<Bundle>) {
     let listener = Listener::default();
-    let to = Destination { file: Some(path), audiences: vec![Box::new(listener.clone())], ..Destination::default() };
+    let to = Destination { file: Some(path), audiences: vec![Box::new(listener.clone())] };
     let mut out = Outlet::create(to, "a test", START_NS).unwrap();
     let table = |key: &str| BTreeMap::from([(key.to_owned(), "2026-11-25T08:00:00Z".to_owned())]);
     out.metadata("session", &table("started")).unwrap();

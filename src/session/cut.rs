@@ -21,8 +21,6 @@ pub(crate) const TABLE: &str = "cut";
 pub(crate) const BEGINNING: &str = "session_begins_ns";
 /// In it: the name of that session.
 pub(crate) const SESSION: &str = "session";
-/// In it, of a file in the second place: why the recording did not stay in the first.
-pub(crate) const WHY: &str = "why";
 
 /// Why a stretch cannot be cut out.
 #[derive(Debug, thiserror::Error)]
@@ -57,8 +55,6 @@ pub enum Kept {
     Yes,
     /// The stretch does not begin with the first tick.
     LeftOut,
-    /// It goes on behind that of the file before.
-    GoesOn,
     /// There was none.
     None,
 }
@@ -68,7 +64,6 @@ impl Kept {
         match self {
             Self::Yes => "kept up to the end of the stretch",
             Self::LeftOut => "left out: it can be replayed from its beginning only",
-            Self::GoesOn => "goes on behind that of the session before",
             Self::None => "none",
         }
     }

@@ -157,42 +157,23 @@ impl Recorded {
     /// # Errors
     /// [`ReplayError`] if it has none, or its beginning cannot be read.
     pub fn journal(&self) -> Result<Journal<Messages>, ReplayError> {
-        self.journal_with(&[])
-    }
-
-    /// Its journal with that of the files in which the recording went on, in their order.
-    ///
-    /// # Errors
-    /// As [`Recorded::journal`].
-    pub fn journal_with(&self, others: &[Self]) -> Result<Journal<Messages>, ReplayError> {
-        let files = iter::once(self).chain(others).map(|file| Arc::clone(&file.0));
-        Journal::open(ahead(files.collect(), 0, 0, FAR_AHEAD)).map_err(|error| match (error, self.goes_on_from()) {
-            (ReplayError::Missing { .. } | ReplayError::NoStart, Some(first)) => ReplayError::GoesOn { first },
-            (error, _) => error,
-        })
-    }
-
-    /// The file in which its recording began, if this is the second place.
-    fn goes_on_from(&self) -> Option<String> {
-        let tables = self.0.metadata().ok()?;
-        let (_, table) = tables.into_iter().find(|(name, table)| name == cut::TABLE && table.contains_key(cut::WHY))?;
-        table.get(cut::SESSION).cloned()
+        Journal::open(ahead(Arc::clone(&self.0), 0, 0, FAR_AHEAD))
     }
 
     /// A loop at this keyframe of its journal, which begins like this. `begin_ns` is when the session began.
     pub fn cursor(&self, start: &Start, keyframe: Keyframe, begin_ns: u64) -> Cursor<Messages> {
         let from_ns = (begin_ns + (keyframe.t_s() * 1e9) as u64).saturating_sub(MARGIN_NS);
-        let messages = ahead(vec![Arc::clone(&self.0)], from_ns, keyframe.read(), AHEAD);
+        let messages = ahead(Arc::clone(&self.0), from_ns, keyframe.read(), AHEAD);
         keyframe.cursor(start.clone(), messages)
     }
 }
 
-/// The messages of a journal in these files from this time on, behind the first `read`. A thread of its own reads and decodes them, while
+/// The messages of a journal in this file from this time on, behind the first `read`. A thread of its own reads and decodes them, while
 /// the loop is fed from those before. It ends when nobody takes any more.
-fn ahead(files: Vec<Arc<Reader>>, from_ns: u64, read: u64, most: usize) -> Messages {
+fn ahead(file: Arc<Reader>, from_ns: u64, read: u64, most: usize) -> Messages {
     let (send, receive) = bounded(most);
     let go_ahead = move || {
-        let messages = files.iter().flat_map(|file| file.messages(&[JOURNAL_TOPIC], from_ns..u64::MAX));
+        let messages = file.messages(&[JOURNAL_TOPIC], from_ns..u64::MAX);
         let mut messages = decoded(messages.map(|message| Ok(message?.data().to_vec())), read);
         while messages.next().is_some_and(|message| send.send(message).is_ok()) {}
     };

@@ -1,11 +1,12 @@
 //! Where the topics of a session go: into its file, and to those who watch while it happens.
 //!
-//! When the file can no longer be written, the recording goes on in a second place, if there is one, with all that the first
-//! disk has not confirmed; those who watch go on getting everything.
+//! When the file can no longer be written, the recording has ended; those who watch continue to get everything.
 
-mod rescue;
-
-use std::{collections::BTreeMap, fmt::Debug, path::Path};
+use std::{
+    collections::BTreeMap,
+    fmt::Debug,
+    path::{Path, PathBuf},
+};
 
 use nima_machine::{
     messages::{Event, Tick},
@@ -15,18 +16,14 @@ use nima_recording::session::{ChannelId, Encoding, WriteError, Writer};
 
 use crate::{
     objects::Objects,
-    recorder::{Attached, RecordError},
+    recorder::{Attached, RecordError, Sync},
 };
-use rescue::Rescue;
-pub(crate) use rescue::Trouble;
 
 /// Where a recorder writes to. With nothing, it only empties the tap.
 #[derive(Debug, Default)]
 pub struct Destination<'a> {
     /// A new session file.
     pub file: Option<&'a Path>,
-    /// Another one, which is begun when the first can no longer be written.
-    pub second: Option<&'a Path>,
     /// Those who watch.
     pub audiences: Vec<Box<dyn Audience>>,
 }
@@ -73,8 +70,6 @@ pub(crate) struct FileChannel(usize);
 
 /// A channel, as the file knows it.
 struct Known {
-    topic: String,
-    encoding: Encoding,
     of_file: Option<ChannelId>,
     /// Its number for those who watch; `None` if it is not for them.
     of_audiences: Option<usize>,
@@ -85,28 +80,31 @@ pub(crate) struct Outlet {
     file: Option<Writer>,
     channels: Vec<Known>,
     audiences: Vec<Box<dyn Audience>>,
-    /// What becomes of a recording whose file fails; without it, the caller is told.
-    rescue: Option<Rescue>,
+    /// Keeps the file at this path on the disk; without it, the caller gets the errors of the file.
+    sync: Option<(PathBuf, Sync)>,
+    /// Why the file has ended, until that is told.
+    trouble: Option<RecordError>,
 }
 
 impl Outlet {
-    /// Begins the file. Where it fails later, the recording goes on as far as it can, and [`Outlet::troubles`] tells.
+    /// Begins the file. If it fails later, [`Outlet::trouble`] tells why.
     pub(crate) fn create(to: Destination<'_>, program: &str, started_ns: u64) -> Result<Self, RecordError> {
-        let Destination { file: path, second, mut audiences } = to;
-        let mut rescue = Rescue::new(path, second, program, started_ns);
+        let Destination { file: path, mut audiences } = to;
         let file = path.map(|path| Writer::create(path, program)).transpose()?;
-        if let Some(file) = &file {
-            rescue.synchronise(file)?;
-        }
+        let synchronised = |(path, file): (&Path, &Writer)| {
+            let handle = file.sync_handle().map_err(|source| RecordError::System { path: path.to_owned(), source })?;
+            Ok::<_, RecordError>((path.to_owned(), Sync::start(handle)?))
+        };
+        let sync = path.zip(file.as_ref()).map(synchronised).transpose()?;
         for audience in &mut audiences {
             audience.begins(program, started_ns);
         }
-        Ok(Self { file, channels: Vec::new(), audiences, rescue: Some(rescue) })
+        Ok(Self { file, channels: Vec::new(), audiences, sync, trouble: None })
     }
 
     /// A file alone, which was begun before.
     pub(crate) const fn of(file: Writer) -> Self {
-        Self { file: Some(file), channels: Vec::new(), audiences: Vec::new(), rescue: None }
+        Self { file: Some(file), channels: Vec::new(), audiences: Vec::new(), sync: None, trouble: None }
     }
 
     /// Whether anybody takes what is written.
@@ -129,8 +127,8 @@ impl Outlet {
     }
 
     fn add(&mut self, topic: &str, encoding: Encoding, of_audiences: Option<usize>) -> Result<usize, WriteError> {
-        let of_file = self.file.as_mut().map(|file| file.channel(topic, encoding.clone())).transpose()?;
-        self.channels.push(Known { topic: topic.to_owned(), encoding, of_file, of_audiences });
+        let of_file = self.file.as_mut().map(|file| file.channel(topic, encoding)).transpose()?;
+        self.channels.push(Known { of_file, of_audiences });
         Ok(self.channels.len() - 1)
     }
 
@@ -153,10 +151,7 @@ impl Outlet {
         let Some(Known { of_file, .. }) = self.channels.get(channel.0) else { return Ok(()) };
         let (Some(file), Some(id)) = (&mut self.file, of_file) else { return Ok(()) };
         let written = file.message(*id, log_time_ns, data);
-        if let Some(rescue) = &mut self.rescue {
-            rescue.message(file.chunks(), channel.0, log_time_ns, data);
-        }
-        self.or_rescue(written)
+        self.or_end(written)
     }
 
     /// A tick, for those who watch; the file has it in its journal.
@@ -180,10 +175,7 @@ impl Outlet {
         }
         let Some(file) = &mut self.file else { return Ok(()) };
         let written = file.metadata(name, entries);
-        if let Some(rescue) = &mut self.rescue {
-            rescue.metadata(name, entries);
-        }
-        self.or_rescue(written)
+        self.or_end(written)
     }
 
     /// Writes a whole file.
@@ -194,10 +186,7 @@ impl Outlet {
         let Some(file) = &mut self.file else { return Ok(()) };
         let Attached { name, media_type, data } = attached;
         let written = file.attachment(name, media_type, time_ns, data);
-        if let Some(rescue) = &mut self.rescue {
-            rescue.attachment(time_ns, attached);
-        }
-        self.or_rescue(written)
+        self.or_end(written)
     }
 
     /// Bytes in the file.
@@ -208,7 +197,7 @@ impl Outlet {
     /// Closes the chunk of the file now.
     pub(crate) fn flush(&mut self) -> Result<(), WriteError> {
         let written = self.file.as_mut().map_or(Ok(()), Writer::flush);
-        self.or_rescue(written)
+        self.or_end(written)
     }
 
     /// Ends the file; how many messages are in it.
@@ -217,31 +206,37 @@ impl Outlet {
         Ok(file.finish()?.messages)
     }
 
-    /// Looks whether the disk has taken what was written; to be called now and then.
+    /// Checks whether the disk has taken what was written; to be called now and then.
     pub(crate) fn look(&mut self) {
-        if let Some(error) = self.rescue.as_ref().and_then(Rescue::unsynchronised) {
-            self.rescue(error);
+        let Some((path, sync)) = &self.sync else { return };
+        if let Some(source) = sync.failed() {
+            let path = path.clone();
+            self.give_up(RecordError::System { path, source });
         }
     }
 
-    /// What has gone wrong since the last call: why, and where the recording goes on.
-    pub(crate) fn troubles(&mut self) -> Vec<Trouble> {
-        self.rescue.as_mut().map(Rescue::troubles).unwrap_or_default()
+    /// Why the file has ended by itself; told once.
+    pub(crate) fn trouble(&mut self) -> Option<RecordError> {
+        self.trouble.take()
     }
 
-    fn or_rescue(&mut self, written: Result<(), WriteError>) -> Result<(), WriteError> {
+    fn or_end(&mut self, written: Result<(), WriteError>) -> Result<(), WriteError> {
         match written {
-            Err(error) if self.rescue.is_some() => {
-                self.rescue(error.into());
+            Err(error) if self.sync.is_some() => {
+                self.give_up(error.into());
                 Ok(())
             }
             written => written,
         }
     }
 
-    /// The file has failed: goes on in the second place, or without a file.
-    fn rescue(&mut self, why: RecordError) {
-        let Some(rescue) = &mut self.rescue else { return };
-        self.file = rescue.go_on(why, &mut self.channels);
+    /// The file has failed: there are only those who watch from now on.
+    fn give_up(&mut self, why: RecordError) {
+        // It may hang in the system as long as the disk does.
+        if let Some((_, sync)) = self.sync.take() {
+            sync.leave();
+        }
+        self.file = None;
+        self.trouble = Some(why);
     }
 }

@@ -29,18 +29,14 @@ impl Outlook {
 
     /// The time until the disk is full, if the file, which has so many bytes now, goes on growing as it has so far; `others` are bytes
     /// that are freed for it. `None` in its first minute, and where the system does not say how much is free.
-    ///
-    /// A recording that goes on in another file begins anew.
-    pub fn full_in(&mut self, file: &Path, bytes: u64, others: u64, now: Instant) -> Option<Duration> {
-        if file != self.file {
-            *self = Self::new(file, bytes, now);
-        }
+    pub fn full_in(&self, bytes: u64, others: u64, now: Instant) -> Option<Duration> {
         let grown = now.saturating_duration_since(self.since);
         if grown < GROWN {
             return None;
         }
         // A bare name is in the present folder.
-        let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+        let folder =
+            self.file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
         let left = free_bytes(folder)?.saturating_add(others) as f64;
         let per_s = bytes.saturating_sub(self.bytes) as f64 / grown.as_secs_f64();
         // A file that does not grow fills no disk.
@@ -55,23 +51,19 @@ mod tests {
     #[test]
     fn a_disk_lasts_as_long_as_its_free_bytes_and_those_of_sessions_that_make_room() {
         let folder = tempfile::tempdir().unwrap();
-        let [first, second] = ["a.mcap", "b.mcap"].map(|name| folder.path().join(name));
         let free = free_bytes(folder.path()).unwrap();
         let (begin, minute) = (Instant::now(), Duration::from_mins(1));
-        let mut outlook = Outlook::new(&first, 0, begin);
+        let outlook = Outlook::new(&folder.path().join("a.mcap"), 0, begin);
         // In two minutes it has taken a part of the disk that leaves room for ten hours.
         let bytes = free / 300;
-        assert_eq!(outlook.full_in(&first, bytes / 4, 0, begin + minute / 2), None, "too early to tell");
+        assert_eq!(outlook.full_in(bytes / 4, 0, begin + minute / 2), None, "too early to tell");
         let hours = |lasts: Option<Duration>| lasts.unwrap().as_secs_f64() / 3600.0;
         // Others use this disk too.
         let near = |hours: f64, expected: f64| (hours / expected - 1.0).abs() < 0.2;
-        let lasts = hours(outlook.full_in(&first, bytes, 0, begin + 2 * minute));
+        let lasts = hours(outlook.full_in(bytes, 0, begin + 2 * minute));
         assert!(near(lasts, 10.0), "{lasts} h");
-        let lasts = hours(outlook.full_in(&first, bytes, 2 * free, begin + 2 * minute));
+        let lasts = hours(outlook.full_in(bytes, 2 * free, begin + 2 * minute));
         assert!(near(lasts, 30.0), "{lasts} h with what makes room: no warning");
-        assert_eq!(outlook.full_in(&second, bytes, 0, begin + 2 * minute), None, "it goes on in another file");
-        assert_eq!(outlook.full_in(&second, bytes, 0, begin + 9 * minute), None, "which does not grow");
-        let lasts = hours(outlook.full_in(&second, 2 * bytes, 0, begin + 4 * minute));
-        assert!(near(lasts, 10.0), "{lasts} h");
+        assert_eq!(outlook.full_in(0, 0, begin + 2 * minute), None, "it does not grow");
     }
 }

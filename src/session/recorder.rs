@@ -1,8 +1,7 @@
 //! Records a session: a thread of its own writes what passes the tap of a loop into a session file.
 //!
 //! The loop never waits for it. Whatever goes wrong, a full disk or a folder that is gone, is told at once, and what was written stays
-//! readable. The recording goes on in a second place if there is one ([`Recorder::moved`]); else it has ended ([`Recorder::trouble`]). A
-//! disk that is too slow is told by [`Progress`].
+//! readable ([`Recorder::trouble`]). A disk that is too slow is told by [`Progress`].
 
 mod session_file;
 mod shared;
@@ -25,7 +24,7 @@ use nima_machine::{
 };
 use nima_recording::session::WriteError;
 
-pub use self::shared::{Moved, Progress};
+pub use self::shared::Progress;
 pub(crate) use self::sync::Sync;
 use self::{
     session_file::{SessionFile, log_time_ns},
@@ -35,7 +34,7 @@ use crate::{
     journal::{End, JournalError, Start},
     kept::described,
     objects::ObjectSource,
-    outlet::{Destination, Outlet, Trouble},
+    outlet::{Destination, Outlet},
     pictures::{LoopClock, PictureSource},
     scribe::{Pages as _, Scribe},
     topics::Words,
@@ -94,14 +93,6 @@ pub enum RecordError {
         path: PathBuf,
         /// Why.
         source: io::Error,
-    },
-    /// Neither place can be written.
-    #[error("{first}; nor can it go on in the second place: {second}")]
-    Both {
-        /// Why not the first.
-        first: Box<Self>,
-        /// Why not the second.
-        second: Box<Self>,
     },
 }
 
@@ -188,11 +179,6 @@ impl Recorder {
         self.shared.progress()
     }
 
-    /// Where the recording goes on, if it had to leave its first place, and why.
-    pub fn moved(&self) -> Option<&Moved> {
-        self.shared.moved.get()
-    }
-
     /// Why the recording has ended, if it has ended by itself.
     pub fn trouble(&self) -> Option<&RecordError> {
         self.shared.trouble.get()
@@ -240,11 +226,8 @@ fn drain(tap: &TapEnd, shared: &Shared) {
 
 /// Tells what went wrong with the file.
 fn tell(out: &mut Outlet, shared: &Shared) {
-    for Trouble { why, to } in out.troubles() {
-        match to {
-            Some(to) => drop(shared.moved.set(Moved { why, to })),
-            None => drop(shared.trouble.set(why)),
-        }
+    if let Some(why) = out.trouble() {
+        shared.trouble.set(why).ok();
     }
 }
 

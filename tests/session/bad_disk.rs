@@ -3,7 +3,7 @@
 use std::{
     fs::{self, File},
     os::fd::AsRawFd as _,
-    path::{Path, PathBuf},
+    path::Path,
     sync::{
         Arc,
         atomic::{AtomicBool, AtomicU64, Ordering},
@@ -14,10 +14,8 @@ use std::{
 use nima_machine::runtime::{self, Assembly, Clock, Handle, tap};
 use nima_recording::session::{Encoding, Reader};
 use nima_session::{
-    file::Recorded,
     outlet::{Audience, Destination},
     recorder::{RecordError, Recorder},
-    replay::replay,
 };
 use nima_testing::real_time::judged;
 use nima_tests::plan;
@@ -148,58 +146,4 @@ fn a_disk_that_is_unplugged_is_told_and_what_is_live_goes_on() {
         let outcome = replayed(&path).unwrap();
         assert!(outcome.differs.is_none() && outcome.ticks + 500 > 1500 && !outcome.closed, "{outcome:?}");
     });
-}
-
-#[test]
-fn a_recording_goes_on_in_its_second_place_and_nothing_is_missing() {
-    // A machine that holds up the recorder's thread loses entries.
-    judged(|| {
-        let folder = tempfile::tempdir().unwrap();
-        let [first, second] = ["session.mcap", "second.mcap"].map(|name| folder.path().join(name));
-        let (recorder, handle) = run(Destination { second: Some(&second), ..Destination::file(&first) });
-        wait_for(|| recorder.progress().ticks > 1500);
-        unplug(&first);
-        wait_for(|| recorder.moved().is_some());
-        let moved = recorder.moved().unwrap();
-        assert_eq!(moved.to, second);
-        assert!(moved.why.to_string().contains("session.mcap"), "{}", moved.why);
-        wait_for_ticks(&handle, 2000);
-        let summary = handle.stop_and_join().unwrap();
-        let told = recorder.finish().unwrap();
-        assert_eq!((told.ticks, told.lost), (summary.ticks, 0));
-        let (one, other) = (Recorded::open(&first).unwrap(), Recorded::open(&second).unwrap());
-        let outcome = replay(one.journal_with(std::slice::from_ref(&other)).unwrap(), |_| {}).unwrap();
-        assert_eq!((outcome.ticks, outcome.differs, outcome.hole), (summary.ticks, None, None));
-        assert!(outcome.closed);
-        let mut all: Vec<u64> = times(&first);
-        assert!(all.len() > 1000, "the first file stays readable");
-        all.extend(times(&second));
-        all.sort_unstable();
-        all.dedup();
-        assert_eq!(all.len() as u64, summary.ticks, "every tick is plotted in one of them");
-        // The second alone: its times are those of the session, and it says where it comes from.
-        let about = other.about().unwrap();
-        // It begins with what the first disk has not confirmed, which may be everything.
-        assert!(about.stretch_from_s.is_some_and(|from_s| from_s < about.seconds - 1.0), "{about:?}");
-        let tables = other.reader().metadata().unwrap();
-        let (_, table) = tables.iter().find(|(name, _)| name == "cut").unwrap();
-        assert!(table["session"] == "session.mcap" && table["why"].contains("session.mcap"), "{table:?}");
-        assert!(tables.iter().any(|(name, _)| name == "calibrations right") && other.is_closed().unwrap());
-    });
-}
-
-#[test]
-fn where_no_place_can_be_written_both_are_named() {
-    let folder = tempfile::tempdir().unwrap();
-    let first = folder.path().join("session.mcap");
-    let second = PathBuf::from("/nowhere/second.mcap");
-    let (recorder, handle) = run(Destination { second: Some(&second), ..Destination::file(&first) });
-    wait_for(|| recorder.progress().ticks > 500);
-    fs::remove_file(&first).unwrap();
-    wait_for(|| recorder.trouble().is_some());
-    let words = recorder.trouble().unwrap().to_string();
-    assert!(words.contains("deleted") && words.contains("/nowhere/second.mcap"), "{words}");
-    wait_for_ticks(&handle, 500);
-    handle.stop_and_join().unwrap();
-    assert!(matches!(recorder.finish(), Err(RecordError::Both { .. })));
 }

@@ -31,6 +31,6 @@ pub use plausibility::{
     RawReadings, Release,
 };
 pub use report::{GATES, Gate, GateCounts, GateReport, Reason};
-pub use settings::{ChainSettings, DEAD_BAND_MAX_M_S, EnergyMode};
+pub use settings::{ChainSettings, EnergyMode};
 pub use slew::Slew;
 pub use validity::{PLAUSIBLE_N, admitted};

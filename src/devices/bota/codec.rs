@@ -4,6 +4,8 @@
 //! clock, no allocation. A frame is accepted only with a correct checksum. After a false header the search continues
 //! one byte later, so that the decoder cannot lock onto a constant value in the payload.
 
+use crc::{CRC_16_IBM_SDLC, Crc};
+
 use crate::unread::Unread;
 
 /// Header of a frame with force and torque only.
@@ -50,27 +52,8 @@ pub const fn length_of(header: u8) -> Option<usize> {
     }
 }
 
-const CRC_TABLE: [u16; 256] = {
-    let mut table = [0; 256];
-    let mut index = 0;
-    while index < 256 {
-        let mut remainder = index as u16;
-        let mut bit = 0;
-        while bit < 8 {
-            remainder = if remainder & 1 == 1 { (remainder >> 1) ^ 0x8408 } else { remainder >> 1 };
-            bit += 1;
-        }
-        table[index] = remainder;
-        index += 1;
-    }
-    table
-};
-
 /// CRC-16/X-25: polynomial 0x1021 reflected, initial value and output inverted.
-pub fn crc16_x25(bytes: &[u8]) -> u16 {
-    let step = |crc: u16, byte: &u8| CRC_TABLE[usize::from(crc.to_le_bytes()[0] ^ byte)] ^ (crc >> 8);
-    !bytes.iter().fold(0xFFFF, step)
-}
+const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_SDLC);
 
 /// Why bytes are not a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +78,7 @@ impl Frame {
             put(&mut buffer[35..47], &inertial.acceleration_m_s2);
             put(&mut buffer[47..59], &inertial.angular_velocity_rad_s);
         }
-        let crc = crc16_x25(&buffer[1..length - CRC_BYTES]);
+        let crc = CRC.checksum(&buffer[1..length - CRC_BYTES]);
         buffer[length - CRC_BYTES..length].copy_from_slice(&crc.to_le_bytes());
         length
     }
@@ -122,7 +105,7 @@ impl Frame {
             return Err(NoFrame::Shape);
         }
         let (body, crc) = bytes.split_at(bytes.len() - CRC_BYTES);
-        if crc16_x25(&body[1..]).to_le_bytes() != *crc {
+        if CRC.checksum(&body[1..]).to_le_bytes() != *crc {
             return Err(NoFrame::Checksum);
         }
         let [temperature_c] = take(&body[31..35]);

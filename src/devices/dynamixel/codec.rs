@@ -6,6 +6,8 @@
 //! to fast reads (status packets from the broadcast id) are not stuffed. No clock is used and nothing is allocated
 //! after construction; the work per byte is bounded by the longest accepted packet.
 
+use crc::{CRC_16_UMTS, Crc};
+
 use crate::unread::Unread;
 
 const HEADER: [u8; 4] = [0xFF, 0xFF, 0xFD, 0x00];
@@ -21,29 +23,8 @@ pub const OVERHEAD: usize = 10;
 /// Header, id and length.
 const PREFIX: usize = 7;
 
-/// Polynomial of CRC-16/UMTS, not reflected.
-const POLYNOMIAL: u16 = 0x8005;
-
-const CRC_TABLE: [u16; 256] = {
-    let mut table = [0; 256];
-    let mut index = 0;
-    while index < 256 {
-        let mut value = (index as u16) << 8;
-        let mut bit = 0;
-        while bit < 8 {
-            value = if value & 0x8000 == 0 { value << 1 } else { (value << 1) ^ POLYNOMIAL };
-            bit += 1;
-        }
-        table[index] = value;
-        index += 1;
-    }
-    table
-};
-
-/// CRC-16/UMTS of `bytes`, continued from `before` (0 at the beginning).
-pub fn crc(before: u16, bytes: &[u8]) -> u16 {
-    bytes.iter().fold(before, |crc, byte| (crc << 8) ^ CRC_TABLE[usize::from((crc >> 8) as u8 ^ byte)])
-}
+/// Polynomial 0x8005, not reflected.
+const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_UMTS);
 
 /// Packets to be sent. The buffer is reused; it grows only beyond its initial capacity.
 #[derive(Debug)]
@@ -121,7 +102,7 @@ impl Outgoing {
     }
 
     fn seal(&mut self) {
-        let sum = crc(0, &self.bytes[self.begin..]);
+        let sum = CRC.checksum(&self.bytes[self.begin..]);
         self.bytes.extend_from_slice(&sum.to_le_bytes());
     }
 }
@@ -211,7 +192,7 @@ impl Incoming {
                 return None;
             }
             let (covered, sum) = rest[..wire_bytes].split_at(wire_bytes - 2);
-            if crc(0, covered) != u16::from_le_bytes([sum[0], sum[1]]) {
+            if CRC.checksum(covered) != u16::from_le_bytes([sum[0], sum[1]]) {
                 self.refuse();
                 continue;
             }

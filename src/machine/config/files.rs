@@ -108,7 +108,7 @@ pub(crate) fn parse_with<T: DeserializeOwned>(
     let mut root = DeTable::parse(text).map_err(|error| wrong(error.into()))?;
     let fault = crate::texts::fault(root.get_ref());
     transform(root.get_mut()).map_err(|(place, message)| wrong(Misfit::new(message, Some(place))))?;
-    let parsed = from_table(root).map_err(wrong)?;
+    let parsed = from_table(&root).map_err(wrong)?;
     match fault {
         None => Ok(parsed),
         Some(fault) => Err(refused(fault)),

@@ -301,11 +301,6 @@ impl Writer {
         self.layout.written()
     }
 
-    /// Chunks in the file: what came since the last one is only in memory.
-    pub const fn chunks(&self) -> u32 {
-        self.summary.statistics.chunks
-    }
-
     /// Closes the chunks, writes the last summary with its checksum, cuts off the free room and waits for the disk.
     ///
     /// # Errors

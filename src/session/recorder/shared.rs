@@ -1,7 +1,6 @@
 //! What the recorder's thread tells.
 
 use std::{
-    path::PathBuf,
     sync::{
         OnceLock,
         atomic::{AtomicBool, AtomicU64, Ordering},
@@ -10,15 +9,6 @@ use std::{
 };
 
 use super::RecordError;
-
-/// A recording that goes on in its second place.
-#[derive(Debug)]
-pub struct Moved {
-    /// Why it left the first.
-    pub why: RecordError,
-    /// The file in which it goes on.
-    pub to: PathBuf,
-}
 
 /// Figures of a recording so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,7 +38,6 @@ pub(super) struct Shared {
     pub(super) pictures: AtomicU64,
     pub(super) pictures_dropped: AtomicU64,
     pub(super) ends: AtomicBool,
-    pub(super) moved: OnceLock<Moved>,
     pub(super) trouble: OnceLock<RecordError>,
 }
 
@@ -63,7 +52,6 @@ impl Shared {
             pictures: AtomicU64::default(),
             pictures_dropped: AtomicU64::default(),
             ends: AtomicBool::default(),
-            moved: OnceLock::new(),
             trouble: OnceLock::new(),
         }
     }

@@ -35,9 +35,6 @@ pub enum ReplayError {
     /// There is no beginning.
     #[error("its journal does not say what the loop was made of: the file was cut or damaged")]
     NoStart,
-    /// It is the second place of a recording.
-    #[error("its recording began in {first}: give that file first, nima replay {first} THIS")]
-    GoesOn { first: String },
     /// There is no journal at all.
     #[error("it holds no journal: only a session that was recorded with `nima run --record` can be replayed")]
     NoJournal,

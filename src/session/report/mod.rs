@@ -194,9 +194,6 @@ impl Figures {
                         self.about = table;
                     } else if name == cut::TABLE {
                         self.stretch = true;
-                        if let (Some(first), Some(why)) = (table.get(cut::SESSION), table.get(cut::WHY)) {
-                            self.notes.push(format!("the recording went on here from {first}: {why}"));
-                        }
                     }
                 }
             }

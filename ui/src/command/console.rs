@@ -33,9 +33,6 @@ pub(super) struct Arguments {
     watching: Watching,
     #[command(flatten)]
     network: ToFollower,
-    /// Record into this folder when sessions can no longer be written into the usual one: best on another disk
-    #[arg(long, value_name = "DIR")]
-    second_place: Option<PathBuf>,
     /// Start in this view (default: the one used last)
     #[arg(long)]
     role: Option<Role>,
@@ -106,7 +103,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         servers.is_empty() || folder.is_some(),
         "who watches sees what is recorded, and there is no folder for sessions: set NIMA_DATA_DIR"
     );
-    let mut sessions = Sessions::of_user(folder, arguments.second_place.as_deref(), servers);
+    let mut sessions = Sessions::of_user(folder, servers);
     let network = arguments.network.clone();
     let far = line.as_ref().map(|line| (line.door(), Reopen::new(move |rig, scene| network.open(rig, scene))));
     let started = start_recorded(&plan, &mut sessions, line)?;

@@ -112,7 +112,7 @@ fn laid_out(reader: &Reader, session: &Path, name: &str, out: &Path) -> anyhow::
 
 /// The times that were asked for, ns.
 fn times_ns(reader: &Reader, Arguments { session, stretch, .. }: &Arguments) -> anyhow::Result<Range<u64>> {
-    let Range { start, end } = stretch.of(session, reader, reader)?;
+    let Range { start, end } = stretch.of(session, reader)?;
     let begin_ns = plotted::beginning_ns(reader)?;
     let time_ns = |seconds: f64| begin_ns.saturating_add((seconds * 1e9).round() as u64);
     // What was written before the first tick belongs to it.
@@ -190,7 +190,7 @@ fn cut_out(reader: &Reader, times_ns: &Range<u64>, session: &Path, new: &Path, l
     let journal = match journal {
         Kept::Yes => "with the journal up to the cut: `nima replay` repeats it",
         Kept::LeftOut => "without the journal, which can be replayed from its beginning only",
-        Kept::GoesOn | Kept::None => "the session has no journal",
+        Kept::None => "the session has no journal",
     };
     Ok((format!("{messages} messages"), journal))
 }

@@ -3,7 +3,6 @@
 mod what_if;
 
 use std::{
-    iter,
     ops::Range,
     path::{Path, PathBuf},
     time::Instant,
@@ -28,9 +27,6 @@ use crate::{recording::PROGRAM, telling::tell};
 pub(super) struct Arguments {
     /// Session file that `nima run --record` wrote
     session: PathBuf,
-    /// The file in the second place in which its recording went on
-    #[arg(value_name = "SECOND")]
-    more: Vec<PathBuf>,
     #[command(flatten)]
     stretch: Stretch,
     /// What if: render with this mode
@@ -63,18 +59,17 @@ fn gain(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { session, more, stretch, mode, delay_ms, gain, out, json } = arguments;
+    let Arguments { session, stretch, mode, delay_ms, gain, out, json } = arguments;
     let change = Change { mode: *mode, delay_s: delay_ms.map(|delay_ms| delay_ms * 1e-3), gain: *gain };
     if !change.is_any() && out.is_some() {
         bail!("--out needs a change: give --mode, --delay-ms or --gain too");
     }
-    let files = iter::once(session).chain(more).map(|path| Recorded::open(path)).collect::<Result<Vec<_>, _>>()?;
-    for note in files.iter().flat_map(|file| file.reader().notes()) {
+    let file = Recorded::open(session)?;
+    for note in file.reader().notes() {
         tell(format_args!("nima: {note}"));
     }
-    let Some((first, others)) = files.split_first() else { bail!("name a session") };
-    let stretch_s = stretch.of(session, first.reader(), others.last().unwrap_or(first).reader())?;
-    let journal = || first.journal_with(others);
+    let stretch_s = stretch.of(session, file.reader())?;
+    let journal = || file.journal();
     if change.is_any() {
         return what_if::run(&journal, session, &change, &stretch_s, out.as_deref(), *json);
     }

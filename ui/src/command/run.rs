@@ -84,9 +84,6 @@ pub(crate) struct Arguments {
     /// Record the session into a new file, from which `nima replay` repeats it bit for bit
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) record: Option<PathBuf>,
-    /// Go on in this new file when that one can no longer be written: best on another disk
-    #[arg(long, value_name = "FILE.mcap", requires = "record")]
-    pub(crate) second_place: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) watching: Watching,
     #[command(flatten)]
@@ -183,11 +180,7 @@ pub(crate) fn run_with(
         );
     }
     let (servers, reel) = (arguments.watching.start()?, Reel::default());
-    let to = Destination {
-        file: arguments.record.as_deref(),
-        second: arguments.second_place.as_deref(),
-        audiences: servers.audiences(&plan, &reel),
-    };
+    let to = Destination { file: arguments.record.as_deref(), audiences: servers.audiences(&plan, &reel) };
     let pictures = (&reel, servers.show_pictures());
     let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock(), arguments.seconds, pictures)?;
     let mut summary = if let Some(clock) = arguments.virtual_clock() {

@@ -31,11 +31,11 @@ impl Stretch {
         self.from.is_some() || self.to.is_some()
     }
 
-    /// Its times, s since the session began, after a look whether this session, whose end may be in `last`, has them.
-    pub(crate) fn of(&self, session: &Path, reader: &Reader, last: &Reader) -> anyhow::Result<Range<f64>> {
+    /// Its times, s since the session began, after a look whether this session has them.
+    pub(crate) fn of(&self, session: &Path, reader: &Reader) -> anyhow::Result<Range<f64>> {
         let Self { from, to } = self;
         let begin_ns = plotted::beginning_ns(reader)?;
-        let (first_ns, last_ns) = (reader.statistics().times_ns.0, last.statistics().times_ns.1);
+        let (first_ns, last_ns) = reader.statistics().times_ns;
         let [first_s, last_s] = [first_ns, last_ns].map(|time_ns| time_ns.saturating_sub(begin_ns) as f64 / 1e9);
         if let (Some(from), Some(to)) = (from, to)
             && from >= to

@@ -44,8 +44,6 @@ const SLOW: Duration = Duration::from_secs(1);
 pub(crate) struct Sessions {
     /// `None`: nothing is recorded.
     shelf: Option<Shelf>,
-    /// Where a recording goes on that can no longer be written there.
-    second: Option<Shelf>,
     /// Those who let others watch.
     servers: Servers,
     now: Option<Now>,
@@ -100,13 +98,11 @@ pub(crate) struct Shown {
 }
 
 impl Sessions {
-    /// Records into the folder `sessions` of the user's data folder, and into `second` when that can no longer be written; lets those
-    /// of these servers watch.
-    pub(crate) fn of_user(data_folder: Option<&Path>, second: Option<&Path>, servers: Servers) -> Self {
+    /// Records into the folder `sessions` of the user's data folder; lets those of these servers watch.
+    pub(crate) fn of_user(data_folder: Option<&Path>, servers: Servers) -> Self {
         let shelf = data_folder.map(|folder| Shelf::new(folder.join("sessions"), MOST_BYTES));
-        let second = second.map(|folder| Shelf::new(folder, MOST_BYTES));
         let (now, trouble, looked, full_in) = (None, None, None, None);
-        Self { shelf, second, servers, now, trouble, looked, full_in, rests: false, reel: Reel::default() }
+        Self { shelf, servers, now, trouble, looked, full_in, rests: false, reel: Reel::default() }
     }
 
     /// Begins to record a loop of this plan; the tap is for it. `None` if nothing is recorded.
@@ -115,28 +111,18 @@ impl Sessions {
         let shelf = self.shelf.as_ref().filter(|_| !self.rests)?;
         self.trouble = None;
         let started = utc_now();
-        let place = |shelf: &Shelf| {
-            shelf.place(&started, &plan.rig.name).map_err(|error| text::sessions::no_folder(shelf.folder(), &error))
-        };
-        let begin = |path: PathBuf, second: Option<PathBuf>| {
+        let place = shelf.place(&started, &plan.rig.name);
+        let begin = |path: PathBuf| {
             let audiences = self.servers.audiences(plan, &self.reel);
-            let to = Destination { file: Some(&path), second: second.as_deref(), audiences };
+            let to = Destination { file: Some(&path), audiences };
             let (tap, recorder) = recording::begin(to, plan, None).map_err(|error| chain(&error))?;
             pictures::film(&recorder, &plan.rig, &self.reel);
             let began = Instant::now();
             let outlook = Outlook::new(&path, recorder.progress().bytes, began);
             Ok((tap, Now { recorder, path, began, outlook, kept: false, told: Told::default() }))
         };
-        let second = self.second.as_ref().and_then(|shelf| place(shelf).ok());
-        let begun = place(shelf).and_then(|path| begin(path, second.clone()));
-        // What cannot begin here begins there.
-        let begun = match (begun, second) {
-            (Err(why), Some(path)) => begin(path.clone(), None).inspect(|_| {
-                self.trouble = Some(text::sessions::moved(&why, &path));
-            }),
-            (begun, _) => begun,
-        };
-        match begun {
+        let place = place.map_err(|error| text::sessions::no_folder(shelf.folder(), &error));
+        match place.and_then(begin) {
             Ok((tap, now)) => {
                 self.now = Some(now);
                 Some(tap)
@@ -173,10 +159,9 @@ impl Sessions {
     /// Ends the recording; the loop must have ended.
     pub(crate) fn end(&mut self) {
         let Some(Now { recorder, path, kept, .. }) = self.now.take() else { return };
-        let stays = kept || recorder.moved().is_some();
         match recorder.finish() {
             // Whether it can be deleted matters to nobody.
-            Ok(progress) if progress.ticks < LEAST_TICKS && !stays => drop(std::fs::remove_file(path)),
+            Ok(progress) if progress.ticks < LEAST_TICKS && !kept => drop(std::fs::remove_file(path)),
             Ok(_) => {}
             Err(error) => self.trouble = Some(chain(&error)),
         }
@@ -185,14 +170,9 @@ impl Sessions {
     /// Keeps the session that is being recorded, or leaves it to be deleted.
     pub(crate) fn toggle_kept(&mut self) {
         let Some(now) = &mut self.now else { return };
-        let kept = keep(&now.path, !now.kept).map_err(|error| (&now.path, error));
-        match now.recorder.moved().map(|moved| keep(&moved.to, !now.kept).map_err(|error| (&moved.to, error))) {
-            // The first place may be gone; what counts is where it goes on.
-            Some(Ok(())) => now.kept = !now.kept,
-            other => match other.unwrap_or(kept) {
-                Ok(()) => now.kept = !now.kept,
-                Err((path, error)) => self.trouble = Some(text::sessions::not_kept(path, &error)),
-            },
+        match keep(&now.path, !now.kept) {
+            Ok(()) => now.kept = !now.kept,
+            Err(error) => self.trouble = Some(text::sessions::not_kept(&now.path, &error)),
         }
     }
 
@@ -238,20 +218,13 @@ impl Sessions {
     pub(crate) fn trouble(&self) -> Option<String> {
         let recorder = self.now.as_ref().map(|now| &now.recorder);
         let ended = recorder.and_then(Recorder::trouble).map(|error| chain(error));
-        let moved = || Some(recorder?.moved()?).map(|moved| text::sessions::moved(&chain(&moved.why), &moved.to));
         let progress = recorder.map(Recorder::progress).unwrap_or_default();
         let slow = || (progress.waits > SLOW).then(|| text::sessions::slow(progress.waits));
         let lost = || (progress.lost > 0).then(|| text::sessions::lost(progress.lost));
         let pictures =
             || (progress.pictures_dropped > 0).then(|| text::sessions::pictures_lost(progress.pictures_dropped));
         let full = || self.full_in.filter(|time| *time < WARN_BEFORE).map(words::disk_full_in);
-        ended
-            .or_else(slow)
-            .or_else(lost)
-            .or_else(pictures)
-            .or_else(moved)
-            .or_else(|| self.trouble.clone())
-            .or_else(full)
+        ended.or_else(slow).or_else(lost).or_else(pictures).or_else(|| self.trouble.clone()).or_else(full)
     }
 
     /// The session that is being recorded; `None` if none is.
@@ -261,7 +234,7 @@ impl Sessions {
         Some(Shown {
             seconds: now.began.elapsed().as_secs(),
             kept: now.kept,
-            path: now.recorder.moved().map_or(&now.path, |moved| &moved.to).clone(),
+            path: now.path.clone(),
             bytes: progress.bytes,
             lost: progress.lost,
             pictures: progress.pictures,
@@ -272,21 +245,19 @@ impl Sessions {
 
     /// Makes room while a session grows; to be called now and then.
     pub(crate) fn look_after(&mut self) {
-        let (Some(shelf), Some(now)) = (&self.shelf, &mut self.now) else { return };
+        let (Some(shelf), Some(now)) = (&self.shelf, &self.now) else { return };
         if self.looked.is_some_and(|at| at.elapsed() < ROOM_EVERY) {
             return;
         }
         self.looked = Some(Instant::now());
-        let path = now.recorder.moved().map_or(&now.path, |moved| &moved.to);
-        let shelf = self.second.as_ref().filter(|second| path.starts_with(second.folder())).unwrap_or(shelf);
-        let others = match shelf.make_room(Some(path)) {
+        let others = match shelf.make_room(Some(&now.path)) {
             Ok(others) => others,
             Err(error) => {
                 self.trouble = Some(text::sessions::no_folder(shelf.folder(), &error));
                 0
             }
         };
-        self.full_in = now.outlook.full_in(path, now.recorder.progress().bytes, others, Instant::now());
+        self.full_in = now.outlook.full_in(now.recorder.progress().bytes, others, Instant::now());
     }
 }
 
@@ -321,7 +292,7 @@ mod tests {
     #[test]
     fn every_loop_is_recorded_and_its_session_replays() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None, Servers::default());
+        let mut sessions = Sessions::of_user(Some(folder.path()), Servers::default());
         let mut paths = Vec::new();
         for kept in [true, false] {
             let plan = plan();
@@ -351,7 +322,7 @@ mod tests {
     #[test]
     fn while_it_rests_nothing_is_recorded() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None, Servers::default());
+        let mut sessions = Sessions::of_user(Some(folder.path()), Servers::default());
         sessions.rest(true);
         assert!(sessions.begin(&plan()).is_none());
         assert_eq!((sessions.shown(), sessions.trouble()), (None, None));
@@ -363,7 +334,7 @@ mod tests {
     #[test]
     fn marks_and_alarms_of_the_screen_are_in_the_session_at_their_moments_and_it_replays() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None, Servers::default());
+        let mut sessions = Sessions::of_user(Some(folder.path()), Servers::default());
         let plan = plan();
         let tap = sessions.begin(&plan);
         let handle = start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap();
@@ -418,7 +389,7 @@ mod tests {
     #[test]
     fn a_loop_that_ends_at_once_leaves_no_session() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None, Servers::default());
+        let mut sessions = Sessions::of_user(Some(folder.path()), Servers::default());
         let plan = plan();
         let tap = sessions.begin(&plan);
         drop(start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap());
@@ -431,27 +402,10 @@ mod tests {
     fn a_folder_that_cannot_be_made_is_told_and_the_loop_runs_without_a_recording() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("sessions"), "a file").unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None, Servers::default());
+        let mut sessions = Sessions::of_user(Some(folder.path()), Servers::default());
         assert!(sessions.begin(&plan()).is_none());
         let trouble = sessions.trouble().unwrap();
         assert!(trouble.contains("sessions"), "{trouble}");
         assert_eq!(sessions.shown(), None);
-    }
-
-    #[test]
-    fn what_cannot_be_recorded_in_the_usual_folder_is_recorded_in_the_second_and_that_is_told() {
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("sessions"), "a file").unwrap();
-        let second = folder.path().join("second");
-        let mut sessions = Sessions::of_user(Some(folder.path()), Some(&second), Servers::default());
-        let tap = sessions.begin(&plan());
-        let handle = start(Assembly { tap, ..plan().assembly().unwrap() }).unwrap();
-        sessions.toggle_kept();
-        let path = sessions.shown().unwrap().path;
-        assert!(path.starts_with(&second), "{}", path.display());
-        assert!(sessions.trouble().unwrap().contains("it goes on in"), "{:?}", sessions.trouble());
-        handle.stop_and_join().unwrap();
-        sessions.end();
-        assert!(replay(Recorded::open(&path).unwrap().journal().unwrap(), |_| ()).unwrap().closed);
     }
 }

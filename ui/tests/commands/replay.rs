@@ -130,31 +130,6 @@ fn on_a_small_disk(folder: &Path, script: &str) -> Option<std::process::Output> 
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_recording_whose_disk_is_full_goes_on_in_its_second_place_and_both_replay_as_one() {
-    let folder = tempfile::tempdir().unwrap();
-    let script = "$0 run --virtual --seconds 60 --scene peg_transfer --record disk/a.mcap --second-place b.mcap && cp disk/a.mcap .";
-    let Some(output) = on_a_small_disk(folder.path(), script) else { return };
-    let told = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success() && told.contains("disk/a.mcap and b.mcap"), "{told}");
-    let at = |name: &str| folder.path().join(name).display().to_string();
-    let both = json(&["replay", &at("a.mcap"), &at("b.mcap"), "--json"]);
-    let whole = (&Value::from(60_000), &Value::from(true), &Value::from(true));
-    assert_eq!((&both["ticks"], &both["identical"], &both["closed"]), whole, "{both}");
-    let first = json(&["replay", &at("a.mcap"), "--json"]);
-    assert!(first["ticks"].as_u64().unwrap() > 10_000 && first["closed"] == false, "{first}");
-    // Alone it can be replayed only if the first disk had confirmed nothing.
-    let alone = nima(&["replay", &at("b.mcap")]);
-    let told = String::from_utf8([alone.stdout, alone.stderr].concat()).unwrap();
-    let words = if alone.status.success() { "to the last bit" } else { "began in a.mcap: give that file first" };
-    assert!(told.contains(words), "{told}");
-    let page = nima(&["report", &at("b.mcap"), "--out", &at("page")]);
-    assert!(page.status.success());
-    let page = std::fs::read_to_string(folder.path().join("page/report.html")).unwrap();
-    assert!(page.contains("No space left on device"), "the page says why it begins in the middle");
-}
-
-#[cfg(target_os = "linux")]
-#[test]
 fn a_disk_that_is_full_or_read_only_is_told_in_one_line_with_what_to_do() {
     let folder = tempfile::tempdir().unwrap();
     for (script, words) in [

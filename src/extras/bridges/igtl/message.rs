@@ -1,8 +1,9 @@
 //! A message: its header, what comes with it in version 3 of the protocol, and its content.
 
+use crc::{CRC_64_ECMA_182, Crc};
+
 use super::{
     Content, Wrong,
-    crc::crc64,
     wire::{Cursor, put_name},
 };
 
@@ -22,6 +23,9 @@ pub struct Header {
     /// Checksum of the body.
     pub crc: u64,
 }
+
+/// Checksum of a body.
+pub(super) const CRC: Crc<u64> = Crc::<u64>::new(&CRC_64_ECMA_182);
 
 const TYPE: usize = 12;
 const DEVICE: usize = 20;
@@ -85,7 +89,7 @@ impl Message {
         bytes.extend([0; 16]);
         let body = begin + Header::BYTES;
         self.content.put(bytes);
-        let (length, crc) = ((bytes.len() - body) as u64, crc64(&bytes[body..]));
+        let (length, crc) = ((bytes.len() - body) as u64, CRC.checksum(&bytes[body..]));
         bytes[body - 16..body - 8].copy_from_slice(&length.to_be_bytes());
         bytes[body - 8..body].copy_from_slice(&crc.to_be_bytes());
     }
@@ -98,7 +102,7 @@ impl Message {
         if body.len() as u64 != header.body_bytes {
             return Err(Wrong::Short);
         }
-        if crc64(body) != header.crc {
+        if CRC.checksum(body) != header.crc {
             return Err(Wrong::Checksum);
         }
         let content = if header.version == 1 { body } else { within(body)? };

@@ -13,7 +13,7 @@ use nima_session::{
     objects::ObjectSource,
     outlet::Destination,
     outlook::{Outlook, WARN_BEFORE},
-    recorder::{Moved, Progress, Recorder},
+    recorder::{Progress, Recorder},
 };
 use nima_simulation::Plan;
 use serde::Serialize;
@@ -33,9 +33,9 @@ pub(super) struct Recording {
     ends: Option<Instant>,
     /// Reads the endoscope's pictures for it.
     filming: Option<Filming>,
-    /// What was told already: that it is over, goes on elsewhere, waits for the disk, has lost entries, that the disk will be full
+    /// What was told already: that it is over, waits for the disk, has lost entries, that the disk will be full
     /// within a day and within an hour, that pictures are missing, and that there are none.
-    told: [bool; 8],
+    told: [bool; 7],
 }
 
 /// A second warning of a full disk.
@@ -48,8 +48,6 @@ const SLOW: Duration = Duration::from_secs(1);
 #[derive(Serialize)]
 pub(super) struct Recorded {
     file: PathBuf,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    goes_on_in: Option<PathBuf>,
     ticks: u64,
     lost: u64,
     bytes: u64,
@@ -87,7 +85,7 @@ impl Recording {
         let films = file.is_some() && are_recorded(&plan.rig);
         let into = films.then_some(&recorder);
         let filming = (clock.is_none() && (films || watches)).then(|| Filming::start(into, &plan.rig, reel)).flatten();
-        Ok((Some(tap), Self { recorder: Some((recorder, file)), outlook, ends, filming, told: [false; 8] }))
+        Ok((Some(tap), Self { recorder: Some((recorder, file)), outlook, ends, filming, told: [false; 7] }))
     }
 
     /// Records what this source tells of the objects of the scene too; to be called before the loop starts.
@@ -104,27 +102,24 @@ impl Recording {
 
     /// What has gone wrong, each of it once. The run goes on.
     pub(super) fn news(&mut self) -> Vec<String> {
-        let Some((recorder, file)) = &self.recorder else { return Vec::new() };
+        let Some((recorder, _)) = &self.recorder else { return Vec::new() };
         let progress = recorder.progress();
         let over = recorder.trouble().map(|why| format!("the recording has ended, the run goes on: {why}"));
-        let moved = |Moved { why, to }: &Moved| format!("the recording goes on in {}: {why}", to.display());
         let slow = || format!("the disk has not answered for {:.1} s: the run goes on", progress.waits.as_secs_f64());
         let lost = || "the disk is slower than the loop: parts of the recording are lost, the run goes on".to_owned();
         let missing = || "the disk is slower than the endoscope: pictures are missing, the run goes on".to_owned();
         let no_picture = self.filming.as_ref().and_then(Filming::trouble);
         let now = Instant::now();
-        let place = recorder.moved().map(|moved| &moved.to).or(file.as_ref()).filter(|_| over.is_none());
-        let full_in = place.zip(self.outlook.as_mut());
-        let full_in = full_in.and_then(|(place, outlook)| outlook.full_in(place, progress.bytes, 0, now));
+        let outlook = self.outlook.as_ref().filter(|_| over.is_none());
+        let full_in = outlook.and_then(|outlook| outlook.full_in(progress.bytes, 0, now));
         // A run that ends before needs no more room.
         let full_in = full_in.filter(|full_in| self.ends.is_none_or(|ends| now + *full_in < ends));
         let full = |within: Range<Duration>| {
             let words = full_in.filter(|full_in| within.contains(full_in)).map(disk_full_in)?;
-            Some(format!("{words}: free space, or name a --second-place on another disk next time"))
+            Some(format!("{words}: free space, or record to another disk next time"))
         };
         let news = [
             over,
-            recorder.moved().map(moved),
             (progress.waits > SLOW).then(slow),
             (progress.lost > 0).then(lost),
             full(WARN_AGAIN..WARN_BEFORE),
@@ -144,28 +139,26 @@ impl Recording {
     pub(super) fn end(self) -> anyhow::Result<Option<Recorded>> {
         let Some((mut recorder, file)) = self.recorder else { return Ok(None) };
         recorder.end();
-        let goes_on_in = recorder.moved().map(|moved| moved.to.clone());
         let Progress { ticks, lost, bytes, pictures, pictures_dropped, .. } =
             recorder.finish().context("the recording has ended before the run")?;
-        Ok(file.map(|file| Recorded { file, goes_on_in, ticks, lost, bytes, pictures, pictures_dropped }))
+        Ok(file.map(|file| Recorded { file, ticks, lost, bytes, pictures, pictures_dropped }))
     }
 }
 
 impl Recorded {
     /// In words, for a terminal; begins with a line break.
     pub(super) fn in_words(&self) -> String {
-        let Self { file, goes_on_in, ticks, lost, bytes, pictures, pictures_dropped } = self;
+        let Self { file, ticks, lost, bytes, pictures, pictures_dropped } = self;
         let hole = match lost {
             0 => String::new(),
             _ => format!(", {lost} entries lost: it can be replayed up to the first of them"),
         };
         let megabytes = *bytes as f64 * 1e-6;
-        let moved = goes_on_in.as_ref().map_or_else(String::new, |second| format!(" and {}", second.display()));
         let of_endoscope = match (pictures, pictures_dropped) {
             (0, 0) => String::new(),
             (_, 0) => format!(" and {pictures} pictures"),
             _ => format!(" and {pictures} pictures ({pictures_dropped} more are missing: the disk was too slow)"),
         };
-        format!("\nrecorded {ticks} ticks{of_endoscope} into {}{moved}, {megabytes:.1} MB{hole}", file.display())
+        format!("\nrecorded {ticks} ticks{of_endoscope} into {}, {megabytes:.1} MB{hole}", file.display())
     }
 }

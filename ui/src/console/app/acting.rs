@@ -199,7 +199,7 @@ mod tests {
     #[test]
     fn a_session_is_kept_by_its_key_and_from_the_palette() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), None, Servers::default());
+        let mut sessions = Sessions::of_user(Some(folder.path()), Servers::default());
         let plan = Plan { engage: false, ..nima_tests::plan("free_motion") };
         let (handle, _) = start_recorded(&plan, &mut sessions, None).unwrap();
         let mut window = Harness::builder()

@@ -76,11 +76,6 @@ pub(in crate::console) fn not_kept(path: &Path, error: &io::Error) -> String {
     )
 }
 
-/// The recording had to leave its place.
-pub(in crate::console) fn moved(why: &str, to: &Path) -> String {
-    told!("it goes on in {}, because: {why}", "sie läuft weiter in {}, Grund: {why}", to.display())
-}
-
 /// The disk does not answer.
 pub(in crate::console) fn slow(waits: Duration) -> String {
     told!(

@@ -107,7 +107,7 @@ fn scored(
     let reader = Reader::open(session)?;
     let task = task.map_or_else(|| recorded_task(session, &reader), |task| Ok(task.clone()))?;
     let begin_ns = plotted::beginning_ns(&reader)?;
-    let times_s = stretch.of(session, &reader, &reader)?;
+    let times_s = stretch.of(session, &reader)?;
     let ns = |t_s: f64| if t_s.is_finite() { begin_ns.saturating_add((t_s * 1e9).round() as u64) } else { u64::MAX };
     let score = scored::score(&reader, session, &(ns(times_s.start)..ns(times_s.end)), &task)?;
     let score =

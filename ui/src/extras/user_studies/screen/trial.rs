@@ -170,7 +170,7 @@ impl Run for Trial {
         speed: Option<f64>,
         (reel, audiences): (&Reel, Vec<Box<dyn Audience>>),
     ) -> Result<Started, String> {
-        let to = Destination { file: self.running.session(), audiences, ..Destination::default() };
+        let to = Destination { file: self.running.session(), audiences };
         let is_heard = to.file.is_some() || !to.audiences.is_empty();
         let recorded = is_heard.then(|| recording::begin(to, plan, None));
         let (tap, recorder) = recorded.transpose().map_err(|error| chain(&error))?.unzip();

@@ -290,7 +290,7 @@ fn controls(harness: &Harness<'_, ConsoleApp>) -> String {
 /// A control that is lost, renamed or new is seen in a review. `UPDATE_SNAPSHOTS=1` writes the files anew.
 #[test]
 fn every_view_offers_what_was_agreed() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screen/stored");
     for (role, name) in [(Role::Surgeon, "surgeon"), (Role::Technician, "technician"), (Role::Demo, "demo")] {
         let mut harness = console_of("bimanual", [1600.0, 1000.0], move |app| {
             app.with_options(Options { role: Some(role), ..Options::default() })

@@ -22,7 +22,7 @@ use nima_tests::plan;
 
 use crate::{
     bench::{Console, can_press, pick, read, shown, shows, toured, until, wait},
-    language,
+    language, picture,
 };
 
 /// A small picture, so that a busy machine keeps up.
@@ -98,6 +98,7 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
     pick(&mut console, "Next");
     read(&mut console, "Accepted: it predicts views that were left out");
     language::fits(&mut console, "lens");
+    picture::same(&console, "wizard-camera-lens");
     pick(&mut console, "Next");
     // The board lies still, but the tip stays where it is: that is no place.
     for touched in 0..4 {
@@ -113,6 +114,7 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
     pick(&mut console, "Next");
     read(&mut console, "the place is not known");
     language::fits(&mut console, "save");
+    picture::same(&console, "wizard-camera-save");
     assert!(
         RigConfig::load(&rig).unwrap().endoscope.unwrap().camera.is_none(),
         "nothing is changed before it is saved"

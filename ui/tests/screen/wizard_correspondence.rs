@@ -24,7 +24,7 @@ use nima_tests::gravity::gravity;
 
 use crate::{
     bench::{Console, WIZARD_SPEED, can_press, pick, read, shown_at, write_into},
-    language,
+    language, picture,
 };
 
 fn console(scene: Scene, store: &Path, calibrations: Calibrations) -> Console {
@@ -60,6 +60,7 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
     read(&mut harness, "held out: MAE");
     harness.check_accessibility();
     language::fits(&mut harness, "result");
+    picture::same(&harness, "wizard-correspondence-result");
     pick(&mut harness, "Next");
     language::fits(&mut harness, "save");
     assert!(saved(&store).is_none(), "nothing is kept without being asked");

@@ -34,7 +34,7 @@ use nima_simulation::{
 
 use crate::{
     bench::{TIMEOUT, can_press, pick, read, shown, shows, texts, wait, write_into},
-    language,
+    language, picture,
     virtual_rig::{VirtualRig, records},
 };
 
@@ -185,6 +185,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     console.record(12_000);
     console.read("All goals are met");
     language::fits_alone(&mut console.window, "record");
+    picture::same(&console.window, "wizard-tipforce-record");
     console.press("Next");
     console.press("Small (16)");
     console.press("Start training");
@@ -195,6 +196,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     console.read("networks on");
     assert!(rows_of(folder.path(), "tip-force-data").unwrap() >= 6000, "the data set is on disk for the command line");
     language::fits_alone(&mut console.window, "train");
+    picture::same(&console.window, "wizard-tipforce-train");
     console.press("Next");
     console.press("Start the check");
     console.read("without touching the tissue");
@@ -205,6 +207,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     language::fits_alone(&mut console.window, "check");
     console.press("Next");
     language::fits_alone(&mut console.window, "save");
+    picture::same(&console.window, "wizard-tipforce-save");
     assert!(!model_path(folder.path()).exists(), "nothing is kept without being asked");
     let wizards = std::mem::take(&mut console.window.state_mut().wizards);
     let mut real = real_console(wizards, folder.path());

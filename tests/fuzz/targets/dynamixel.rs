@@ -1,0 +1,24 @@
+//! Packets of servos in a stream of any bytes.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use nima_devices::dynamixel::{
+    codec::{Incoming, blocks},
+    message::Instruction,
+};
+
+fuzz_target!(|bytes: &[u8]| {
+    let mut incoming = Incoming::new(200);
+    let mut rest = bytes;
+    while !rest.is_empty() {
+        let count = incoming.feed(rest);
+        rest = &rest[count..];
+        let mut progress = count;
+        while let Some(packet) = incoming.next() {
+            progress += 1;
+            Instruction::decode(packet.instruction, packet.body).ok();
+            blocks(packet.body, 16).into_iter().flatten().for_each(drop);
+        }
+        assert!(progress > 0, "stuck");
+    }
+});

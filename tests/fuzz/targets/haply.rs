@@ -1,0 +1,15 @@
+//! Answers of a Haply handle in a stream of any bytes.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use nima_devices::haply::codec::{Decoder, DeviceInfo, State, force_of};
+
+fuzz_target!(|bytes: &[u8]| {
+    let _ = (DeviceInfo::decode(bytes), State::decode(bytes), force_of(bytes));
+    let mut decoder = Decoder::default();
+    for piece in bytes.chunks(40) {
+        decoder.room()[..piece.len()].copy_from_slice(piece);
+        decoder.filled(piece.len());
+        while decoder.next().is_some() {}
+    }
+});

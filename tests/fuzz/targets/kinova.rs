@@ -1,0 +1,26 @@
+//! Frames of an arm, alone and in a stream of any bytes.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use nima_devices::kinova::{
+    faults::Faults,
+    feedback::Feedback,
+    frame::{Frame, PacketReader},
+};
+
+fuzz_target!(|bytes: &[u8]| {
+    if let Ok(frame) = Frame::decode(bytes)
+        && let Ok(feedback) = Feedback::decode(frame.payload)
+    {
+        std::hint::black_box((feedback.is_finite(), Faults::of(&feedback).code()));
+    }
+    let mut reader = PacketReader::default();
+    for piece in bytes.chunks(64) {
+        let room = reader.room();
+        let count = piece.len().min(room.len());
+        assert!(count > 0, "the stream goes on");
+        room[..count].copy_from_slice(&piece[..count]);
+        reader.filled(count);
+        while reader.next_frame().is_some() {}
+    }
+});

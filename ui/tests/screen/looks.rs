@@ -5,8 +5,8 @@ use std::{path::Path, time::Duration};
 
 use egui::{Key, Modifiers};
 use nima_console::console::{Options, desk::Layout, roles::Role, settings::Kept, wizards::Which};
+use nima_simulation::Plan;
 use nima_tests::plan;
-use nima_world::Plan;
 
 use crate::{
     bench::{Console, comes, console_of, pick, press, read, shown, shows, toured, until, wait},
@@ -40,7 +40,8 @@ fn every_role_and_panel_looks_as_stored() {
     for (role, front) in VIEWS {
         for light in [false, true] {
             let settings = console.state_mut().settings_mut();
-            (settings.role, settings.light) = (role, light);
+            settings.role = role;
+            settings.light = light;
             settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
             console.run_steps(4);
             let panels: Vec<_> = front.iter().map(|panel| format!("-{panel:?}")).collect();

@@ -49,7 +49,8 @@ pub fn elsewhere(folder: &Path) -> Settings {
         set.handle.force_dimension_mut().unwrap().emulator =
             Some(format!("127.0.0.1:{}", free_port()).parse().unwrap());
         let arm = set.arm.kinova_mut().unwrap();
-        (arm.tcp_port, arm.udp_port) = (free_port(), free_port());
+        arm.tcp_port = free_port();
+        arm.udp_port = free_port();
         let sensor = set.sensor.bota_mut().unwrap();
         sensor.port = match sensor.transport {
             bota::Transport::Socket => format!("127.0.0.1:{}", free_port()),
@@ -74,7 +75,8 @@ pub fn elsewhere(folder: &Path) -> Settings {
 pub fn rig_file(devices: &Settings) -> RigFile {
     let mut file = RigFile::of("emulated").unwrap();
     for side in Side::ALL {
-        let (set, side) = (devices.arm(side).unwrap(), side.word());
+        let set = devices.arm(side).unwrap();
+        let side = side.word();
         let handle = set.handle.force_dimension().unwrap();
         file.set(&format!("devices.{side}.handle.emulator"), handle.emulator.unwrap().to_string());
         let arm = set.arm.kinova().unwrap();

@@ -11,7 +11,8 @@ use nima_simulation::{World, scene::Scene};
 /// A gravity calibration recorded sample by sample in its own scene.
 pub fn gravity() -> GravityRecord {
     let scene = Scene::load("gravity").unwrap();
-    let (mut world, mut session) = (World::new(&scene, 1000.0), GravitySession::new(SessionSettings::default()));
+    let mut world = World::new(&scene, 1000.0);
+    let mut session = GravitySession::new(SessionSettings::default());
     for tick in 1..90_000 {
         let Some(target) = session.target() else { break };
         let t_s = f64::from(tick) * 1e-3;

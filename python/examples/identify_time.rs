@@ -19,12 +19,14 @@ fn sample(i: usize) -> Sample {
 fn main() -> Result<(), Box<dyn Error>> {
     let mut numbers = env::args().skip(1).map(|text| text.parse::<usize>());
     let mut number = |name| numbers.next().ok_or_else(|| format!("give {name}"));
-    let (samples, runs) = (number("SAMPLES")??, number("RUNS")??);
+    let samples = number("SAMPLES")??;
+    let runs = number("RUNS")??;
     let recording = Recording::of_samples(Path::new("speed"), vec![0, 1, 2], (0..samples).map(sample).collect())?;
     let literal = Recipe::default();
     let options = Options { mode: Mode::Best, window_s: 0.3, delay_s: 0.05, max_degree: 5, cross_talk: false, literal };
     for _ in 0..runs {
-        let (begin, mut sum) = (Instant::now(), 0.0);
+        let begin = Instant::now();
+        let mut sum = 0.0;
         let figures = replay(&recording, &options, |row| sum += row.rendered.map_or(0.0, |force_n| force_n.x))?;
         println!("{} {:e} {sum:e}", begin.elapsed().as_secs_f64(), figures.error.mae);
     }

@@ -114,7 +114,8 @@ pub(crate) fn remove_gravity<'py>(
     let accelerations = optional("accelerations_m_s2", &accelerations_m_s2, 3, rows)?;
     let rotations = optional("world_from_sensor_wxyz", &world_from_sensor_wxyz, 4, rows)?;
     let orientations = orientations(rows, accelerations.as_ref(), rotations.as_ref())?;
-    let (mut free_n, mut free_nm) = (Vec::with_capacity(3 * rows), Vec::new());
+    let mut free_n = Vec::with_capacity(3 * rows);
+    let mut free_nm = Vec::new();
     for (row, orientation) in orientations.iter().enumerate() {
         let field_m_s2 = field(&model, orientation).ok_or_else(|| {
             let source = if model.source == Source::Imu { "accelerations_m_s2" } else { "world_from_sensor_wxyz" };

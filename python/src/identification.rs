@@ -186,7 +186,8 @@ pub(crate) fn identify<'py>(
     parcels: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let mode: Mode = mode.parse().map_err(value)?;
-    let (reading, choice) = (word::<Reading>("reading", reading)?, word::<Choice>("choice", choice)?);
+    let reading = word::<Reading>("reading", reading)?;
+    let choice = word::<Choice>("choice", choice)?;
     let literal = Recipe { reading, choice, constant, ridge };
     let options = Options { mode, window_s, delay_s, max_degree, cross_talk, literal };
     let positions = Axes::new("positions_m", &positions_m)?;

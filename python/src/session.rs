@@ -186,7 +186,8 @@ impl Session {
         from_s: Option<f64>,
         to_s: Option<f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (arm, times_ns) = (self.arm(arm)?, self.stretch(from_s, to_s)?);
+        let arm = self.arm(arm)?;
+        let times_ns = self.stretch(from_s, to_s)?;
         let mut columns = Columns::default();
         guarded(|| {
             py.detach(|| {
@@ -224,8 +225,10 @@ impl Session {
             return Err(value(format_args!("channel {topic:?} holds {}, not named numbers", channel.encoding.schema)));
         }
         let times_ns = self.stretch(from_s, to_s)?;
-        let (mut decoder, mut times_s) = (JointStateDecoder::default(), Vec::new());
-        let (mut names, mut numbers): (Vec<String>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
+        let mut decoder = JointStateDecoder::default();
+        let mut times_s = Vec::new();
+        let mut names: Vec<String> = Vec::new();
+        let mut numbers: Vec<Vec<f64>> = Vec::new();
         guarded(|| {
             py.detach(|| {
                 for message in self.reader.messages(&[topic], times_ns) {

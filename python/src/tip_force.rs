@@ -53,8 +53,10 @@ impl TipForceModel {
     fn estimate<'py>(&self, py: Python<'py>, inputs: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyDict>> {
         let outputs = self.model.outputs.len();
         let inputs = table("inputs", &inputs, self.model.inputs.len(), None)?;
-        let (mut output, mut spread) = (Vec::new(), Vec::new());
-        let (mut doubt, mut in_doubt) = (Vec::new(), Vec::new());
+        let mut output = Vec::new();
+        let mut spread = Vec::new();
+        let mut doubt = Vec::new();
+        let mut in_doubt = Vec::new();
         guarded(|| {
             py.detach(|| {
                 let mut estimator = Estimator::new(self.model.clone());
@@ -106,7 +108,9 @@ impl TipForceModel {
         let turned: Vec<_> =
             (0..rows).map(|row| rotation("world_from_sensor_wxyz", &rotations, row)).collect::<PyResult<_>>()?;
         let mut tip_force = TipForce::new(self.model.clone(), fallback).map_err(value)?;
-        let (mut force_n, mut share, mut doubt) = (Vec::new(), Vec::new(), Vec::new());
+        let mut force_n = Vec::new();
+        let mut share = Vec::new();
+        let mut doubt = Vec::new();
         guarded(|| {
             py.detach(|| {
                 for row in 0..rows {

@@ -97,7 +97,8 @@ impl Axis {
     fn ticks(&self) -> Vec<(f64, String)> {
         let [from, to] = self.range;
         if self.logarithmic {
-            let (first, last) = (from.log10().ceil() as i32, to.log10().floor() as i32);
+            let first = from.log10().ceil() as i32;
+            let last = to.log10().floor() as i32;
             let step = ((last - first) / 8 + 1).max(1);
             let between: &[i32] = if to / from < 400.0 { &[1, 2, 5] } else { &[1] };
             return (first - 1..=last)
@@ -138,7 +139,8 @@ fn power_of_ten(power: i32) -> String {
 /// All charts side by side, as one SVG document.
 pub fn svg(charts: &[Chart]) -> String {
     let legend = charts.iter().map(legend_lines).max().unwrap_or(0) as f64 * LEGEND_LINE;
-    let (width, height) = (WIDTH * charts.len().max(1) as f64, HEIGHT + legend);
+    let width = WIDTH * charts.len().max(1) as f64;
+    let height = HEIGHT + legend;
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
          font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
@@ -168,7 +170,10 @@ fn down(place: f64) -> f64 {
 }
 
 fn frame(out: &mut String, chart: &Chart) {
-    let (left, right, top, bottom) = (across(0.0), across(1.0), down(1.0), down(0.0));
+    let left = across(0.0);
+    let right = across(1.0);
+    let top = down(1.0);
+    let bottom = down(0.0);
     writeln!(out, "<text x=\"{left}\" y=\"22\" font-size=\"14\" font-weight=\"bold\">{}</text>", escape(&chart.title))
         .ok();
     for (value, label) in chart.x.ticks() {
@@ -188,8 +193,10 @@ fn frame(out: &mut String, chart: &Chart) {
         bottom - top
     )
     .ok();
-    let (middle, centre) = (f64::midpoint(left, right), f64::midpoint(top, bottom));
-    let (x_title, y_title) = (escape(&chart.x.title), escape(&chart.y.title));
+    let middle = f64::midpoint(left, right);
+    let centre = f64::midpoint(top, bottom);
+    let x_title = escape(&chart.x.title);
+    let y_title = escape(&chart.y.title);
     writeln!(out, "<text x=\"{middle:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{x_title}</text>", bottom + 40.0).ok();
     writeln!(out, "<text transform=\"translate(16 {centre:.1}) rotate(-90)\" text-anchor=\"middle\">{y_title}</text>")
         .ok();

@@ -94,7 +94,8 @@ impl Health {
         let begin_s = *self.window_s.get_or_insert(now_s);
         if now_s - begin_s >= RATE_WINDOW_S {
             self.rate_hz = f64::from(self.in_window) / (now_s - begin_s);
-            (self.window_s, self.in_window) = (Some(now_s), 0);
+            self.window_s = Some(now_s);
+            self.in_window = 0;
         }
         self.in_window += 1;
         self.newest_s = Some(now_s);
@@ -139,7 +140,8 @@ impl Outages {
         if matches!(health.standing, Standing::Connected | Standing::Closed) {
             self.since_s = None;
         }
-        (health.outages, health.longest_outage_s) = (self.count, self.longest_s);
+        health.outages = self.count;
+        health.longest_outage_s = self.longest_s;
     }
 }
 

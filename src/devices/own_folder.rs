@@ -60,7 +60,8 @@ mod unix {
         DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(told)?;
         // A link must be as trustworthy as the folder that it points to.
         let foreign = |there: &Metadata| ![0, user_id()].contains(&there.uid());
-        let (link, there) = (fs::symlink_metadata(folder).map_err(told)?, fs::metadata(folder).map_err(told)?);
+        let link = fs::symlink_metadata(folder).map_err(told)?;
+        let there = fs::metadata(folder).map_err(told)?;
         let reason = if foreign(&link) || foreign(&there) {
             "belongs to another user"
         } else if there.mode() & (WORLD_WRITABLE | STICKY) == WORLD_WRITABLE {
@@ -168,7 +169,8 @@ mod tests {
     #[test]
     fn a_planted_lock_is_neither_followed_nor_emptied() {
         let folder = tempfile::tempdir().unwrap();
-        let (victim, lock) = (folder.path().join("victim"), folder.path().join(".tty.lock"));
+        let victim = folder.path().join("victim");
+        let lock = folder.path().join(".tty.lock");
         fs::write(&victim, "kept").unwrap();
         symlink(&victim, &lock).unwrap();
         let told = lock_file(&lock).unwrap_err().to_string();

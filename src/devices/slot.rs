@@ -286,7 +286,8 @@ mod tests {
 
     impl Drop for Slow {
         fn drop(&mut self) {
-            let (begin, Self(_, closing, together)) = (Instant::now(), self);
+            let begin = Instant::now();
+            let Self(_, closing, together) = self;
             closing.fetch_add(1, Ordering::AcqRel);
             while closing.load(Ordering::Acquire) < 2 && begin.elapsed() < Duration::from_secs(5) {
                 std::thread::sleep(Duration::from_millis(1));
@@ -300,7 +301,8 @@ mod tests {
         judged(|| {
             let [closing, together] = [(); 2].map(|()| Arc::new(AtomicU64::new(0)));
             let mut slots = [(); 2].map(|()| {
-                let (closing, together) = (Arc::clone(&closing), Arc::clone(&together));
+                let closing = Arc::clone(&closing);
+                let together = Arc::clone(&together);
                 let flaky = || Flaky { health: Health::default(), identity: Identity::default(), left: u32::MAX };
                 Slot::start("slow", move || Ok(Slow(flaky(), Arc::clone(&closing), Arc::clone(&together)))).unwrap()
             });

@@ -63,7 +63,8 @@ impl Unread {
     /// Discards all, and returns the number.
     pub(crate) const fn clear(&mut self) -> usize {
         let count = self.end - self.begin;
-        (self.begin, self.end) = (0, 0);
+        self.begin = 0;
+        self.end = 0;
         count
     }
 }
@@ -75,7 +76,9 @@ mod tests {
     #[test]
     fn bytes_are_read_in_order_whatever_the_pieces() {
         let mut random = fastrand::Rng::with_seed(11);
-        let (mut unread, mut next_in, mut next_out) = (Unread::with_room(16), 0_u8, 0_u8);
+        let mut unread = Unread::with_room(16);
+        let mut next_in = 0_u8;
+        let mut next_out = 0_u8;
         for _ in 0..2000 {
             let fed: Vec<u8> = (0..random.u8(0..12)).map(|ahead| next_in.wrapping_add(ahead)).collect();
             let before = unread.bytes().len();

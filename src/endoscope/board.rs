@@ -151,7 +151,8 @@ impl Board {
             "nima board {}x{}, squares of {square} mm: measure one, print at 100 %",
             self.corners[0], self.corners[1]
         );
-        let (at, size) = (height - 0.3 * square, 0.3 * square);
+        let at = height - 0.3 * square;
+        let size = 0.3 * square;
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\">\
              <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/><path d=\"{squares}\"/>\
@@ -180,7 +181,8 @@ impl Portrait {
     /// Grey values, 0 to 255, row by row, of a board at this place before the lens.
     pub fn draw(&self, board: &Board, camera_from_board: &Isometry3<f64>) -> Vec<f32> {
         let [width, height] = self.size_px;
-        let (from, way) = (camera_from_board.inverse(), camera_from_board.rotation.inverse());
+        let from = camera_from_board.inverse();
+        let way = camera_from_board.rotation.inverse();
         let eye = from.translation.vector / board.square_m;
         // Where a line of sight meets the board, in squares.
         let meets = |sight: &Vector2<f64>| {

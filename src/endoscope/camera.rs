@@ -47,7 +47,8 @@ impl Bend {
     /// Where a direction is seen.
     pub fn at(&self, flat: &Vector2<f64>) -> Vector2<f64> {
         let Self { p1, p2, .. } = *self;
-        let (square, [x, y]) = (flat.norm_squared(), [flat.x, flat.y]);
+        let square = flat.norm_squared();
+        let [x, y] = [flat.x, flat.y];
         let cross = 2.0 * x * y;
         let tangential =
             Vector2::new(p1 * cross + p2 * (square + 2.0 * x * x), p2 * cross + p1 * (square + 2.0 * y * y));
@@ -57,8 +58,10 @@ impl Bend {
     /// How that place moves with the direction.
     pub fn slope(&self, flat: &Vector2<f64>) -> Matrix2<f64> {
         let Self { k1, k2, p1, p2 } = *self;
-        let (square, [x, y]) = (flat.norm_squared(), [flat.x, flat.y]);
-        let (radially, more) = (self.radially(square), 2.0 * k1 + 4.0 * k2 * square);
+        let square = flat.norm_squared();
+        let [x, y] = [flat.x, flat.y];
+        let radially = self.radially(square);
+        let more = 2.0 * k1 + 4.0 * k2 * square;
         let across = x * y * more + 2.0 * (p1 * x + p2 * y);
         Matrix2::new(
             radially + x * x * more + 2.0 * p1 * y + 6.0 * p2 * x,
@@ -75,7 +78,8 @@ impl Bend {
     /// The tangent at which the picture turns back on itself: nothing beyond has a place.
     pub fn tangent_most(&self) -> f64 {
         // Where 1 + 3 k1 t^2 + 5 k2 t^4 is zero first.
-        let (half, discriminant) = (3.0 * self.k1, 9.0 * self.k1 * self.k1 - 20.0 * self.k2);
+        let half = 3.0 * self.k1;
+        let discriminant = 9.0 * self.k1 * self.k1 - 20.0 * self.k2;
         if discriminant < 0.0 {
             return TANGENT_MOST;
         }

@@ -118,7 +118,8 @@ impl Feed {
         });
         let feed = Self { shared: Arc::clone(&shared) };
         let wake = Arc::new(wake);
-        let (reads, wakes) = (Arc::clone(&shared), Arc::clone(&wake));
+        let reads = Arc::clone(&shared);
+        let wakes = Arc::clone(&wake);
         Builder::new().name("endoscope".to_owned()).spawn(move || reads.read(&address, &*wakes))?;
         Builder::new().name("picture".to_owned()).spawn(move || shared.decode(&*wake))?;
         Ok(feed)
@@ -230,7 +231,9 @@ impl Shared {
                     {
                         let mut state = locked(&self.state);
                         state.watch.arrived(&compressed);
-                        (state.trouble, state.opened, state.format) = (None, true, Some(compressed.format));
+                        state.trouble = None;
+                        state.opened = true;
+                        state.format = Some(compressed.format);
                     }
                     if let Some(reel) = self.reel.get() {
                         reel.put(&compressed);
@@ -281,7 +284,8 @@ impl Shared {
                 }
                 if let Ok(picture) = decoded {
                     state.shown += 1;
-                    let (number, arrived) = (state.shown, compressed.arrived);
+                    let number = state.shown;
+                    let arrived = compressed.arrived;
                     let work = arrived.elapsed();
                     state.newest = Some(Newest { number, picture: Arc::new(picture), arrived, work });
                 }

@@ -161,7 +161,8 @@ struct Film {
 impl Film {
     fn open(path: &Path) -> Result<Self, Trouble> {
         let file = File::open(path).map_err(|error| trouble(path, &error))?;
-        let (splitter, buffer) = (Splitter::default(), vec![0; READ_BYTES]);
+        let splitter = Splitter::default();
+        let buffer = vec![0; READ_BYTES];
         Ok(Self { path: path.to_owned(), file, splitter, buffer, found: 0 })
     }
 }
@@ -197,7 +198,8 @@ struct Stream {
 impl Stream {
     fn open(path: &Path) -> Result<Self, Trouble> {
         let file = File::open(path).map_err(|error| trouble(path, &error))?;
-        let (splitter, buffer) = (h264::Splitter::default(), vec![0; READ_BYTES]);
+        let splitter = h264::Splitter::default();
+        let buffer = vec![0; READ_BYTES];
         Ok(Self { path: path.to_owned(), file, splitter, buffer, found: false })
     }
 }

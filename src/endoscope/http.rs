@@ -55,7 +55,9 @@ impl Http {
         );
         stream.write_all(request.as_bytes()).map_err(told)?;
         let now = Instant::now();
-        let (answer, parts, buffer) = (Answer::default(), VecDeque::new(), vec![0; READ_BYTES]);
+        let answer = Answer::default();
+        let parts = VecDeque::new();
+        let buffer = vec![0; READ_BYTES];
         Ok(Self { place, stream, answer, parts, buffer, heard: now, whole: now, ended: false })
     }
 

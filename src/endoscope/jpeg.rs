@@ -66,10 +66,14 @@ impl Picture {
     /// There is nothing to see on it.
     pub fn is_black(&self) -> bool {
         let brightness = |pixel: &[u8]| pixel[..3].iter().map(|&value| u32::from(value)).max().unwrap_or(0);
-        let (mut sum, mut most, mut count) = (0, 0, 0);
+        let mut sum = 0;
+        let mut most = 0;
+        let mut count = 0;
         for pixel in self.rgba.chunks_exact(4).step_by(BLACK_STEP) {
             let value = brightness(pixel);
-            (sum, most, count) = (sum + value, most.max(value), count + 1);
+            sum += value;
+            most = most.max(value);
+            count += 1;
         }
         count > 0 && sum <= BLACK_MEAN * count && most <= BLACK_MOST
     }

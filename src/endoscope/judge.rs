@@ -110,7 +110,8 @@ impl Watch {
     /// What came at this moment looks so: the same number for the same picture. A stream, whose pictures refer to each other, never sends the same bytes.
     pub(crate) fn looks(&mut self, at: Instant, hash: u64) {
         if self.hash != Some(hash) {
-            (self.hash, self.changed) = (Some(hash), Some(at));
+            self.hash = Some(hash);
+            self.changed = Some(at);
         }
     }
 
@@ -154,7 +155,8 @@ impl Watch {
         if let Some(stood) = self.changed.map(since).filter(|stood| *stood >= FROZEN) {
             return Some(Wrong::Frozen(stood));
         }
-        let (shown, expected_px) = (self.shown?, self.expected_px?);
+        let shown = self.shown?;
+        let expected_px = self.expected_px?;
         if shown.size_px != expected_px {
             return Some(Wrong::Size(shown.size_px, expected_px));
         }
@@ -203,7 +205,8 @@ impl Delay {
             Some(_) => difference_s.min(self.least_s + DRIFT * (at_s - self.last_s)),
             None => difference_s,
         };
-        (self.late_s, self.last_s) = (Some(difference_s - self.least_s), at_s);
+        self.late_s = Some(difference_s - self.least_s);
+        self.last_s = at_s;
     }
 
     fn late(&self) -> Option<Duration> {
@@ -336,7 +339,8 @@ mod tests {
 
     #[test]
     fn pictures_that_are_not_compressed_differ_by_the_noise_of_their_sensor() {
-        let (size_px, layout) = ([64, 64], crate::Layout::Yuyv);
+        let size_px = [64, 64];
+        let layout = crate::Layout::Yuyv;
         let raw = crate::Raw { layout, colours: crate::Colours::usual(size_px), size_px, stride: 128 };
         let mut compressed = Compressed::jpeg(vec![90; raw.bytes()], Instant::now(), None);
         compressed.format = Format::Raw(raw);

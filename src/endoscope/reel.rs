@@ -198,7 +198,8 @@ mod tests {
     #[test]
     fn a_glimpse_is_of_the_newest_jpeg_and_takes_none_from_a_recording() {
         let reel = Reel::default();
-        let (glimpse, end) = (reel.glimpse(), reel.end());
+        let glimpse = reel.glimpse();
+        let end = reel.end();
         reel.put(&picture(1));
         assert!(glimpse.take(true).is_none(), "nobody looked");
         reel.put(&picture(2));

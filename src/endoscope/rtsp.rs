@@ -76,7 +76,8 @@ fn begin(host: &str, port: u16, path: &str) -> Result<Box<dyn Source>, Trouble> 
     match runtime.block_on(async { timeout(OPENING, play(url)).await }) {
         Err(_) => Err(Trouble::Silent { place }),
         Ok(Ok((session, is_jpeg))) => {
-            let (session, heard) = (Some(Box::pin(session)), Instant::now());
+            let session = Some(Box::pin(session));
+            let heard = Instant::now();
             Ok(Box::new(Rtsp { place, runtime, session, is_jpeg, heard, reported_s: None }))
         }
         Ok(Err(Failure::Format(found))) => Err(Trouble::OtherFormat { place, found, wanted: "H.264" }),
@@ -103,7 +104,8 @@ async fn play(url: Url) -> Result<(Demuxed, bool), Failure> {
 
 /// The trouble behind an error of the client, which tells it in words only.
 fn told(place: &str, error: &retina::Error, reach: Option<(&str, u16)>) -> Trouble {
-    let (place, text) = (place.to_owned(), error.to_string());
+    let place = place.to_owned();
+    let text = error.to_string();
     if let Some(status) = error.status_code().filter(|status| *status != 200) {
         return Trouble::Refused { place, status };
     }

@@ -13,7 +13,9 @@ pub fn steadied(mut newest_first: impl Iterator<Item = Isometry3<f64>>) -> Optio
         (pose.translation.vector - newest.translation.vector).norm() <= MOVED_M
             && pose.rotation.angle_to(&newest.rotation) <= MOVED_RAD
     };
-    let (mut count, mut sum_m, mut sum) = (1.0, newest.translation.vector, newest.rotation.into_inner());
+    let mut count = 1.0;
+    let mut sum_m = newest.translation.vector;
+    let mut sum = newest.rotation.into_inner();
     for pose in newest_first.take_while(is_here) {
         count += 1.0;
         sum_m += pose.translation.vector;
@@ -33,7 +35,8 @@ mod tests {
 
     fn reading(noise: &mut Noise, at_m: Vector3<f64>) -> Isometry3<f64> {
         let mut white = |sd: f64| Vector3::from_fn(|_, _| sd * noise.gaussian());
-        let (miss_m, turn) = (white(0.000_25), UnitQuaternion::from_scaled_axis(white(0.001)));
+        let miss_m = white(0.000_25);
+        let turn = UnitQuaternion::from_scaled_axis(white(0.001));
         let pose =
             Isometry3::from_parts((at_m + miss_m).into(), turn * UnitQuaternion::from_euler_angles(2.0, 0.5, 3.0));
         // The other quaternion of the same rotation, now and then.
@@ -43,7 +46,8 @@ mod tests {
 
     #[test]
     fn noise_is_averaged_and_a_motion_is_followed_at_once() {
-        let (mut noise, rest_m) = (Noise::new(7), Vector3::new(0.1, -0.2, 0.3));
+        let mut noise = Noise::new(7);
+        let rest_m = Vector3::new(0.1, -0.2, 0.3);
         let mut kept: Vec<_> = (0..60).map(|_| reading(&mut noise, rest_m)).collect();
         let steady = steadied(kept.iter().rev().copied()).unwrap();
         assert!((steady.translation.vector - rest_m).norm() < 0.000_2, "{steady}");

@@ -32,7 +32,8 @@ pub fn draw(time_us: u64, square_px: usize, rgb: &mut [u8], width_px: usize) {
 pub fn read(square_px: usize, mut brightness: impl FnMut(usize, usize) -> u8) -> Option<u64> {
     let mut values = [0_u32; ROWS * COLUMNS];
     // The middle of each square: at its edges the neighbours shine through.
-    let (from, to) = (square_px / 4, (square_px - square_px / 4).max(square_px / 4 + 1));
+    let from = square_px / 4;
+    let to = (square_px - square_px / 4).max(square_px / 4 + 1);
     for (place, value) in values.iter_mut().enumerate() {
         let corner = [square_px * (place % COLUMNS), square_px * (place / COLUMNS)];
         for y in from..to {
@@ -42,7 +43,8 @@ pub fn read(square_px: usize, mut brightness: impl FnMut(usize, usize) -> u8) ->
         }
         *value /= ((to - from) * (to - from)) as u32;
     }
-    let (low, high) = (values.iter().min()?, values.iter().max()?);
+    let low = values.iter().min()?;
+    let high = values.iter().max()?;
     if high - low < CONTRAST_LEAST {
         return None;
     }

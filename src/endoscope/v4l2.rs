@@ -313,7 +313,8 @@ impl Opening<'_> {
         for index in 0..count {
             let mut block = queued(index);
             self.ask(QUERYBUF, &mut block, "asking for a buffer")?;
-            let (offset, length) = (block.get(at::BUF_OFFSET), block.get(at::BUF_LENGTH) as usize);
+            let offset = block.get(at::BUF_OFFSET);
+            let length = block.get(at::BUF_LENGTH) as usize;
             self.kernel.map(offset, length).map_err(|error| told(self.place, &error, "sharing a buffer"))?;
         }
         for index in 0..count {

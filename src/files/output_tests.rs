@@ -119,8 +119,10 @@ mod unix {
 
     #[test]
     fn a_link_stays_and_its_file_is_replaced_beside_itself() {
-        let (here, there) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-        let (link, file) = (here.path().join("link"), there.path().join("file"));
+        let here = tempfile::tempdir().unwrap();
+        let there = tempfile::tempdir().unwrap();
+        let link = here.path().join("link");
+        let file = there.path().join("file");
         fs::write(&file, "old").unwrap();
         symlink(&file, &link).unwrap();
         write(&link, "new").unwrap();

@@ -200,7 +200,8 @@ impl Store {
         let Some(record) = read::<R>(&path)? else { return Ok(None) };
         for (what, found, wanted) in [("sensor", &record.head().sensor, sensor), ("tool", &record.head().tool, tool)] {
             if found != wanted {
-                let (found, wanted) = (quoted(found), quoted(wanted));
+                let found = quoted(found);
+                let wanted = quoted(wanted);
                 return Err(StoreError::Other { path, what, found, wanted });
             }
         }
@@ -271,7 +272,8 @@ pub fn read<R: Record>(path: &Path) -> Result<Option<R>, StoreError> {
     if let Some(found) = head.get("kind").and_then(toml::Value::as_str)
         && found != R::KIND
     {
-        let (found, wanted) = (quoted(found), R::KIND.to_owned());
+        let found = quoted(found);
+        let wanted = R::KIND.to_owned();
         return Err(StoreError::Other { path: path.to_owned(), what: "kind", found, wanted });
     }
     let record: R = nima_files::from_toml(&text).map_err(in_words)?;

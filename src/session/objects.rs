@@ -145,7 +145,8 @@ pub fn happenings(reader: &Reader, times_ns: Range<u64>) -> Result<Vec<Happening
 /// # Errors
 /// [`ReadError`] if the session cannot be read.
 pub fn openings(reader: &Reader, side: Side, times_ns: Range<u64>) -> Result<Vec<(f64, f64)>, ReadError> {
-    let (begin_ns, topic) = (beginning_ns(reader)?, topic(side, JAWS_PLOT));
+    let begin_ns = beginning_ns(reader)?;
+    let topic = topic(side, JAWS_PLOT);
     let Some(mut columns) = Columns::of(&topic).filter(|_| has(reader, &topic)) else { return Ok(Vec::new()) };
     let mut all = Vec::new();
     for message in reader.messages(&[&topic], times_ns) {

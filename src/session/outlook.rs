@@ -52,7 +52,8 @@ mod tests {
     fn a_disk_lasts_as_long_as_its_free_bytes_and_those_of_sessions_that_make_room() {
         let folder = tempfile::tempdir().unwrap();
         let free = free_bytes(folder.path()).unwrap();
-        let (begin, minute) = (Instant::now(), Duration::from_mins(1));
+        let begin = Instant::now();
+        let minute = Duration::from_mins(1);
         let outlook = Outlook::new(&folder.path().join("a.mcap"), 0, begin);
         // In two minutes it has taken a part of the disk that leaves room for ten hours.
         let bytes = free / 300;

@@ -133,7 +133,8 @@ impl LoopClock {
 
     /// The loop's time of a moment, s; before 0 where the loop had not begun.
     pub(crate) fn at(&self, moment: Instant) -> Option<f64> {
-        let (begin, (offset_s, _)) = (self.begin?, self.offset_s?);
+        let begin = self.begin?;
+        let (offset_s, _) = self.offset_s?;
         let since_s = match moment.checked_duration_since(begin) {
             Some(since) => since.as_secs_f64(),
             None => -begin.duration_since(moment).as_secs_f64(),

@@ -140,7 +140,8 @@ impl Recorder {
     /// # Errors
     /// [`RecordError`] if the file cannot be created or its beginning cannot be written.
     pub fn start(to: Destination<'_>, about: About, origin: Origin, tap: TapEnd) -> Result<Self, RecordError> {
-        let ((notes, noted), (sources, watched)) = (unbounded(), unbounded());
+        let (notes, noted) = unbounded();
+        let (sources, watched) = unbounded();
         let mut session = Session::create(to, about, origin, noted, watched)?;
         let shared = Arc::new(Shared::new());
         shared.bytes.store(session.file.out.bytes(), Ordering::Relaxed);
@@ -309,7 +310,8 @@ impl Session {
 
     /// Writes the pictures up to the last tick.
     fn pictures(&mut self, shared: &Shared) -> Result<(), RecordError> {
-        let (clock, started_ns) = (&self.clock, self.file.started_ns);
+        let clock = &self.clock;
+        let started_ns = self.file.started_ns;
         let [written, dropped] = self.file.topics.pictures(
             &mut self.file.out,
             self.scribe.t_s(),

@@ -131,7 +131,8 @@ pub fn read(bundle: &[u8]) -> Result<Vec<Moment>, WatchError> {
         return Err(WatchError::Version);
     }
     let from = &mut from;
-    let (rows, told) = (take_number(from)?, take_number(from)?);
+    let rows = take_number(from)?;
+    let told = take_number(from)?;
     if rows > MOST || told > 2 * MOST {
         return Err(Wrong::Long.into());
     }
@@ -175,14 +176,16 @@ fn put_objects(bytes: &mut Vec<u8>, objects: Option<&Objects>) {
     };
     for ring in rings {
         let numbers = ring.as_ref().map(|ring| {
-            let (at_m, turn) = (ring.translation.vector, ring.rotation.coords);
+            let at_m = ring.translation.vector;
+            let turn = ring.rotation.coords;
             [at_m.x, at_m.y, at_m.z, turn.x, turn.y, turn.z, turn.w]
         });
         words(numbers.as_ref().map(<[f64; OF_RING]>::as_slice));
     }
     for of_side in jaws {
         let numbers = of_side.map(|Jaws { opening_rad, opens_n, force_n, torque_nm, touched: _ }| {
-            let (force, torque) = (force_n, torque_nm);
+            let force = force_n;
+            let torque = torque_nm;
             [opening_rad, opens_n, force.x, force.y, force.z, torque.x, torque.y, torque.z]
         });
         words(numbers.as_ref().map(<[f64; OF_JAWS]>::as_slice));
@@ -253,7 +256,8 @@ fn take_objects(from: &mut &[u8]) -> Result<Option<Objects>, Wrong> {
         return Err(Wrong::Long);
     }
     let ring = |numbers: [f64; OF_RING]| {
-        let (at, turn) = (vector(&numbers[..3]), Vector4::from_column_slice(&numbers[3..]));
+        let at = vector(&numbers[..3]);
+        let turn = Vector4::from_column_slice(&numbers[3..]);
         Isometry3::from_parts(Translation3::from(at), UnitQuaternion::new_unchecked(Quaternion::from(turn)))
     };
     let rings = (0..count).map(|_| Ok(take_some(from)?.map(ring))).collect::<Result<_, Wrong>>()?;
@@ -291,7 +295,8 @@ fn take_numbers<const N: usize>(from: &mut &[u8]) -> Result<[f64; N], Wrong> {
     let mut numbers = [0.0; N];
     for place in &mut numbers {
         let (first, rest) = from.split_first_chunk().ok_or(Wrong::Short)?;
-        (*place, *from) = (f64::from_le_bytes(*first), rest);
+        *place = f64::from_le_bytes(*first);
+        *from = rest;
     }
     Ok(numbers)
 }
@@ -334,7 +339,9 @@ mod tests {
         let rig = RigConfig::load("simulated").unwrap();
         let mut control = Loop::new(&rig, &[Some(Calibrations::default()), None]).unwrap();
         let mut writer = MomentWriter::default();
-        let (mut bundles, mut ticks, mut events) = (Vec::new(), Vec::new(), Vec::new());
+        let mut bundles = Vec::new();
+        let mut ticks = Vec::new();
+        let mut events = Vec::new();
         for i in 0..2000_u32 {
             let t_s = f64::from(i) * 1e-3;
             let hand = Hand::at(Vector3::new(0.0, 0.0, 0.01 * (6.0 * t_s).sin()));

@@ -47,7 +47,9 @@ struct Task {
 /// The task of each hand; of the right one alone if there is no other. Empty without a ring on a peg that has one opposite.
 pub(super) fn ways(setting: &Setting, two_hands: bool) -> [Vec<Part>; SIDES] {
     let waits = [Side::Right, Side::Left].map(|side| outwards(side, ASIDE_M));
-    let (rim_m, lies_m, peg_m) = (setting.ring.major_radius_m, setting.ring.tube_radius_m, setting.pegs.height_m);
+    let rim_m = setting.ring.major_radius_m;
+    let lies_m = setting.ring.tube_radius_m;
+    let peg_m = setting.pegs.height_m;
     let mut task = Task { rim_m, lies_m, peg_m, parts: [vec![], vec![]], at_m: waits, grip_rad: [0.0; SIDES] };
     let pegs = &setting.pegs.at_m;
     let foot_m = |peg: usize| pegs.get(peg).map(|[x, y]| Vector3::new(*x, *y, setting.board.z_m));
@@ -93,7 +95,8 @@ impl Task {
             let (to_m, to_rad) = if hand == side { (to_m, to_rad) } else { (self.at_m[i], self.grip_rad[i]) };
             let way = Move { from_m: self.at_m[i], to_m, seconds };
             self.parts[i].push(Part { way, grip_rad: [self.grip_rad[i], to_rad], then: None });
-            (self.at_m[i], self.grip_rad[i]) = (to_m, to_rad);
+            self.at_m[i] = to_m;
+            self.grip_rad[i] = to_rad;
         }
     }
 

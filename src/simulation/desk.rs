@@ -117,7 +117,8 @@ impl Desk {
         }
         self.is_down = is_down;
         if cap.buttons & 1 == 1 {
-            (self.at_m, self.grip_rad) = (None, None);
+            self.at_m = None;
+            self.grip_rad = None;
         } else if cap.translation.norm() > TOUCH {
             let at_m = self.at_m.unwrap_or(self.hands_m[Side::Right.index()]);
             let at_m = at_m + cap.translation * (self.speed_m_s * dt_s);
@@ -165,7 +166,8 @@ impl Desk {
 impl Rig for Desk {
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         let by_handle_m = self.handle.as_mut().and_then(|handle| handle.poll(now_s));
-        let (led_m, switches) = (by_handle_m.or_else(|| self.lead(now_s)), self.switches(now_s));
+        let led_m = by_handle_m.or_else(|| self.lead(now_s));
+        let switches = self.switches(now_s);
         let outputs = self.led(led_m);
         let mut watch = std::mem::take(&mut self.watch);
         for (device, health) in self.standings().enumerate() {

@@ -66,7 +66,8 @@ impl Feeling {
 
     /// The hand is led, or waits: it takes up its task without an offset.
     pub(super) fn rest(&mut self) {
-        (self.offset_m, self.pace) = (Vector3::zeros(), 1.0);
+        self.offset_m = Vector3::zeros();
+        self.pace = 1.0;
     }
 
     /// Feels this force of the handle (N) for `dt_s`, at most a step; gives the pace of the task.

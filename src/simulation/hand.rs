@@ -151,7 +151,8 @@ impl Hand {
     /// Opens the hand (true), or closes it around the handle where that is now (false); then it goes on with its task.
     pub fn let_go(&mut self, lets_go: bool) {
         if self.open && !lets_go {
-            (self.led_m, self.velocity_m_s) = (Some(self.position_m), Vector3::zeros());
+            self.led_m = Some(self.position_m);
+            self.velocity_m_s = Vector3::zeros();
         }
         self.open = lets_go;
     }
@@ -344,7 +345,9 @@ mod tests {
     #[test]
     fn a_led_hand_goes_where_it_is_led_and_back_to_its_task_without_a_jump() {
         let mut hand = Hand::new(&Scene::load("free_motion").unwrap());
-        let (mut last_m, mut fastest_m_s, aim_m) = (hand.position_m(), 0.0_f64, Vector3::new(0.04, -0.03, 0.01));
+        let mut last_m = hand.position_m();
+        let mut fastest_m_s = 0.0_f64;
+        let aim_m = Vector3::new(0.04, -0.03, 0.01);
         for tick in 0..6000 {
             hand.guide((1000..3000).contains(&tick).then_some(aim_m));
             hand.advance(1e-3, &Vector3::zeros());
@@ -380,7 +383,8 @@ mod tests {
             }
             (hand.current, hand.position_m().z)
         };
-        let (blind, feeling) = (after(None, 3.0), after(Some(1.0), 3.0));
+        let blind = after(None, 3.0);
+        let feeling = after(Some(1.0), 3.0);
         assert_eq!((blind.0, feeling.0), (1, 0), "slower than the task");
         assert!(feeling.1 > blind.1 + 0.005, "higher: {feeling:?} and {blind:?}");
         assert_eq!(after(Some(1.0), 0.5), after(None, 0.5), "less than intended is no matter");

@@ -59,7 +59,8 @@ impl Held {
 
     /// The measurements of its side with this hand in place of the simulated one.
     pub(super) fn led(&self, now_s: f64, simulated: &Inputs) -> Option<Inputs> {
-        let (inputs, reading) = (*simulated, self.newest?);
+        let inputs = *simulated;
+        let reading = self.newest?;
         let HandleReading { position_m, orientation, gripper_rad, .. } = reading.value;
         let turn = orientation.unwrap_or_else(UnitQuaternion::identity);
         let mut frames = inputs.frames;

@@ -166,7 +166,9 @@ impl Person {
     fn begin(&mut self, prompt: &Prompt) {
         let handled = is_handling(&self.prompt);
         self.prompt = *prompt;
-        (self.push, self.stand, self.in_push_s) = (Vector3::zeros(), Vector3::zeros(), f64::INFINITY);
+        self.push = Vector3::zeros();
+        self.stand = Vector3::zeros();
+        self.in_push_s = f64::INFINITY;
         self.velocity_m_s = Vector3::zeros();
         self.in_reach_s = f64::INFINITY;
         if handled || is_handling(prompt) {

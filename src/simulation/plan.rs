@@ -124,7 +124,9 @@ impl Plan {
 
     /// Combines the loop of this plan with a given rig.
     fn on(&self, rig: Box<dyn Rig>, roster: Roster) -> Result<Assembly, SettingsError> {
-        let (rate_hz, scheduling, engage) = (self.rig.rate_hz, self.rig.scheduling, self.engage);
+        let rate_hz = self.rig.rate_hz;
+        let scheduling = self.rig.scheduling;
+        let engage = self.engage;
         let control = self.control()?;
         Ok(Assembly { control, rig, roster, rate_hz, clock: Clock::Real, scheduling, engage, tap: None })
     }
@@ -286,7 +288,8 @@ mod tests {
         for (profile, is_fault) in
             [(busy, false), (late, false), (stall(5), false), (stall(20), true), (stall(100), true)]
         {
-            let (mut last_s, mut longest_s) = (0.0, 0.0_f64);
+            let mut last_s = 0.0;
+            let mut longest_s = 0.0_f64;
             let summary = run_virtual_on(&plan(), VirtualClock { profile, seed: 1 }, 5.0, |tick| {
                 longest_s = longest_s.max(tick.t_s - last_s);
                 last_s = tick.t_s;

@@ -48,7 +48,8 @@ impl Game {
     fn of(scene: &Scene, period_s: f64) -> Option<Self> {
         let rings = |setting: &Setting| {
             let objects = Objects::new(setting, period_s);
-            let (watch, task) = (Watch::new(&objects), PegTransfer::new(setting));
+            let watch = Watch::new(&objects);
+            let task = PegTransfer::new(setting);
             Self::Rings(Box::new(Rings { objects, watch, task, counted: Training::default() }))
         };
         let wire = |setting: &WireSetting| Self::Wire(Box::new((Wire::new(setting, period_s), WireTask::new(setting))));

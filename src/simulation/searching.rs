@@ -131,7 +131,8 @@ impl Searching {
         go(up_m, press_s);
         // The map is judged while the hand waits: a cell in each step of a millisecond, or of any other length.
         go(up_m, 1.0 + 1e-3 * (lanes * cells) as f64);
-        (self.stroked, self.visit) = (parts.len() - 2, parts.len());
+        self.stroked = parts.len() - 2;
+        self.visit = parts.len();
         for _ in 0..VISIT {
             parts.push(part(up_m, up_m, 0.0, None));
         }
@@ -216,7 +217,8 @@ impl Searching {
         let peak = (0..self.more.len()).fold(None, most).filter(|at| self.more[*at] > MORE)?;
         let of = |search: &Self, at: usize| search.place_m([at / search.size[1], at % search.size[1]]);
         let peak_m = of(self, peak);
-        let (mut sum_m, mut weight) = (Vector3::zeros(), 0.0);
+        let mut sum_m = Vector3::zeros();
+        let mut weight = 0.0;
         for at in 0..self.more.len() {
             let apart_m = (of(self, at) - peak_m).norm();
             let surplus = (self.more[at] - 1.0).max(0.0);
@@ -253,7 +255,8 @@ mod tests {
     fn marks(more: impl Fn(&Vector3<f64>) -> f64) -> Vec<Vector3<f64>> {
         let scene = Scene::load("find_lumps").unwrap();
         let (mut search, mut task) = Searching::of(&scene).unwrap();
-        let (mut current, mut marks) = (0, Vec::new());
+        let mut current = 0;
+        let mut marks = Vec::new();
         while current + 1 < task.len() {
             let Part { way, then, .. } = task[current];
             let ticks = (way.seconds * 1e3).ceil() as u32;

@@ -34,8 +34,10 @@ impl Trocar {
 
     /// Forgets all deformation: the instrument was taken out.
     pub(super) const fn relax(&mut self) {
-        (self.last, self.stretch_along_m) = (None, 0.0);
-        (self.stretch_across_m, self.force_n) = (Vector3::new(0.0, 0.0, 0.0), Vector3::new(0.0, 0.0, 0.0));
+        self.last = None;
+        self.stretch_along_m = 0.0;
+        self.stretch_across_m = Vector3::new(0.0, 0.0, 0.0);
+        self.force_n = Vector3::new(0.0, 0.0, 0.0);
     }
 
     /// Direction of the shaft (towards the tip) and depth of the tip beyond the wall, m.

@@ -102,7 +102,8 @@ pub(super) fn ends() -> (Teller, Watched) {
 }
 
 fn reader() -> ((Sender<Moment>, Sender<Happening>), Watched) {
-    let ((moments, shown), (happenings, told)) = (bounded(MOMENTS), bounded(HAPPENINGS));
+    let (moments, shown) = bounded(MOMENTS);
+    let (happenings, told) = bounded(HAPPENINGS);
     ((moments, happenings), Watched { moments: shown, happenings: told, others: Vec::new() })
 }
 
@@ -154,7 +155,8 @@ mod tests {
         let second = first.another().unwrap();
         let third = first.another().unwrap();
         assert!(first.another().is_none());
-        let (mut moments, mut events) = ([0, 0], [0, 0]);
+        let mut moments = [0, 0];
+        let mut events = [0, 0];
         let moment = |t_s| Moment {
             t_s,
             rings: [None; RINGS_MAX],

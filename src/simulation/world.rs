@@ -128,7 +128,8 @@ impl World {
         };
         if let Some(hand) = hand {
             world.hand = hand;
-            (world.tip_m, world.command_m) = (world.hand.position_m(), world.hand.position_m());
+            world.tip_m = world.hand.position_m();
+            world.command_m = world.hand.position_m();
         }
         world
     }
@@ -276,7 +277,8 @@ impl World {
         };
         // Critically damped second order, exact over the step for a constant command.
         let omega = std::f64::consts::TAU * bandwidth_hz;
-        let (offset, velocity) = (self.tip_m - self.command_m, self.tip_velocity_m_s);
+        let offset = self.tip_m - self.command_m;
+        let velocity = self.tip_velocity_m_s;
         let decay = (-omega * dt_s).exp();
         let slope = velocity + offset * omega;
         self.tip_m = self.command_m + (offset + slope * dt_s) * decay;

@@ -111,14 +111,19 @@ mod tests {
     fn quiet(scene: &str) -> (Wrist, WristConfig, Option<TissueSensor>) {
         let scene = Scene::load(scene).unwrap();
         let mut config = scene.wrist.unwrap();
-        (config.force_noise_n, config.torque_noise_nm, config.gain) = (0.0, 0.0, Vector3::repeat(1.0));
-        (config.force_bias_n, config.torque_bias_nm) = (Vector3::zeros(), Vector3::zeros());
+        config.force_noise_n = 0.0;
+        config.torque_noise_nm = 0.0;
+        config.gain = Vector3::repeat(1.0);
+        config.force_bias_n = Vector3::zeros();
+        config.torque_bias_nm = Vector3::zeros();
         if let Some(imu) = &mut config.imu {
-            (imu.noise_m_s2, imu.bias_m_s2) = (0.0, Vector3::zeros());
+            imu.noise_m_s2 = 0.0;
+            imu.bias_m_s2 = Vector3::zeros();
         }
         let mut tissue_sensor = scene.tissue_sensor;
         if let Some(sensor) = &mut tissue_sensor {
-            (sensor.noise_n, sensor.tracker_noise_deg) = (0.0, 0.0);
+            sensor.noise_n = 0.0;
+            sensor.tracker_noise_deg = 0.0;
         }
         (Wrist::new(&config, tissue_sensor, 1), config, tissue_sensor)
     }

@@ -62,7 +62,8 @@ pub fn judged(test: impl Fn()) {
 /// `watch` starts to watch the machine, and what it gives tells at the end of an attempt whether the machine was busy. `false` if the test
 /// neither passed nor failed.
 fn judged_on<Busy: FnOnce() -> bool>(test: impl Fn(), watch: impl Fn() -> Busy, patience: Duration) -> bool {
-    let (begin, mut failures) = (Instant::now(), 0);
+    let begin = Instant::now();
+    let mut failures = 0;
     for _ in 0..ATTEMPTS {
         let was_busy = watch();
         let Err(cause) = catch_unwind(AssertUnwindSafe(&test)) else { return true };
@@ -107,7 +108,9 @@ impl Watch {
         let end = Arc::new(AtomicBool::new(false));
         let ends = Arc::clone(&end);
         let thread = spawn(move || {
-            let (mut naps, mut late, mut longest) = (0_u32, 0_u32, Duration::ZERO);
+            let mut naps = 0_u32;
+            let mut late = 0_u32;
+            let mut longest = Duration::ZERO;
             while !ends.load(Relaxed) {
                 let begin = Instant::now();
                 sleep(NAP);

@@ -147,7 +147,8 @@ fn stats(data: &DataSet, predicted: &[Vec<Option<f32>>], rows: &[usize], output:
         return None;
     }
     let mean = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / n as f64;
-    let (bias, truth) = (mean(&|(p, y)| p - y), mean(&|(_, y)| *y));
+    let bias = mean(&|(p, y)| p - y);
+    let truth = mean(&|(_, y)| *y);
     let variance = mean(&|(_, y)| (y - truth).powi(2));
     let mut absolute: Vec<f64> = pairs.iter().map(|(p, y)| (p - y).abs()).collect();
     let place = ((n as f64 * 0.95).ceil() as usize).clamp(1, n) - 1;
@@ -187,7 +188,8 @@ mod tests {
             let texts: Vec<_> = files.iter().map(|(name, text)| ((*name).into(), text.as_bytes().to_vec())).collect();
             DataSet::parse(&texts, &columns).unwrap()
         };
-        let (old, new) = ("a,b\n1,2\n", "a,b\n3,4\n");
+        let old = "a,b\n1,2\n";
+        let new = "a,b\n3,4\n";
         let training = read(&[("one.csv", old), ("two.csv", "a,b\n5,6\n")]);
         let evaluation = read(&[("new.csv", new), ("renamed.csv", old)]);
         assert_eq!(trained_on(&evaluation, &training.hashes), ["renamed.csv"]);

@@ -45,7 +45,8 @@ impl Fit<'_> {
         let patience = ((epochs_max as f64 * PATIENCE).ceil() as usize).max(5);
         let mut order = training.to_vec();
         // A network that does not improve the held-out rows is dropped, and the linear path is used alone.
-        let (training_loss, validation_loss) = (self.loss(&network, training), self.loss(&network, validation));
+        let training_loss = self.loss(&network, training);
+        let validation_loss = self.loss(&network, validation);
         let mut figures = MemberFigures { epoch: 0, epochs: 0, training_loss, validation_loss };
         let mut best = network.clone();
         for epoch in 1..=epochs_max {
@@ -89,7 +90,9 @@ impl Fit<'_> {
         order: &[usize],
         [from, length]: [f64; 2],
     ) -> Result<f64, TipForceError> {
-        let (mut sum, mut batches, mut gradient) = (0.0, 0.0, Vec::new());
+        let mut sum = 0.0;
+        let mut batches = 0.0;
+        let mut gradient = Vec::new();
         let total = order.len().div_ceil(self.settings.batch) as f64;
         for rows in order.chunks(self.settings.batch) {
             if self.cancel.load(Ordering::Relaxed) {

@@ -50,7 +50,8 @@ impl Folds {
 
     /// Training rows and held-out rows for a member.
     pub(super) fn split(&self, member: usize) -> (Vec<usize>, Vec<usize>) {
-        let (mut training, mut validation) = (Vec::new(), Vec::new());
+        let mut training = Vec::new();
+        let mut validation = Vec::new();
         for (block, fold) in self.blocks.iter().zip(&self.fold) {
             if *fold == member % self.count() {
                 // In a short block the gaps take at most half of the rows.
@@ -65,6 +66,7 @@ impl Folds {
 }
 
 fn cut(rows: &Range<usize>, pieces: usize) -> impl Iterator<Item = Range<usize>> {
-    let (start, length) = (rows.start, rows.len());
+    let start = rows.start;
+    let length = rows.len();
     (0..pieces).map(move |k| start + k * length / pieces..start + (k + 1) * length / pieces)
 }

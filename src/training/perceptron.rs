@@ -91,7 +91,8 @@ impl Perceptron {
             let mut slope = output.clone();
             for (z, slope) in output.iter_mut().zip(slope.iter_mut()) {
                 let root = 1.0 / (1.0 + *z * *z).sqrt();
-                (*z, *slope) = (*z * root, root * root * root);
+                *z *= root;
+                *slope = root * root * root;
             }
             hidden.push(Hidden { output, slope });
         }
@@ -150,7 +151,8 @@ mod tests {
         let mut generator = fastrand::Rng::with_seed(1);
         let mut draw =
             |rows: usize, columns: usize| DMatrix::from_fn(rows, columns, |_, _| 2.0 * generator.f32() - 1.0);
-        let (skip, batch) = (draw(2, 5), Batch { x: draw(5, 40), y: draw(2, 40) });
+        let skip = draw(2, 5);
+        let batch = Batch { x: draw(5, 40), y: draw(2, 40) };
         let mut network = Perceptron::new((5, 2), &[7, 4], skip.as_slice(), &mut fastrand::Rng::with_seed(2));
         // The last layer starts at zero; away from there every layer has a gradient.
         let start = draw(network.parameters.len(), 1);
@@ -176,7 +178,8 @@ mod tests {
         let mut generator = fastrand::Rng::with_seed(3);
         let mut draw =
             |rows: usize, columns: usize| DMatrix::from_fn(rows, columns, |_, _| 2.0 * generator.f32() - 1.0);
-        let (skip, x) = (draw(3, 6), draw(6, 20));
+        let skip = draw(3, 6);
+        let x = draw(6, 20);
         let mut network = Perceptron::new((6, 3), &[9, 5], skip.as_slice(), &mut fastrand::Rng::with_seed(4));
         let start = draw(network.parameters.len(), 1);
         network.parameters.copy_from_slice(start.as_slice());

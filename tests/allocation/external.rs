@@ -33,7 +33,9 @@ fn program(port: u16, does: &AtomicU8) {
     socket.connect(("127.0.0.1", port)).unwrap();
     socket.set_nonblocking(true).unwrap();
     let mut reading = Datagram { session: 5, watchdog_us: 20_000, ..Datagram::blank(Message::Reading(Kind::Handle)) };
-    let (begin, mut wire, mut heard) = (Instant::now(), [0; BYTES_MAX], [0; BYTES_MAX]);
+    let begin = Instant::now();
+    let mut wire = [0; BYTES_MAX];
+    let mut heard = [0; BYTES_MAX];
     while does.load(Relaxed) != ENDS {
         while let Ok(count) = socket.recv(&mut heard) {
             reading.echo_us = Datagram::decode(&heard[..count]).unwrap().time_us;

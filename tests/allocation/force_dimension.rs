@@ -23,7 +23,8 @@ fn a_tick_with_the_handle_allocates_nothing() {
         let mut driver = open(&Settings { library, emulator, ..Settings::default() }).unwrap();
         driver.enable_force();
         let begin = Instant::now();
-        let (mut readings, mut events) = (0, 0);
+        let mut readings = 0;
+        let mut events = 0;
         let before = calls();
         while readings < 300 && begin.elapsed() < Duration::from_mins(1) {
             readings += u32::from(driver.poll(begin.elapsed().as_secs_f64()).is_some());

@@ -17,7 +17,9 @@ use crate::counting::calls;
 
 /// Polls for some time; returns the allocations of this thread and the number of readings.
 fn polled(device: &mut impl Device, length: Duration) -> (u64, u32) {
-    let (before, begin, mut readings) = (calls(), Instant::now(), 0);
+    let before = calls();
+    let begin = Instant::now();
+    let mut readings = 0;
     while begin.elapsed() < length {
         readings += u32::from(device.poll(begin.elapsed().as_secs_f64()).is_some());
         std::thread::sleep(Duration::from_millis(1));

@@ -21,7 +21,8 @@ fn hand_eye_mapping_and_inverse_kinematics_allocate_nothing() {
     let trocar_m = Vector3::new(0.4, 0.0, -0.1);
     let space =
         RcmSettings { trocar_m, inward: -Vector3::z(), cone_deg: 20.0, insertion_min_m: 0.03, insertion_max_m: 0.25 };
-    let (arm, rcm) = (Arm::new(&mount).unwrap(), Rcm::new(&space).unwrap());
+    let arm = Arm::new(&mount).unwrap();
+    let rcm = Rcm::new(&space).unwrap();
     let tip_m = trocar_m - Vector3::z() * 0.12;
     let ready = find(&arm, &rcm, &tip_m).unwrap();
     let mut inverse = Inverse::new(arm, rcm, 1e-3, &ready.joint_rad).unwrap();

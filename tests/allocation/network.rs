@@ -64,7 +64,8 @@ fn a_tick_of_an_open_link_allocates_nothing() {
                     sleep(2 * TICK);
                 }
             });
-            let (before, mut got) = (calls(), 0);
+            let before = calls();
+            let mut got = 0;
             for count in 0..1500 {
                 got += tick(&mut near, now_s());
                 // It stands still for a quarter of a second.

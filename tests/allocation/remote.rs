@@ -55,7 +55,8 @@ fn a_tick_of_two_machines_allocates_nothing() {
     let rig = RigConfig::load("simulated").unwrap();
     let worlds = || Worlds::new(&Scene::load("bimanual").unwrap(), rig.rate_hz);
     let both = [Some(Calibrations::default()), Some(Calibrations::default())];
-    let (mut here, mut there) = (Loop::new(&rig, &both).unwrap(), Loop::new(&at_follower(&rig), &both).unwrap());
+    let mut here = Loop::new(&rig, &both).unwrap();
+    let mut there = Loop::new(&at_follower(&rig), &both).unwrap();
     let mut leader = FarFollower::new(worlds(), InPlace(0), rig.rate_hz);
     let mut follower = FarLeader::new(worlds(), InPlace(1), rig.rate_hz);
     let before = calls();

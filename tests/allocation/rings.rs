@@ -11,7 +11,8 @@ fn a_tick_of_two_instruments_among_rings_allocates_nothing() {
     let _alone = alone();
     let (mut worlds, watched) = Worlds::watched(&Scene::load("rings").unwrap(), 1000.0);
     let watched = watched.unwrap();
-    let (mut events, mut gripped) = (0, false);
+    let mut events = 0;
+    let mut gripped = false;
     let before = calls();
     for tick in 0..12_000 {
         let inputs = worlds.read(f64::from(tick) * 1e-3);

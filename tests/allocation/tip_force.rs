@@ -62,7 +62,8 @@ fn the_loop_with_a_network_in_it_allocates_nothing() {
     let mut control = Pair::new(&rig, Side::Right, &calibrations).unwrap();
     let mut world = World::new(&Scene::load("palpation").unwrap(), rig.rate_hz);
     let mut outputs = Outputs::SAFE;
-    let (mut sure, mut doubtful) = (0, 0);
+    let mut sure = 0;
+    let mut doubtful = 0;
     let before = calls();
     for k in 0..10_000_u32 {
         let now_s = f64::from(k) * 1e-3;

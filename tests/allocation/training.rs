@@ -14,7 +14,9 @@ fn a_tick_of_a_training_task_allocates_nothing_until_its_end() {
     for (scene, seconds) in [("find_lumps", 110), ("wire", 40)] {
         let (mut worlds, watched) = Worlds::watched(&Scene::load(scene).unwrap(), 1000.0);
         let watched = watched.unwrap();
-        let (mut outputs, mut happened, mut ended) = ([Outputs::SAFE; SIDES], 0, false);
+        let mut outputs = [Outputs::SAFE; SIDES];
+        let mut happened = 0;
+        let mut ended = false;
         let before = calls();
         for tick in 0..seconds * 1000 {
             let now_s = f64::from(tick) * 1e-3;

@@ -33,7 +33,8 @@ fn sample(k: u32) -> Sample {
 /// Three seconds of both ends: the delay changes, modes are left out and come back, all begins anew.
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 fn run_both_ends(settings: &Settings, words: &str) {
-    let (mut identifier, mut renderer) = (Identifier::new(settings).unwrap(), Renderer::new(settings).unwrap());
+    let mut identifier = Identifier::new(settings).unwrap();
+    let mut renderer = Renderer::new(settings).unwrap();
     let before = calls();
     for k in 0..3000 {
         let sample = sample(k);
@@ -62,7 +63,8 @@ fn identification_and_rendering_allocate_nothing() {
     let every_key = Recipe { reading: Reading::Displacement, choice: Choice::Next, constant: true, ridge: 3e-3 };
     for differentiator in DifferentiatorKind::ALL {
         for (cross_talk, literal) in [(false, Recipe::default()), (true, every_key)] {
-            let (modes, delay_s) = (ModeSet::ALL, 0.05);
+            let modes = ModeSet::ALL;
+            let delay_s = 0.05;
             let settings = Settings { differentiator, cross_talk, literal, modes, delay_s, ..Settings::default() };
             run_both_ends(&settings, &format!("{differentiator:?}, cross-talk {cross_talk}"));
         }

@@ -341,7 +341,9 @@ fn a_handle_that_is_let_go_is_an_absent_hand_and_nothing_resumes() {
     }
     // From here on the handle is alone, 0.25 kg and 0.5 N s/m, read in steps of 10 um.
     let last_m = hand_m.get();
-    let (from_m, mut way_m, mut speed_m_s) = (last_m[0], Vector3::zeros(), (last_m[0] - last_m[19]) / 19e-3);
+    let from_m = last_m[0];
+    let mut way_m = Vector3::zeros();
+    let mut speed_m_s = (last_m[0] - last_m[19]) / 19e-3;
     for after in 1..=1000 {
         speed_m_s += (bench.outputs[0].hand_force_n - speed_m_s * 0.5) * (1e-3 / 0.25);
         way_m += speed_m_s * 1e-3;

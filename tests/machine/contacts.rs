@@ -47,7 +47,9 @@ struct Ran {
 /// Two hands that feel nothing, with a pace and a tremor of their own, or the one hand of another scene.
 fn run(scene: &str, (mode, gain, delay_s): (Mode, f64, f64), seed: u64, seconds: f64) -> Ran {
     let mut plan = plan(scene);
-    (plan.rig.mode, plan.rig.gates.gain, plan.rig.delay_s) = (mode, gain, delay_s);
+    plan.rig.mode = mode;
+    plan.rig.gates.gain = gain;
+    plan.rig.delay_s = delay_s;
     let mut lot = fastrand::Rng::with_seed(seed);
     plan.scene.seed = seed;
     plan.scene.hand.pace = 0.7 + 0.5 * lot.f64();
@@ -55,7 +57,8 @@ fn run(scene: &str, (mode, gain, delay_s): (Mode, f64, f64), seed: u64, seconds:
     let assembly = plan.simulated().unwrap();
     let kept = Arc::new(Mutex::new([Vec::new(), Vec::new()]));
     let rig = Box::new(Keeper { rig: assembly.rig, kept: Arc::clone(&kept) });
-    let (mut fault, mut after) = (None, 0);
+    let mut fault = None;
+    let mut after = 0;
     let summary = runtime::run_virtual(Assembly { rig, ..assembly }, seconds, |tick| {
         if let LoopState::Faulted(found) = tick.state {
             fault.get_or_insert(found);

@@ -7,15 +7,23 @@ use nima_tests::plan;
 /// Force at the tip while it presses on the tissue, N: its peak, its mean; and how often it pressed in half a minute.
 fn pressed(gain: f64, intended_n: Option<f64>) -> (f64, f64, u32) {
     let mut plan = plan("peg_transfer");
-    (plan.rig.mode, plan.rig.delay_s, plan.rig.gates.gain) = (Mode::Matched, 0.02, gain);
+    plan.rig.mode = Mode::Matched;
+    plan.rig.delay_s = 0.02;
+    plan.rig.gates.gain = gain;
     plan.scene.hand.intended_n = intended_n;
-    let (mut peak_n, mut sum_n, mut ticks, mut presses, mut touches) = (0.0_f64, 0.0, 0_u32, 0, false);
+    let mut peak_n = 0.0_f64;
+    let mut sum_n = 0.0;
+    let mut ticks = 0_u32;
+    let mut presses = 0;
+    let mut touches = false;
     nima_simulation::run_virtual(&plan, 30.0, |tick| {
         let force_n = tick.measured_n.norm();
         presses += u32::from(!touches && force_n > 0.5);
         touches = force_n > if touches { 0.2 } else { 0.5 };
         if touches {
-            (peak_n, sum_n, ticks) = (peak_n.max(force_n), sum_n + force_n, ticks + 1);
+            peak_n = peak_n.max(force_n);
+            sum_n += force_n;
+            ticks += 1;
         }
         None
     })

@@ -62,7 +62,8 @@ impl Script {
 
     /// A ring from this peg to that one; when the taker alone holds it, and until when it is carried, s.
     fn over(&mut self, giver: Side, from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
-        let (taker, middle) = (giver.other(), [0.0, 0.0]);
+        let taker = giver.other();
+        let middle = [0.0, 0.0];
         self.jaws(giver, true);
         self.go(giver, rim_m(giver, from, CARRIED_M));
         self.go(giver, rim_m(giver, from, 0.00175));
@@ -91,8 +92,10 @@ fn played(script: &Script, while_s: [f64; 2]) -> (Vec<Event>, f64) {
     plan.rig.mode = Mode::Matched;
     let (assembly, watched) = plan.watched().unwrap();
     let watched = watched.unwrap();
-    let (mut events, mut given) = (Vec::new(), 0);
-    let (mut held_m, mut went_m) = (None, 0.0_f64);
+    let mut events = Vec::new();
+    let mut given = 0;
+    let mut held_m = None;
+    let mut went_m = 0.0_f64;
     let summary = runtime::run_virtual(assembly, script.t_s + 0.5, |tick| {
         events.extend(watched.happenings().map(|happening| happening.event));
         if tick.side == Side::Left {

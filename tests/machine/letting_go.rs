@@ -14,8 +14,12 @@ use nima_tests::plan;
 /// followed. The hand takes the handle again after 2.5 s, and the loop is asked to engage.
 fn let_go(governor: bool) -> (f64, Vec<LoopState>) {
     let mut plan = plan("peg_transfer");
-    (plan.rig.mode, plan.rig.delay_s, plan.rig.gates.static_hold) = (Mode::Dfr, 0.3, true);
-    let (mut opened, mut far_m, mut states) = (None::<(f64, Vector3<f64>)>, 0.0_f64, Vec::new());
+    plan.rig.mode = Mode::Dfr;
+    plan.rig.delay_s = 0.3;
+    plan.rig.gates.static_hold = true;
+    let mut opened = None::<(f64, Vector3<f64>)>;
+    let mut far_m = 0.0_f64;
+    let mut states = Vec::new();
     let mut asked = false;
     run_virtual(&plan, 20.0, |tick: &Tick| {
         if !asked {

@@ -79,7 +79,8 @@ impl Bench {
     /// With this delay each way, s; the clocks are half an hour apart.
     fn new(delay_s: f64, mode: Mode) -> Self {
         let mut rig = RigConfig::load("simulated").unwrap();
-        (rig.mode, rig.delay_s) = (mode, 0.0);
+        rig.mode = mode;
+        rig.delay_s = 0.0;
         let worlds = || Worlds::new(&Scene::load("peg_transfer").unwrap(), rig.rate_hz);
         let (there, back): (Way, Way) = Default::default();
         let is_cut = Arc::<Mutex<bool>>::default();
@@ -154,7 +155,9 @@ const FROM_MS: usize = 12_000;
 /// force.
 fn over_a_network(delay_s: f64, mode: Mode) -> [f64; 2] {
     let mut bench = Bench::engaged(delay_s, mode);
-    let (mut felt_n, mut tip_n, mut hand_n) = (Vec::new(), Vec::new(), 0.0_f64);
+    let mut felt_n = Vec::new();
+    let mut tip_n = Vec::new();
+    let mut hand_n = 0.0_f64;
     for _ in 0..20_000 {
         bench.run(1);
         felt_n.push(bench.leader.tick.unwrap().asked_n[mode.index()]);
@@ -170,7 +173,8 @@ fn over_a_network(delay_s: f64, mode: Mode) -> [f64; 2] {
 /// The same with everything in one place and the whole delay on the way back.
 fn in_one_place(delay_s: f64, mode: Mode) -> f64 {
     let mut plan = plan("peg_transfer");
-    (plan.rig.mode, plan.rig.delay_s) = (mode, delay_s);
+    plan.rig.mode = mode;
+    plan.rig.delay_s = delay_s;
     let errors = RefCell::new(Vec::new());
     run_virtual(&plan, 20.5, |tick| {
         if tick.t_s > 0.5 + FROM_MS as f64 * 1e-3 {
@@ -262,9 +266,11 @@ fn another_console_that_has_released_more_stops_releases_none_here() {
     bench.run(60);
     let mut other = Bench::new(0.02, Mode::Best).leader;
     let wire = bench.leader.rig.wire();
-    (other.rig.wire_mut().out, other.rig.wire_mut().back) = (wire.out.clone(), wire.back.clone());
+    other.rig.wire_mut().out = wire.out.clone();
+    other.rig.wire_mut().back = wire.back.clone();
     // Its loop has run longer, and has seen a stop and a release that nobody heard of here.
-    (other.ahead_s, other.rig.wire_mut().ahead_s) = (500.0, 500.0);
+    other.ahead_s = 500.0;
+    other.rig.wire_mut().ahead_s = 500.0;
     other.rig.wire_mut().is_cut = Arc::new(Mutex::new(true));
     let at_s = bench.ticks as f64 * 1e-3;
     other.step(Some(Command::Stop), at_s);

@@ -19,7 +19,8 @@ fn matched() -> Plan {
 fn six_rings_go_over_and_back_from_hand_to_hand_and_none_is_dropped() {
     let (assembly, watched) = matched().watched().unwrap();
     let watched = watched.unwrap();
-    let (mut events, mut grip_n) = (Vec::new(), 0.0_f64);
+    let mut events = Vec::new();
+    let mut grip_n = 0.0_f64;
     let summary = runtime::run_virtual(assembly, 125.0, |tick| {
         if tick.side == Side::Left {
             events.extend(watched.happenings().map(|happening| happening.event));

@@ -52,7 +52,8 @@ fn follow(bench: &mut Bench, session: &mut GravitySession, seconds: f64) -> Vec<
 }
 
 fn calibrate(scene: &Scene) -> (Bench, GravitySession) {
-    let (mut bench, mut session) = (Bench::new(scene), GravitySession::new(SessionSettings::default()));
+    let mut bench = Bench::new(scene);
+    let mut session = GravitySession::new(SessionSettings::default());
     follow(&mut bench, &mut session, 90.0);
     (bench, session)
 }
@@ -223,7 +224,8 @@ fn the_simulated_sensor_passes_the_check_before_the_first_pose_and_worse_ones_do
     let checked = |edit: fn(&mut Scene)| {
         let mut scene = Scene::load("gravity").unwrap();
         edit(&mut scene);
-        let (mut bench, mut precheck) = (Bench::new(&scene), Precheck::new(SessionSettings::default()));
+        let mut bench = Bench::new(&scene);
+        let mut precheck = Precheck::new(SessionSettings::default());
         for _ in 0..2000 {
             let sample = bench.sample(Prompt::Rest);
             precheck.step(Some(&sample), bench.t_s);

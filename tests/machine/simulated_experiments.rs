@@ -85,7 +85,8 @@ fn through_the_trocar_the_wrist_feels_more_than_the_tip() {
         (sample.raw.force_n - wrist.force_bias_n - weight_n).z
     };
     let along: Vec<f64> = free.iter().map(friction_n).collect();
-    let (inwards, outwards) = (along.iter().filter(|f| **f < -0.4).count(), along.iter().filter(|f| **f > 0.4).count());
+    let inwards = along.iter().filter(|f| **f < -0.4).count();
+    let outwards = along.iter().filter(|f| **f > 0.4).count();
     assert!(inwards * 10 > along.len() && outwards * 10 > along.len(), "friction both ways: {inwards}, {outwards}");
 }
 

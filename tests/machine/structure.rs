@@ -84,7 +84,8 @@ fn crates() -> BTreeMap<String, (String, Table)> {
 #[test]
 fn no_crate_names_one_of_a_ring_that_it_must_not_know() {
     let crates = crates();
-    let (mut faults, mut edges) = (Vec::new(), 0);
+    let mut faults = Vec::new();
+    let mut edges = 0;
     for (name, (folder, manifest)) in &crates {
         let ring = Ring::of(folder);
         let readme = std::fs::read_to_string(root().join(folder).join("README.md")).unwrap_or_default();

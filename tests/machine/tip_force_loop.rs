@@ -127,9 +127,12 @@ fn another_tool_is_flagged_and_the_chosen_fallback_is_used() {
 fn a_handover_causes_no_force_step() {
     for fallback in [Fallback::WristForce, Fallback::HoldAndFade] {
         let mut path = path(Some(fallback));
-        let (mut good, mut foreign) = (World::new(&scene(11), 1000.0), World::new(&heavier_by(0.3, 11), 1000.0));
+        let mut good = World::new(&scene(11), 1000.0);
+        let mut foreign = World::new(&heavier_by(0.3, 11), 1000.0);
         let outputs = Outputs { prompt: Prompt::WorkFree, ..Outputs::SAFE };
-        let (mut last_n, mut largest_n, mut handovers) = (None::<ForceReport>, 0.0_f64, 0);
+        let mut last_n = None::<ForceReport>;
+        let mut largest_n = 0.0_f64;
+        let mut handovers = 0;
         for tick in 1..=20_000_u32 {
             let t_s = f64::from(tick) * 1e-3;
             let [mine, other] = [&mut good, &mut foreign].map(|world| world.exchange(t_s, &outputs).unwrap().sensed);
@@ -161,7 +164,9 @@ fn at_the_task(side: Side) -> Scene {
 fn free_sd_n(mut path: ForcePath, scene: &Scene, seconds: f64) -> Vector3<f64> {
     let mut world = World::new(&Scene { person: None, ..scene.clone() }, 1000.0);
     let mut outputs = Outputs::SAFE;
-    let (mut count, mut sum, mut squares) = (0.0, Vector3::zeros(), Vector3::zeros());
+    let mut count = 0.0;
+    let mut sum = Vector3::zeros();
+    let mut squares = Vector3::zeros();
     for tick in 1..=(seconds * 1e3) as u32 {
         let inputs = world.advance_to(f64::from(tick) * 1e-3, &outputs);
         outputs.tip_command_m = Some(inputs.hand.position_m);

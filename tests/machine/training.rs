@@ -23,7 +23,9 @@ fn of(scene: &str, mode: Mode) -> Plan {
 fn played(plan: &Plan, seconds: f64, commands: &[(f64, Command)]) -> (Vec<Happening>, Vec<u64>) {
     let (assembly, watched) = plan.watched().unwrap();
     let watched = watched.unwrap();
-    let (mut happenings, mut bits, mut given) = (Vec::new(), Vec::new(), 0);
+    let mut happenings = Vec::new();
+    let mut bits = Vec::new();
+    let mut given = 0;
     let summary = runtime::run_virtual(assembly, seconds, |tick| {
         happenings.extend(watched.happenings());
         bits.extend(tick.measured_n.iter().chain(&tick.tip_m).map(|x| x.to_bits()));
@@ -75,7 +77,8 @@ fn a_hand_that_follows_the_wire_reaches_its_end_and_one_that_aims_better_touches
 fn the_same_training_gives_the_same_bits() {
     for scene in ["find_lumps", "wire"] {
         let plan = of(scene, Mode::Matched);
-        let (one, other) = (played(&plan, 12.0, &[]), played(&plan, 12.0, &[]));
+        let one = played(&plan, 12.0, &[]);
+        let other = played(&plan, 12.0, &[]);
         assert!(one == other, "{scene}");
     }
 }

@@ -36,8 +36,11 @@ fn anchored_and_best_are_nearer_to_the_truth_than_delayed_reflection_at_every_de
 #[test]
 fn a_change_of_mode_takes_no_force_from_the_hand_and_leaves_one_mode_computed() {
     let mut plan = plan("peg_transfer");
-    (plan.rig.delay_s, plan.rig.gates.static_hold) = (0.3, true);
-    let (mut changed_s, mut least_n, mut computed) = (None, f64::INFINITY, Vec::new());
+    plan.rig.delay_s = 0.3;
+    plan.rig.gates.static_hold = true;
+    let mut changed_s = None;
+    let mut least_n = f64::INFINITY;
+    let mut computed = Vec::new();
     run_virtual(&plan, 20.0, |tick: &Tick| {
         let felt_n = tick.rendered_n.norm();
         match changed_s {
@@ -64,7 +67,8 @@ fn a_change_of_mode_takes_no_force_from_the_hand_and_leaves_one_mode_computed() 
 fn the_handles_own_motion_is_ahead_of_the_follower_and_so_is_its_force() {
     let error_n = |own_motion| {
         let mut plan = plan("peg_transfer");
-        (plan.rig.mode, plan.rig.identification.own_motion) = (Mode::Matched, own_motion);
+        plan.rig.mode = Mode::Matched;
+        plan.rig.identification.own_motion = own_motion;
         error_of(&run_virtual(&plan, 20.0, |_| None).unwrap(), Mode::Matched)
     };
     let [follower_n, handle_n] = [OwnMotion::Follower, OwnMotion::Handle].map(error_n);
@@ -76,7 +80,8 @@ fn every_baseline_runs_behind_the_gates() {
     let ceiling_n = plan("peg_transfer").rig.gates.ceiling_n;
     for mode in Mode::BASELINES {
         let mut plan = plan("peg_transfer");
-        (plan.rig.mode, plan.rig.delay_s) = (mode, 0.1);
+        plan.rig.mode = mode;
+        plan.rig.delay_s = 0.1;
         let mut largest_n = 0.0_f64;
         let summary = run_virtual(&plan, 6.0, |tick| {
             largest_n = largest_n.max(tick.rendered_n.norm());
@@ -278,7 +283,8 @@ fn over_a_link_that_stays_silent_nobody_is_engaged() {
     let is_cut = Arc::new(AtomicBool::new(false));
     let link = Cut { link: ProgrammedLink::new(rig.rate_hz, rig.delay_s), is_cut: Arc::clone(&is_cut) };
     let mut control = Pair::over(&rig, Side::Right, &Calibrations::default(), link).unwrap();
-    let (mut world, mut outputs) = (World::new(&scene, rig.rate_hz), Outputs::SAFE);
+    let mut world = World::new(&scene, rig.rate_hz);
+    let mut outputs = Outputs::SAFE;
     let mut refused = Vec::new();
     for tick in 0..4000 {
         let now_s = f64::from(tick) * 1e-3;

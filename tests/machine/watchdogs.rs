@@ -23,7 +23,10 @@ fn plan(engage: bool) -> Plan {
 /// States of both arms in turn; the test begins at 0.3 s, is released as soon as both are faulted, and engaged half a second later.
 fn states(watchdog: Watchdog) -> [Vec<LoopState>; SIDES] {
     let mut states: [Vec<LoopState>; SIDES] = Default::default();
-    let (mut asked, mut faulted_s, mut released_s, mut engaged) = (false, None, None, false);
+    let mut asked = false;
+    let mut faulted_s = None;
+    let mut released_s = None;
+    let mut engaged = false;
     run_virtual(&plan(false), 5.0, |tick: &Tick| {
         let of_side = &mut states[tick.side.index()];
         if of_side.last() != Some(&tick.state) {
@@ -87,7 +90,8 @@ impl Rig for Levered {
 #[test]
 fn a_heartbeat_that_is_withheld_makes_the_supervisor_pull_the_levers_and_the_loop_fault() {
     let plan = plan(false);
-    let (lever, pulls) = (Lever::default(), Arc::new(AtomicU32::new(0)));
+    let lever = Lever::default();
+    let pulls = Arc::new(AtomicU32::new(0));
     let counted = Arc::clone(&pulls);
     lever.attach(move || {
         counted.fetch_add(1, Ordering::Relaxed);

@@ -63,7 +63,8 @@ fn wait_for(mut what: impl FnMut() -> bool) {
 
 /// Waits until the loop has made so many ticks more.
 fn wait_for_ticks(handle: &Handle, count: u64) {
-    let (mut first, mut newest) = (None, 0);
+    let mut first = None;
+    let mut newest = 0;
     wait_for(|| {
         handle.drain_ticks(|tick| newest = tick.index);
         newest >= *first.get_or_insert(newest) + count

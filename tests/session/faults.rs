@@ -164,7 +164,9 @@ fn calibrations_put_in_force_while_the_loop_runs_are_in_the_journal() {
         ..plan.simulated().unwrap()
     };
     let handle = runtime::start(assembly).unwrap();
-    let (mut seen, mut t_s, mut asked) = (None, 0.0, false);
+    let mut seen = None;
+    let mut t_s = 0.0;
+    let mut asked = false;
     let begin = Instant::now();
     while t_s < 3.5 && begin.elapsed() < Duration::from_mins(2) {
         let change = handle.wrist_change(Side::Right);
@@ -184,7 +186,8 @@ fn calibrations_put_in_force_while_the_loop_runs_are_in_the_journal() {
     let messages: Vec<_> = kept.0.iter().map(|bytes| decode(bytes).unwrap().1).collect();
     let calibrations = messages.iter().filter(|message| matches!(message, Message::Calibrations { .. })).count();
     assert!(calibrations >= 2, "{calibrations} calibrations in the journal");
-    let (mut sources, mut states) = (Vec::new(), Vec::new());
+    let mut sources = Vec::new();
+    let mut states = Vec::new();
     let outcome = kept
         .replayed(|tick| {
             sources.push(tick.force.source);
@@ -195,7 +198,8 @@ fn calibrations_put_in_force_while_the_loop_runs_are_in_the_journal() {
     states.dedup();
     assert_eq!((outcome.differs, outcome.hole, outcome.closed), (None, None, true));
     assert!(outcome.ticks > 3000, "{outcome:?}");
-    let (none, wrist) = (ForceSource::Unidentified, ForceSource::Wrist);
+    let none = ForceSource::Unidentified;
+    let wrist = ForceSource::Wrist;
     assert!(sources.ends_with(&[none, wrist, none, wrist]), "{sources:?}");
     let lost = LoopState::Faulted(Fault::DeviceLost { device: 0, loss: Loss::Disconnected });
     assert!(states.contains(&LoopState::Engaged) && states.contains(&lost), "{states:?}");
@@ -237,7 +241,8 @@ fn a_hole_is_told_and_nothing_behind_it_is_compared() {
 /// The same journal with the block of this number changed, checksums and all.
 fn forged(kept: &Kept, which: usize, change: impl Fn(&mut Block)) -> Kept {
     let mut encoder = Encoder::default();
-    let (mut start, mut blocks) = (None::<Start>, Vec::new());
+    let mut start = None::<Start>;
+    let mut blocks = Vec::new();
     for bytes in &kept.0 {
         match decode(bytes).unwrap().1 {
             Message::Start(told) => start = Some(told),

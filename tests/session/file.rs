@@ -126,14 +126,16 @@ fn a_stretch_is_compared_alone_after_all_before_it_was_replayed() {
         });
         (told.unwrap().1, forces_n)
     };
-    let ((_, whole), (ticks, part)) = (forces_n(&WHOLE), forces_n(&(2.05..3.217)));
+    let (_, whole) = forces_n(&WHOLE);
+    let (ticks, part) = forces_n(&(2.05..3.217));
     assert_eq!(ticks, 1167);
     assert_eq!(part, whole[2 * 2050..2 * 3217]);
 }
 
 /// Mean of the rendered force while engaged, N.
 fn mean_rendered_n(file: &Recorded) -> f64 {
-    let (mut sum_n, mut count) = (0.0, 0);
+    let mut sum_n = 0.0;
+    let mut count = 0;
     replay(file.journal().unwrap(), |replayed| {
         let tick = replayed.ticks[0].as_ref().unwrap();
         if tick.state == nima_machine::messages::LoopState::Engaged {
@@ -152,7 +154,8 @@ fn a_flipped_bit_is_named_or_has_changed_nothing() {
     recorded(&path, &plan("peg_transfer"), 2.0, |_| None);
     let whole = std::fs::read(&path).unwrap();
     let bad = folder.path().join("bad.mcap");
-    let (mut named, mut random) = (0, fastrand::Rng::with_seed(7));
+    let mut named = 0;
+    let mut random = fastrand::Rng::with_seed(7);
     for _ in 0..60 {
         let mut bytes = whole.clone();
         bytes[random.usize(..whole.len())] ^= 1 << random.u8(..8);
@@ -221,7 +224,8 @@ fn a_folder_that_is_gone_is_told_at_once_and_the_loop_goes_on() {
     let words = recorder.trouble().unwrap().to_string();
     assert!(words.contains("deleted") && words.contains("session.mcap"), "{words}");
     // The tap is emptied all the same, and the loop runs on.
-    let (before, mut newest) = (Instant::now(), 0);
+    let before = Instant::now();
+    let mut newest = 0;
     while before.elapsed() < Duration::from_millis(500) {
         handle.drain_ticks(|tick| newest = tick.index);
         std::thread::sleep(Duration::from_millis(10));

@@ -31,7 +31,8 @@ fn figures_of_a_long_session() {
     let plan = plan("bimanual");
     let (tap, end) = tap();
     let recorder = Recorder::start(Destination::file(&path), about(), plan.origin(), end).unwrap();
-    let (begin, mut memory) = (Instant::now(), Vec::new());
+    let begin = Instant::now();
+    let mut memory = Vec::new();
     runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, minutes as f64 * 60.0, |tick| {
         if tick.side.index() == 0 && tick.index % 60_000 == 59_999 {
             memory.extend(memory_mb());
@@ -54,7 +55,8 @@ fn figures_of_a_long_session() {
     }
     alone.finish().unwrap();
     let per_minute = |path| fs::metadata(path).unwrap().len() as f64 * 1e-6 / minutes as f64;
-    let (all_mb, journal_mb) = (per_minute(&path), per_minute(&journal));
+    let all_mb = per_minute(&path);
+    let journal_mb = per_minute(&journal);
     println!(
         "{minutes} min in {took_s:.0} s: {} ticks, 0 lost; all {all_mb:.1} MB/min, journal {journal_mb:.1} MB/min; 8 h: {:.1} GB",
         told.ticks,

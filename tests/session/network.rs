@@ -62,7 +62,9 @@ fn a_network_in_force_replays_to_the_bit_and_tells_no_name_of_a_person() {
             ],
             engage: false,
         };
-        let (mut by_network, mut by_fallback, mut unknown_s) = (0, 0, 0.0);
+        let mut by_network = 0;
+        let mut by_fallback = 0;
+        let mut unknown_s = 0.0;
         let kept = record(&plan, 8.0, |tick| {
             // A force that is held and faded is measured by nobody, nor does the link bring one that was.
             let is_known = tick.force.source.is_known();

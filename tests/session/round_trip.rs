@@ -55,7 +55,8 @@ fn operator(tick: &Tick) -> Option<Command> {
 fn commands_are_replayed_when_they_came() {
     for scene in ["peg_transfer", "bimanual"] {
         let kept = record(&plan(scene), 10.0, operator);
-        let (mut modes, mut states) = (Vec::new(), Vec::new());
+        let mut modes = Vec::new();
+        let mut states = Vec::new();
         let outcome = kept
             .replayed(|tick| {
                 modes.push(tick.mode);

@@ -68,7 +68,8 @@ impl Bench {
     fn look(&mut self) {
         std::thread::sleep(Duration::from_micros(300));
         let now = Instant::now();
-        let (newest, lost) = (&mut self.newest, &mut self.lost);
+        let newest = &mut self.newest;
+        let lost = &mut self.lost;
         self.handle.drain_ticks(|tick| *newest = Some(*tick));
         self.handle.drain_events(|event| {
             if let Event::Device(event) = event
@@ -253,7 +254,8 @@ fn try_out(bench: &mut Bench, devices: &[&'static str], fault: EmulatedFault) ->
     bench.pressing();
     bench.lost.clear();
     let mut trials: Vec<_> = devices.iter().map(|device| Trial::begin(bench, device)).collect();
-    let (begin, first) = (Instant::now(), bench.index());
+    let begin = Instant::now();
+    let first = bench.index();
     assert!(devices.iter().all(|device| bench.rig.set_fault(device, fault)));
     let mut zero = None;
     while begin.elapsed() < FAULT {

@@ -97,12 +97,16 @@ const DEPTH_M: f64 = 0.005;
 fn pressed(rig: &EmulatedRig, set: &ArmSet) -> Option<[Vec<Vector3<f64>>; 2]> {
     let mut arm = kinova::open(set.arm.kinova().unwrap()).unwrap();
     let mut sensor = bota::Driver::open(set.sensor.bota().unwrap()).unwrap();
-    let (model, rcm) = (Arm::new(&set.mount).unwrap(), Rcm::new(&set.rcm).unwrap());
+    let model = Arm::new(&set.mount).unwrap();
+    let rcm = Rcm::new(&set.rcm).unwrap();
     let truth = rig.truth(Side::Right).unwrap();
     let mut inverse = Inverse::new(model, rcm, 1e-3, &truth.joint_rad.into()).unwrap();
     let way_m = Vector3::new(0.0, 0.0, -DEPTH_M - truth.tip_m.z);
-    let (begin, mut tick, mut felt) = (Instant::now(), 0_u32, [Vec::new(), Vec::new()]);
-    let (mut ticked_s, mut servoing) = (0.0, false);
+    let begin = Instant::now();
+    let mut tick = 0_u32;
+    let mut felt = [Vec::new(), Vec::new()];
+    let mut ticked_s = 0.0;
+    let mut servoing = false;
     arm.poll(0.0);
     arm.enter_low_level().unwrap();
     // Down within a second, a pause, and up again.
@@ -170,7 +174,8 @@ fn both_arms_of_the_embedded_rigs_reach_all_of_their_space() {
         let devices = RigConfig::load(name).unwrap().devices.unwrap();
         for side in Side::ALL {
             let set = devices.arm(side).unwrap();
-            let (arm, rcm) = (Arm::new(&set.mount).unwrap(), Rcm::new(&set.rcm).unwrap());
+            let arm = Arm::new(&set.mount).unwrap();
+            let rcm = Rcm::new(&set.rcm).unwrap();
             // The start position of the scene's hand, at the same distance from the trocar.
             let start_m =
                 set.rcm.trocar_m + Vector3::new(if side == Side::Right { -0.03 } else { 0.03 }, 0.042, -0.123);
@@ -257,7 +262,9 @@ fn jaws_in_motion(devices: &Settings) -> JawsShown {
     let mut outputs = [Outputs::SAFE; SIDES];
     let mut home = None;
     let mut way: Vec<(UnitQuaternion<f64>, UnitQuaternion<f64>)> = Vec::new();
-    let (mut since_s, mut before_s, mut periods_s) = (0.0, 0.0, Vec::new());
+    let mut since_s = 0.0;
+    let mut before_s = 0.0;
+    let mut periods_s = Vec::new();
     while way.len() < READINGS && before_s < 15.0 {
         let now_s = begin.elapsed().as_secs_f64();
         periods_s.push(now_s - before_s);

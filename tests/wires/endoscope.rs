@@ -30,7 +30,8 @@ fn free_port() -> u16 {
 fn both_tips_are_in_the_picture_where_the_world_has_them() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
-    let (devices, scene) = (elsewhere(folder.path()), Scene::load("bimanual").unwrap());
+    let devices = elsewhere(folder.path());
+    let scene = Scene::load("bimanual").unwrap();
     let mut rig = started_in(&scene, &devices);
     let port = free_port();
     let mut settings = usual(&scene);
@@ -77,7 +78,8 @@ fn tip_px(picture: &Picture, near_px: &Vector2<f64>) -> Option<Vector2<f64>> {
 
 /// Reads the rig for so long; gives the mean place of the endoscope's marker, and its last orientation.
 fn marker(rig: &mut DeviceRig, begin: Instant, last: Duration) -> Option<Isometry3<f64>> {
-    let (end, mut seen) = (Instant::now() + last, Vec::new());
+    let end = Instant::now() + last;
+    let mut seen = Vec::new();
     while Instant::now() < end {
         let inputs = rig.read(begin.elapsed().as_secs_f64());
         seen.extend(inputs.iter().flatten().filter_map(|inputs| inputs.view.world_from_n().copied()));
@@ -93,7 +95,8 @@ fn the_camera_goes_with_the_marker_on_a_pushed_endoscope() {
     let _alone = alone();
     judged(|| {
         let folder = tempfile::tempdir().unwrap();
-        let (mut devices, scene) = (elsewhere(folder.path()), Scene::load("bimanual").unwrap());
+        let mut devices = elsewhere(folder.path());
+        let scene = Scene::load("bimanual").unwrap();
         let mut emulated = started_in(&scene, &devices);
         for (set, side) in [&mut devices.right, &mut devices.left].into_iter().zip(Side::ALL) {
             hand_eye(set.as_mut().unwrap(), &emulated.truth(side).unwrap());

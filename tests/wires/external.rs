@@ -44,7 +44,8 @@ fn rig(ports: [u16; 3]) -> RigConfig {
         text = text.replace(written, &port.to_string());
     }
     let mut rig = RigConfig::parse("docs/external-device.md".as_ref(), &text).unwrap();
-    (rig.mode, rig.gates.static_hold) = (Mode::Dfr, true);
+    rig.mode = Mode::Dfr;
+    rig.gates.static_hold = true;
     rig
 }
 
@@ -140,7 +141,9 @@ impl Bench {
 
     fn look(&mut self) {
         std::thread::sleep(Duration::from_millis(1));
-        let (newest, ticks, lost) = (&mut self.newest, &mut self.ticks, &mut self.lost);
+        let newest = &mut self.newest;
+        let ticks = &mut self.ticks;
+        let lost = &mut self.lost;
         self.handle.drain_ticks(|tick| {
             *newest = Some(*tick);
             ticks.push(*tick);
@@ -313,7 +316,8 @@ fn nobody_else_is_heard_beside_the_first_program_and_its_double_waits() {
         bench.engage();
         let double = examples.start("handle", &ports[..1]);
         let stranger = UdpSocket::bind("127.0.0.1:0").unwrap();
-        let (begin, before) = (Instant::now(), bench.healths[0]);
+        let begin = Instant::now();
+        let before = bench.healths[0];
         while begin.elapsed() < Duration::from_secs(1) {
             for _ in 0..100 {
                 stranger.send_to(&[0x4E; 180], ("127.0.0.1", ports[0])).ok();
@@ -338,8 +342,10 @@ fn minute(examples: &Examples, seconds: u64) {
     let arm = examples.start("arm_and_sensor", &ports[1..]);
     let mut bench = Bench::new(rig(ports));
     bench.engage();
-    let (begin, before) = (Instant::now(), bench.healths);
-    let (first, mut rates_hz) = (bench.newest.unwrap(), Vec::new());
+    let begin = Instant::now();
+    let before = bench.healths;
+    let first = bench.newest.unwrap();
+    let mut rates_hz = Vec::new();
     bench.ticks.clear();
     while begin.elapsed() < Duration::from_secs(seconds) && bench.state() == LoopState::Engaged {
         bench.look();
@@ -348,7 +354,8 @@ fn minute(examples: &Examples, seconds: u64) {
             rates_hz.push(bench.healths.map(|health| health.rate_hz));
         }
     }
-    let (last, after) = (bench.newest.unwrap(), bench.healths);
+    let last = bench.newest.unwrap();
+    let after = bench.healths;
     let mut ages_s: Vec<f64> = bench.ticks.iter().filter_map(|tick| tick.sample_to_force_s).collect();
     ages_s.sort_by(f64::total_cmp);
     let at = |share: f64| ages_s[((ages_s.len() - 1) as f64 * share) as usize] * 1e3;
@@ -367,7 +374,8 @@ fn minute(examples: &Examples, seconds: u64) {
         at(1.0)
     );
     for (place, name) in ["handle", "arm", "sensor"].into_iter().enumerate() {
-        let (before, after) = (&before[place], &after[place]);
+        let before = &before[place];
+        let after = &after[place];
         let lowest_hz = rates_hz.iter().map(|rates| rates[place]).fold(f64::INFINITY, f64::min);
         println!(
             "{name}: {} readings, lowest rate of half a second {lowest_hz:.0} Hz, lost {}, late or twice {}, damaged {}, refused {}",

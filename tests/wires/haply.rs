@@ -60,7 +60,8 @@ impl Bench {
                 self.newest.map(|tick| (tick.state, tick.tip_m))
             );
             std::thread::sleep(Duration::from_millis(1));
-            let (newest, lost) = (&mut self.newest, &mut self.lost);
+            let newest = &mut self.newest;
+            let lost = &mut self.lost;
             self.handle.drain_ticks(|tick| *newest = Some(*tick));
             self.handle.drain_events(|event| {
                 if let Event::Device(event) = event
@@ -83,14 +84,16 @@ impl Bench {
 fn a_haply_handle_feels_the_simulated_tissue_and_a_silent_one_takes_the_force_away() {
     let _alone = alone();
     judged(|| {
-        let (felt, begins) = (Felt::default(), std::sync::Arc::default());
+        let felt = Felt::default();
+        let begins = std::sync::Arc::default();
         let serving = pressing(&felt, std::sync::Arc::clone(&begins));
         let mut rig = RigConfig::load("haply-desk").unwrap();
         assert!(!rig.is_harmless() && !rig.has_simulated_hand(), "nobody else than a person engages it");
         rig.desk.as_mut().unwrap().handle = Some(LeaderSettings::Haply(Settings::at(serving.endpoint.as_str())));
         rig.validate().unwrap();
         assert_eq!(rig.device_names()[0].to_string(), "right handle (Haply)");
-        (rig.mode, rig.gates.static_hold) = (Mode::Dfr, true);
+        rig.mode = Mode::Dfr;
+        rig.gates.static_hold = true;
         let scene = Scene::load("peg_transfer").unwrap();
         // A wish that is not granted: a person's hand may be at the handle.
         let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };

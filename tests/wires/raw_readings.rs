@@ -65,7 +65,9 @@ impl Bench {
 
     fn look(&mut self) {
         std::thread::sleep(Duration::from_micros(300));
-        let (newest, ticks, raised) = (&mut self.newest, &mut self.ticks, &mut self.raised);
+        let newest = &mut self.newest;
+        let ticks = &mut self.ticks;
+        let raised = &mut self.raised;
         self.handle.drain_ticks(|tick| {
             *newest = Some(*tick);
             ticks.push(*tick);
@@ -169,7 +171,9 @@ fn emulated(folder: &Path, place: SensorPlace) -> (EmulatedRig, Plan) {
     scene.hand.hold_s = 1e4;
     let rig = started_in(&scene, &devices);
     let mut config = RigConfig::load("emulated").unwrap();
-    (config.devices, config.mode, config.gates.static_hold) = (Some(devices), Mode::Dfr, true);
+    config.devices = Some(devices);
+    config.mode = Mode::Dfr;
+    config.gates.static_hold = true;
     config.endoscope = None;
     let gravity = (place == SensorPlace::Wrist).then(|| nima_study::validation::experiment::gravity(1).unwrap());
     let calibrations = [Calibrations { gravity, ..Calibrations::default() }, Calibrations::default()];
@@ -234,7 +238,9 @@ impl Between {
         to_device.set_read_timeout(Some(Duration::from_micros(200))).unwrap();
         let stop = Arc::clone(&ends);
         let thread = std::thread::spawn(move || {
-            let (mut spoiler, mut device, mut buffer) = (Spoiler::default(), None, [0; 2048]);
+            let mut spoiler = Spoiler::default();
+            let mut device = None;
+            let mut buffer = [0; 2048];
             while !stop.load(Ordering::Acquire) {
                 if let Ok((length, from)) = to_device.recv_from(&mut buffer) {
                     device = Some(from);
@@ -299,7 +305,8 @@ fn external(ports: [u16; 3], place: SensorPlace) -> Plan {
         text = text.replace(written, &port.to_string());
     }
     let mut rig = RigConfig::parse("docs/external-device.md".as_ref(), &text).unwrap();
-    (rig.mode, rig.gates.static_hold) = (Mode::Dfr, true);
+    rig.mode = Mode::Dfr;
+    rig.gates.static_hold = true;
     rig.devices.as_mut().unwrap().right.as_mut().unwrap().sensor_at = place;
     // The example's sensor has no tool to weigh.
     let parameters = Parameters::Physical {

@@ -201,7 +201,8 @@ fn a_device_in_use_and_one_that_waits_for_calibration_are_reported() {
         };
         let serving = waiting.with(Held::default().body()).serve().unwrap();
         let handle = devices.right.as_mut().unwrap().handle.force_dimension_mut().unwrap();
-        (handle.serial, handle.emulator) = (Some(77), Some(serving.endpoint.parse().unwrap()));
+        handle.serial = Some(77);
+        handle.emulator = Some(serving.endpoint.parse().unwrap());
         assert_told!(tried(&devices), "right handle" => Trouble::NotReady { .. });
     });
 }

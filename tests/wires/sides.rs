@@ -55,7 +55,9 @@ fn sets(devices: &mut Settings) -> [&mut ArmSet; 2] {
 fn rig(folder: &Path) -> Settings {
     let mut devices = at_tip(folder);
     let tissue = devices.tissue_sensor.as_mut().unwrap().bota_mut().unwrap();
-    (tissue.transport, tissue.mode, tissue.rate_hz) = (bota::Transport::GenA, 2, 1000);
+    tissue.transport = bota::Transport::GenA;
+    tissue.mode = 2;
+    tissue.rate_hz = 1000;
     tissue.port = folder.join("ttyACM-tissue-sensor").display().to_string();
     devices
 }
@@ -75,13 +77,15 @@ pub(crate) fn hand_eye(set: &mut ArmSet, truth: &Truth) {
 fn exchange_sensors(devices: &mut Settings) {
     let [right, left] = sets(devices);
     std::mem::swap(&mut right.sensor, &mut left.sensor);
-    let (right, left) = (right.sensor.bota_mut().unwrap(), left.sensor.bota_mut().unwrap());
+    let right = right.sensor.bota_mut().unwrap();
+    let left = left.sensor.bota_mut().unwrap();
     std::mem::swap(&mut right.serial_number, &mut left.serial_number);
 }
 
 fn exchange_arms(devices: &mut Settings) {
     let [right, left] = sets(devices);
-    let (right, left) = (right.arm.kinova_mut().unwrap(), left.arm.kinova_mut().unwrap());
+    let right = right.arm.kinova_mut().unwrap();
+    let left = left.arm.kinova_mut().unwrap();
     std::mem::swap(&mut right.tcp_port, &mut left.tcp_port);
     std::mem::swap(&mut right.udp_port, &mut left.udp_port);
 }
@@ -146,7 +150,8 @@ fn rows() -> Vec<Row> {
         Row {
             wire: |devices| {
                 let [right, left] = sets(devices);
-                let (right, left) = (right.handle.force_dimension_mut(), left.handle.force_dimension_mut());
+                let right = right.handle.force_dimension_mut();
+                let left = left.handle.force_dimension_mut();
                 std::mem::swap(&mut right.unwrap().emulator, &mut left.unwrap().emulator);
             },
             ..row("cables of the handles", Told::Harmless)
@@ -154,7 +159,8 @@ fn rows() -> Vec<Row> {
         Row {
             file: |devices| {
                 let [right, left] = sets(devices);
-                let (right, left) = (right.handle.force_dimension_mut(), left.handle.force_dimension_mut());
+                let right = right.handle.force_dimension_mut();
+                let left = left.handle.force_dimension_mut();
                 std::mem::swap(&mut right.unwrap().serial, &mut left.unwrap().serial);
             },
             ..row("serial numbers of the handles in the file", Told::Kept(&["right handle", "left handle"]))

@@ -36,7 +36,8 @@ fn found(are_exchanged: bool) -> State {
     let parts = handle.roster().iter().map(|entry| entry.part).collect();
     let gates_in_file = Some(rig.gates);
     let mut session = Session::new(Subject { rig, arms, parts, gates_in_file, is_date_behind: false });
-    let (technician, begin) = (emulated.technician(), Instant::now());
+    let technician = emulated.technician();
+    let begin = Instant::now();
     loop {
         std::thread::sleep(Duration::from_millis(5));
         handle.drain_ticks(|tick| {

@@ -67,12 +67,14 @@ impl Bench {
 
     /// Waits until nobody has moved the arm of this side for a while: who was called to it has carried it where he begins.
     pub(super) fn rests(&mut self, side: Side) {
-        let (mut at_rad, mut since_s) = ([f64::INFINITY; ARM_JOINTS], 0.0);
+        let mut at_rad = [f64::INFINITY; ARM_JOINTS];
+        let mut since_s = 0.0;
         self.until(side, Duration::from_secs(20), |bench, tick| {
             let joint_rad = bench.rig.truth(side).unwrap().joint_rad;
             let moved = joint_rad.iter().zip(&at_rad).any(|(now, then)| (now - then).abs() > STILL_RAD);
             if moved {
-                (at_rad, since_s) = (joint_rad, tick.t_s);
+                at_rad = joint_rad;
+                since_s = tick.t_s;
             }
             tick.t_s - since_s > STILL_S
         });

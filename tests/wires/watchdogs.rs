@@ -13,7 +13,8 @@ use nima_tests::emulated::{right_arm, started};
 
 /// Waits for such a tick; in a state without drives no force is commanded. A machine that is too busy for that is not judged.
 fn until(handle: &Handle, what: &str, good: impl Fn(&Tick) -> bool) {
-    let (began, mut newest) = (Instant::now(), None);
+    let began = Instant::now();
+    let mut newest = None;
     while !newest.as_ref().is_some_and(&good) {
         if began.elapsed() > Duration::from_secs(10) {
             println!("never came: {what}; {:?}", newest.map(|tick: Tick| tick.state));

@@ -38,7 +38,8 @@ fn force_n(t_s: f64, channel: usize) -> f64 {
 
 /// Both hands' histories up to a time.
 fn fill(live: &mut Live, from_s: f64, to_s: f64) {
-    let (first, end) = ((from_s * RATE_HZ).round() as u64, (to_s * RATE_HZ).round() as u64);
+    let first = (from_s * RATE_HZ).round() as u64;
+    let end = (to_s * RATE_HZ).round() as u64;
     for sample in first..end {
         let t_s = sample as f64 / RATE_HZ;
         for side in Side::ALL {
@@ -145,7 +146,8 @@ fn told(name: &str, runs: &[Vec<f64>]) -> f64 {
 }
 
 fn main() {
-    let (mut ours, mut theirs) = (ours(), all_samples());
+    let mut ours = ours();
+    let mut theirs = all_samples();
     if ratio::alone() {
         ratio::tell(
             "plots_every_sample",

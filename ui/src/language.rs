@@ -196,7 +196,8 @@ mod tests {
     #[test]
     fn a_text_is_in_the_language_of_its_thread_and_another_thread_is_english() {
         assert_eq!((PAUSE.get(), word("of", "von")), ("Pause", "of"));
-        let (a, b) = (1, 2);
+        let a = 1;
+        let b = 2;
         let told = with(Language::German, || {
             let there = std::thread::spawn(|| PAUSE.get()).join().unwrap();
             let carried = std::thread::spawn(carried(|| PAUSE.get())).join().unwrap();

@@ -94,7 +94,8 @@ mod tests {
 
     #[test]
     fn what_is_given_after_it_was_asked_is_done_at_once() {
-        let (leave, done) = (Leave::default(), Arc::new(AtomicBool::new(false)));
+        let leave = Leave::default();
+        let done = Arc::new(AtomicBool::new(false));
         assert!(!leave.is_asked());
         leave.ask();
         let mark = Arc::clone(&done);

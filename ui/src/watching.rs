@@ -140,7 +140,8 @@ mod tests {
     #[test]
     fn a_trial_of_a_blind_study_is_not_shown_by_openigtlink() {
         let servers = Servers(vec![Show::Igtl.start("127.0.0.1:0".parse().unwrap()).unwrap()]);
-        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("rings").unwrap());
+        let rig = RigConfig::load("simulated").unwrap();
+        let scene = Scene::load("rings").unwrap();
         let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
         assert!(servers.blind_audiences(&plan, "P03 4").is_empty());
         assert_eq!(servers.audiences(&plan, &Reel::default()).len(), 1);

@@ -48,7 +48,8 @@ pub(super) struct Handled {
 
 impl Handled {
     pub(super) const fn new(worlds: Worlds, side: Side, leader: Option<Leader>, mass_kg: f64, period_s: f64) -> Self {
-        let (holder, motors_n) = (Holder::Scene, Vector3::new(0.0, 0.0, 0.0));
+        let holder = Holder::Scene;
+        let motors_n = Vector3::new(0.0, 0.0, 0.0);
         Self { worlds, side, holder, leader, mass_kg, period_s, motors_n, seen: None }
     }
 

@@ -73,10 +73,12 @@ impl Running {
         let (worlds, watched) = Worlds::watched(&plan.scene, plan.rig.rate_hz);
         let period_s = 1.0 / plan.rig.rate_hz;
         let rig = Handled::new(worlds, SIDE, plan.scene.leader, plan.scene.hand.mass_kg, period_s);
-        let (training, tips_m) = (None, VecDeque::new());
+        let training = None;
+        let tips_m = VecDeque::new();
         let task = plan.scene.task.as_ref().and_then(|task| TaskFile::of(task).ok());
         let trial = task.as_ref().map(LiveTrial::new);
-        let (handle_before_m, known) = (None, None);
+        let handle_before_m = None;
+        let known = None;
         Ok(Self { control, rig, watched, training, trial, ticks: 0, period_s, tips_m, handle_before_m, known })
     }
 

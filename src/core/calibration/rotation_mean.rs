@@ -49,7 +49,8 @@ mod tests {
         for _ in 0..200 {
             let mut vector = |size: f64| Vector3::from_fn(|_, _| size * noise.gaussian());
             let middle = UnitQuaternion::from_scaled_axis(vector(2.0));
-            let (mut first, mut second) = (RotationMean::default(), RotationMean::default());
+            let mut first = RotationMean::default();
+            let mut second = RotationMean::default();
             for i in 0..400 {
                 let turned = middle * UnitQuaternion::from_scaled_axis(vector(0.01));
                 let turned = if i % 3 == 0 { UnitQuaternion::new_unchecked(-turned.into_inner()) } else { turned };

@@ -182,7 +182,9 @@ impl Anchored {
         // With no motion since the anchor only what the follower alone knows is left.
         let constant = predict(&p, &background.regressors(stance, stance), REGRESSORS);
         let [low, high] = self.envelope.bounds_n();
-        let (force, m, c) = (background.force_n, at::MOTION, at::CURVATURE);
+        let force = background.force_n;
+        let m = at::MOTION;
+        let c = at::CURVATURE;
         AnchoredModel {
             motion: [
                 p[m] + force * p[at::LOADED_POSITION],

@@ -153,8 +153,12 @@ impl Best {
     /// Forgets what was judged.
     fn forget(&mut self) {
         let none = Lanes::ZERO;
-        (self.judged, self.anchored_n, self.matched_n, self.anchored) = (0.0, none, none, none);
-        (self.lasting, self.trial) = (Lasting::default(), Trial::default());
+        self.judged = 0.0;
+        self.anchored_n = none;
+        self.matched_n = none;
+        self.anchored = none;
+        self.lasting = Lasting::default();
+        self.trial = Trial::default();
     }
 
     pub(super) fn reset(&mut self) {

@@ -10,7 +10,9 @@ fn recording(name: &str) -> Option<Vec<Sample>> {
     let text = std::fs::read_to_string(unjudged::recording(&format!("tue_1dof/{name}"))?).unwrap();
     let parse = |line: &str| {
         let mut fields = line.split(',').map(|field| field.parse::<f64>().ok());
-        let (t_s, x, f) = (fields.next()??, fields.nth(1)??, fields.nth(1)??);
+        let t_s = fields.next()??;
+        let x = fields.nth(1)??;
+        let f = fields.nth(1)??;
         Some(Sample { t_s, position_m: Vector3::new(x, 0.0, 0.0), force_n: Vector3::new(f, 0.0, 0.0) })
     };
     text.lines().skip(1).map(parse).collect()
@@ -68,7 +70,8 @@ fn the_best_of_two_on_real_recordings() {
         (["m1_question1c", "m2_question1a"], [0.585, 0.415, 0.342, 0.24]),
     ] {
         for (delay_s, limit) in [0.01, 0.05, 0.1, 0.3].into_iter().zip(limits) {
-            let (mut sum, mut count) = (0.0, 0.0);
+            let mut sum = 0.0;
+            let mut count = 0.0;
             for run in runs {
                 for material in ["foam", "spring", "rigid", "free_motion"] {
                     let Some(samples) = recording(&format!("{run}_{material}.csv")) else { return };
@@ -109,7 +112,8 @@ type Scenario = fn(f64) -> (f64, f64);
 
 /// Free for 1.5 s, then 5 N within 50 ms, held, and off again, every 3 s.
 fn sudden_contact(t: f64) -> (f64, f64) {
-    let (t, depth) = (t % 3.0, |z: f64| (-z).max(0.0));
+    let t = t % 3.0;
+    let depth = |z: f64| (-z).max(0.0);
     let z = if t < 1.5 {
         0.02 - 0.025 * smooth_step((t - 1.0) / 0.25)
     } else {
@@ -178,7 +182,8 @@ fn what_is_sudden_or_still_is_never_rendered_worse_than_reflected() {
 #[test]
 fn what_comes_later_changes_nothing_before() {
     let settings = Settings { delay_s: 0.04, ..Settings::default() };
-    let (mut plain, mut other) = (Identifier::new(&settings).unwrap(), Identifier::new(&settings).unwrap());
+    let mut plain = Identifier::new(&settings).unwrap();
+    let mut other = Identifier::new(&settings).unwrap();
     for k in 0..2000 {
         let sample = super::tests::sample(k, 1000.0);
         plain.step(&sample);

@@ -25,7 +25,8 @@ pub(super) struct Degrees {
 
 impl Degrees {
     pub(super) fn new(settings: &Settings, delay_ticks: usize) -> Self {
-        let (block, columns) = (settings.block(), 1 + 3 * settings.max_degree);
+        let block = settings.block();
+        let columns = 1 + 3 * settings.max_degree;
         let ridge = settings.ridge * 2.0 * block as f64;
         Self {
             window: SlidingWindow::new(block, Factor::new(columns), Factor::with_ridge(columns, ridge)),

@@ -21,7 +21,8 @@ impl Envelope {
     /// Takes a force (N); `pace`: how fast time runs, 1 by the clock on the wall.
     pub(super) fn see(&mut self, force_n: Lanes, pace: f64) {
         let [low, high] = self.edges_n.unwrap_or([force_n; 2]);
-        let (middle, leak) = ((low + high) * 0.5, self.leak * pace);
+        let middle = (low + high) * 0.5;
+        let leak = self.leak * pace;
         let leaked = |edge: Lanes| (edge + (middle - edge) * leak).settled();
         self.edges_n = Some([leaked(low).zip(force_n, f64::min), leaked(high).zip(force_n, f64::max)]);
     }

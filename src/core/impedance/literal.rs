@@ -40,7 +40,8 @@ impl LiteralSolver {
 
     /// Solves every degree on the sums of `rows` rows.
     pub fn solve(&mut self, gram: &Gram, rows: usize) {
-        let (n, first) = (gram.columns(), gram.constants());
+        let n = gram.columns();
+        let first = gram.constants();
         let (r, definite) = cholesky(gram, &self.ridge(first, rows));
         for degree in 1..=self.max_degree {
             let columns = first + 3 * degree;

@@ -41,7 +41,9 @@ impl Work for Accumulate<'_> {
 
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let (fade, weight, value) = (V::of(&self.fade), V::of(&self.weight), V::of(&self.value));
+        let fade = V::of(&self.fade);
+        let weight = V::of(&self.weight);
+        let value = V::of(&self.value);
         let mut rest = self.gram;
         for (j, right) in self.right.iter_mut().enumerate().take(self.row.len()) {
             let weighted = V::of(&self.row[j]).times(weight);
@@ -141,7 +143,8 @@ impl Work for Renew<'_> {
                         known[c] = known[c].plus(a.times(row[c]));
                     }
                 }
-                let (inverse, right) = (V::of(&self.factor.inverse[k]), V::of(&self.factor.right[k]));
+                let inverse = V::of(&self.factor.inverse[k]);
+                let right = V::of(&self.factor.right[k]);
                 let row = &mut rows[k];
                 for c in 0..BLOCK {
                     row[c] = row[c].minus(known[c]).times(inverse);
@@ -224,7 +227,8 @@ mod tests {
     }
 
     fn sums(columns: usize) -> (Vec<Lanes>, Vec<Lanes>) {
-        let (mut gram, mut right) = (vec![Lanes::ZERO; column_start(columns)], vec![Lanes::ZERO; columns]);
+        let mut gram = vec![Lanes::ZERO; column_start(columns)];
+        let mut right = vec![Lanes::ZERO; columns];
         for k in 0..60 {
             let row: Vec<Lanes> = (0..columns).map(|j| number(k * 31 + j)).collect();
             accumulate(&mut gram, &mut right, &row, number(k + 7), number(k + 3).map(|w| w.abs() + 0.1), 0.97);
@@ -261,18 +265,21 @@ mod tests {
     fn wider_vectors_give_the_same_bits() {
         for columns in [3, 13, 22, MOST] {
             let (gram, mut right) = sums(columns);
-            let (mut narrow_gram, mut narrow_right) = (vec![Lanes::ZERO; gram.len()], vec![Lanes::ZERO; columns]);
+            let mut narrow_gram = vec![Lanes::ZERO; gram.len()];
+            let mut narrow_right = vec![Lanes::ZERO; columns];
             for k in 0..60 {
                 let row: Vec<Lanes> = (0..columns).map(|j| number(k * 31 + j)).collect();
                 let weight = number(k + 3).map(|w| w.abs() + 0.1);
-                let (gram, right) = (&mut narrow_gram[..], &mut narrow_right[..]);
+                let gram = &mut narrow_gram[..];
+                let right = &mut narrow_right[..];
                 let fade = Lanes::splat(0.97);
                 Accumulate { gram, right, row: &row, value: number(k + 7), weight, fade }.run::<f64x4>();
             }
             assert_eq!((&gram, &right), (&narrow_gram, &narrow_right));
 
             let ridge = vec![Lanes::splat(0.01); columns];
-            let (mut wide, mut narrow) = (Factor::new(), Factor::new());
+            let mut wide = Factor::new();
+            let mut narrow = Factor::new();
             wide.renew(&mut gram.clone(), &mut right, &ridge);
             Renew { factor: &mut narrow, gram: &gram, right: &right, ridge: &ridge }.run::<f64x4>();
             let [mut by_wide, mut by_narrow] = [vec![Lanes::ZERO; columns], vec![Lanes::ZERO; columns]];
@@ -284,9 +291,11 @@ mod tests {
 
     #[test]
     fn a_column_that_others_tell_already_is_left_out() {
-        let (mut gram, mut right) = (vec![Lanes::ZERO; column_start(3)], vec![Lanes::ZERO; 3]);
+        let mut gram = vec![Lanes::ZERO; column_start(3)];
+        let mut right = vec![Lanes::ZERO; 3];
         for k in 0..20 {
-            let (a, b) = (number(k), number(k + 50));
+            let a = number(k);
+            let b = number(k + 50);
             let row = [a, b, a + b * 2.0];
             accumulate(&mut gram, &mut right, &row, a * 3.0 - b, Lanes::splat(1.0), 1.0);
         }

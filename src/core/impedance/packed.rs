@@ -205,9 +205,14 @@ impl Numbers for AnchoredModel {
     }
 
     fn read(row: &mut Reader<'_>) -> Option<Self> {
-        let (degree, gain, bound_n) = (row.count(3)? as u8, row.take()?, row.take()?);
-        let (constant_n, centre_m, knee) = (row.lanes()?, row.lanes()?, row.lanes()?);
-        let (low_n, high_n) = (row.lanes()?, row.lanes()?);
+        let degree = row.count(3)? as u8;
+        let gain = row.take()?;
+        let bound_n = row.take()?;
+        let constant_n = row.lanes()?;
+        let centre_m = row.lanes()?;
+        let knee = row.lanes()?;
+        let low_n = row.lanes()?;
+        let high_n = row.lanes()?;
         Some(Self { motion: row.row()?, constant_n, centre_m, knee, low_n, high_n, bound_n, degree, gain })
     }
 }
@@ -233,11 +238,14 @@ impl Numbers for MatchedModel {
     }
 
     fn read(row: &mut Reader<'_>) -> Option<Self> {
-        let (form, paper) = (row.count(3)?, row.count(super::MAX_DEGREE)? as u8);
+        let form = row.count(3)?;
+        let paper = row.count(super::MAX_DEGREE)? as u8;
         let form = [Form::Tissue, Form::Sliding, Form::Coupled, Form::Paper(paper)][form];
         let degree = row.count(super::MAX_DEGREE)? as u8;
-        let (one, origin) = (row.lanes()?, row.lanes()?);
-        let (bounds_n, offset_n) = ([row.lanes()?, row.lanes()?], row.lanes()?);
+        let one = row.lanes()?;
+        let origin = row.lanes()?;
+        let bounds_n = [row.lanes()?, row.lanes()?];
+        let offset_n = row.lanes()?;
         let gives = [row.take()?, row.take()?];
         Some(Self { form, degree, one, parameters: row.row()?, origin, gives, bounds_n, offset_n })
     }
@@ -283,7 +291,9 @@ impl Numbers for BaselineModel {
         Some(match row.count(5)? {
             0 => Self::Nothing,
             1 => {
-                let (surface_m, reach_m, exponent) = (row.lanes()?, row.lanes()?, row.lanes()?);
+                let surface_m = row.lanes()?;
+                let reach_m = row.lanes()?;
+                let exponent = row.lanes()?;
                 let bounds_n = [row.lanes()?, row.lanes()?];
                 Self::Contact(Contact { surface_m, reach_m, exponent, parameters: row.row()?, bounds_n })
             }

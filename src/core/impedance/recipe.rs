@@ -106,7 +106,9 @@ impl Next {
             for (degree, model) in (1..).zip(&mut self.models) {
                 *model = *newest.model(degree);
             }
-            (self.squares_n2, self.waited, self.judged) = ([0.0; MAX_DEGREE], 0, 0);
+            self.squares_n2 = [0.0; MAX_DEGREE];
+            self.waited = 0;
+            self.judged = 0;
         }
         // Where that degree cannot be solved now, the next lower one that can.
         (1..=self.degree).rev().find(|&degree| newest.is_solved(degree)).unwrap_or(0)

@@ -39,11 +39,13 @@ fn pressed(k: u32, state: &mut u64) -> Sample {
 #[test]
 fn the_default_is_what_it_was_before_there_was_a_choice_to_the_bit() {
     let mut identifier = Identifier::new(&Settings::default()).unwrap();
-    let (mut state, mut bits) = (1, 0xcbf2_9ce4_8422_2325_u64);
+    let mut state = 1;
+    let mut bits = 0xcbf2_9ce4_8422_2325_u64;
     let mut mix = |value: f64| bits = (bits ^ value.to_bits()).wrapping_mul(0x0100_0000_01b3);
     for k in 0..3000 {
         identifier.step(&pressed(k, &mut state));
-        let (parcel, report) = (identifier.parcel(), identifier.report());
+        let parcel = identifier.parcel();
+        let report = identifier.report();
         for model in [&parcel.literal, &parcel.linear] {
             model.coefficients.iter().flat_map(|m| m.0).for_each(&mut mix);
         }
@@ -62,8 +64,10 @@ fn the_default_is_what_it_was_before_there_was_a_choice_to_the_bit() {
 fn every_key_changes_what_is_said_and_the_leader_says_the_same() {
     let said = RECIPES.map(|recipe| {
         let settings = settings(recipe);
-        let (mut identifier, mut renderer) = (Identifier::new(&settings).unwrap(), Renderer::new(&settings).unwrap());
-        let (mut link, mut said_n) = (Vec::new(), Vec::new());
+        let mut identifier = Identifier::new(&settings).unwrap();
+        let mut renderer = Renderer::new(&settings).unwrap();
+        let mut link = Vec::new();
+        let mut said_n = Vec::new();
         for k in 0..1500 {
             let sample = sample(k, 1000.0);
             identifier.step(&sample);
@@ -105,7 +109,8 @@ fn the_next_samples_choose_no_degree_for_the_noise() {
     // A plain spring, measured with noise: every degree above 1 describes noise.
     let mean_degree = |choice| {
         let mut identifier = Identifier::new(&settings(Recipe { choice, ..PRINTED })).unwrap();
-        let (mut state, mut sum) = (1, 0.0);
+        let mut state = 1;
+        let mut sum = 0.0;
         for k in 0..3000 {
             let s = sample(k, 1000.0);
             let noise_n = Vector3::from_fn(|_, _| 0.05 * (uneven(&mut state) - 0.5));
@@ -114,7 +119,8 @@ fn the_next_samples_choose_no_degree_for_the_noise() {
         }
         sum
     };
-    let (window, next) = (mean_degree(Choice::Window), mean_degree(Choice::Next));
+    let window = mean_degree(Choice::Window);
+    let next = mean_degree(Choice::Next);
     assert!(next + 1.0 < window, "{window} {next}");
 }
 
@@ -124,7 +130,8 @@ fn a_constant_and_a_ridge_hold_a_force_at_rest_and_the_printed_recipe_does_not()
         let mut identifier = Identifier::new(&settings(recipe)).unwrap();
         for k in 0..2000 {
             let mut s = sample(k.min(1000), 1000.0);
-            (s.t_s, s.force_n) = (k as f64 * 1e-3, Vector3::new(0.0, 0.0, 1.4));
+            s.t_s = k as f64 * 1e-3;
+            s.force_n = Vector3::new(0.0, 0.0, 1.4);
             identifier.step(&s);
         }
         identifier.report().prediction_n[Mode::Literal.index()]
@@ -166,7 +173,8 @@ fn whatever_comes_in_no_recipe_sends_a_number_that_is_not_finite_and_all_are_for
                 _ => {}
             }
             used.step(&s);
-            let (parcel, report) = (used.parcel(), used.report());
+            let parcel = used.parcel();
+            let report = used.report();
             for model in [&parcel.literal, &parcel.linear] {
                 assert!(model.coefficients.iter().chain([&model.constant_n]).all(|m| m.is_finite()), "{recipe:?}");
             }

@@ -93,7 +93,8 @@ pub(super) fn saturated(u: Lanes, knee: Lanes) -> Lanes {
 /// cube, product].
 #[inline]
 pub(super) fn motion_changes(now: &Stance, then: &Stance, centre: Lanes, knee: Lanes) -> [Lanes; 9] {
-    let (a, b) = (now.x - centre, then.x - centre);
+    let a = now.x - centre;
+    let b = then.x - centre;
     let [u0, u1, u2, u3] = std::array::from_fn(|j| now.u[j] - then.u[j]);
     [
         now.x - then.x,
@@ -114,8 +115,11 @@ impl Background {
         let [dx, u0, u1, u2, u3, friction, square, cube, product] = motion_changes(now, then, self.centre, self.knee);
         let [g0, g1, g2, g3] = self.force_trend;
         let [m0, m1, m2, m3] = self.motion_trend;
-        let (position, force, drift) = (self.position_level, self.force_level, Lanes([1.0, 1.0, 1.0, 0.0]));
-        let (stiffening, damping) = (self.force_n * dx, self.force_n * u1);
+        let position = self.position_level;
+        let force = self.force_level;
+        let drift = Lanes([1.0, 1.0, 1.0, 0.0]);
+        let stiffening = self.force_n * dx;
+        let damping = self.force_n * u1;
         [
             dx, u0, u1, u2, u3, g0, g1, g2, g3, stiffening, damping, friction, square, cube, product, position, force,
             drift, m0, m1, m2, m3,
@@ -149,7 +153,9 @@ impl Surroundings {
     /// The background of this tick. `usual`: mean squares of the regressors so far, `None` while too little was seen.
     pub(super) fn step(&mut self, stance: &Stance, force_n: Lanes, usual: Option<&Regressors>) -> Background {
         if !self.started {
-            (self.centre, self.force_level, self.speed) = (stance.x, force_n, Lanes::ZERO);
+            self.centre = stance.x;
+            self.force_level = force_n;
+            self.speed = Lanes::ZERO;
             self.started = true;
         }
         let follow = |mean: Lanes, value: Lanes| (mean + (value - mean) * self.share).settled();

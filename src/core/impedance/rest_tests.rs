@@ -26,7 +26,8 @@ fn touched(k: usize) -> Sample {
 fn without_contact_nothing_is_learnt_and_learning_goes_on_with_the_next_contact() {
     for mode in [Mode::Dfr, Mode::Linear, Mode::Anchored, Mode::Matched, Mode::Nima, Mode::Best] {
         let mut identifier = Identifier::new(&Settings { modes: ModeSet::only(mode), ..settings() }).unwrap();
-        let (mut learnt, mut touches) = ([0; 3], 0);
+        let mut learnt = [0; 3];
+        let mut touches = 0;
         for k in 0..6000 {
             let sample = touched(k);
             identifier.step(&sample);

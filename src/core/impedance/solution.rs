@@ -169,7 +169,8 @@ mod tests {
             columns in 1_usize..=16, count in 20_usize..60, seed in any::<u64>(), split in 0.0..1.0_f64,
         ) {
             let rows = rows(count, columns, seed);
-            let (mut first, mut second) = (Factor::new(columns), Factor::new(columns));
+            let mut first = Factor::new(columns);
+            let mut second = Factor::new(columns);
             for (i, row) in rows.iter().enumerate() {
                 let lanes = row.map(|entry| Lanes([entry, 2.0 * entry, 0.0, 0.0]));
                 if (i as f64) < split * count as f64 { first.add(&lanes) } else { second.add(&lanes) }
@@ -210,7 +211,8 @@ mod tests {
     #[test]
     fn a_row_without_a_column_still_counts_in_the_others() {
         // The second column is zero in the first rows, which arrive by a merge as in the sliding window.
-        let (mut early, mut late) = (Factor::new(3), Factor::new(3));
+        let mut early = Factor::new(3);
+        let mut late = Factor::new(3);
         for (i, factor) in [0, 1, 2, 3].into_iter().zip([true, true, false, false]) {
             let t = f64::from(i);
             let mut row = [Lanes::ZERO; MAX_ROW];
@@ -237,7 +239,8 @@ mod tests {
     #[test]
     fn vanishing_entries_neither_overflow_nor_spoil_the_others() {
         for tiny in [1e-130, 1e-145, 1e-155, 1e-165, 1e-300] {
-            let (mut early, mut late) = (Factor::new(3), Factor::new(3));
+            let mut early = Factor::new(3);
+            let mut late = Factor::new(3);
             for i in 0..8 {
                 let t = f64::from(i);
                 let mut row = [Lanes::ZERO; MAX_ROW];

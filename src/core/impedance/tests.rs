@@ -116,7 +116,8 @@ fn the_best_of_two_is_judged_by_what_the_leader_rendered() {
     let mut renderer = Renderer::new(&settings).unwrap();
     let mut link = Vec::new();
     let modes = [Mode::Anchored, Mode::Matched, Mode::Best];
-    let (mut here_n, mut there_n) = ([0.0; 3], [0.0; 3]);
+    let mut here_n = [0.0; 3];
+    let mut there_n = [0.0; 3];
     for k in 0..9000 {
         let truth = sample(k, 1000.0);
         identifier.step(&truth);
@@ -144,12 +145,14 @@ fn permuting_axes_permutes_results() {
         let s = sample(k, 1000.0);
         plain.step(&s);
         turned.step(&Sample { t_s: s.t_s, position_m: turn(s.position_m), force_n: turn(s.force_n) });
-        let (a, b) = (plain.solution().unwrap().coefficients(16), turned.solution().unwrap().coefficients(16));
+        let a = plain.solution().unwrap().coefficients(16);
+        let b = turned.solution().unwrap().coefficients(16);
         for (a, b) in a.iter().zip(&b) {
             assert_eq!([a[1], a[2], a[0]], [b[0], b[1], b[2]]);
         }
         for degree in 1..=5 {
-            let (a, b) = (plain.literal().unwrap(), turned.literal().unwrap());
+            let a = plain.literal().unwrap();
+            let b = turned.literal().unwrap();
             for (a, b) in a.coefficients(degree).iter().zip(b.coefficients(degree)) {
                 assert_eq!([a[1], a[2], a[0]], [b[0], b[1], b[2]]);
             }
@@ -183,7 +186,8 @@ fn metres_and_millimetres_agree() {
         worst = worst.max((literal[0] - literal[1]).norm() / (1e-3 + literal[0].norm()));
         let all = [Mode::Linear, Mode::Dfr, Mode::Anchored, Mode::Matched, Mode::Nima, Mode::Best];
         for (mode, tolerance) in all.map(|mode| (mode, if mode == Mode::Dfr { 0.0 } else { 1e-9 })) {
-            let (a, b) = (a.report().prediction_n[mode.index()], b.report().prediction_n[mode.index()]);
+            let a = a.report().prediction_n[mode.index()];
+            let b = b.report().prediction_n[mode.index()];
             assert!((a - b).norm() <= tolerance * (1.0 + a.norm()), "{mode}, tick {k}: {a} {b}");
         }
     }

@@ -101,7 +101,8 @@ impl<S: Summary> SlidingWindow<S> {
     /// Like [`SlidingWindow::push`], but brings [`SlidingWindow::current`] up to date only if `wanted` (it is of no use
     /// otherwise).
     pub fn advance(&mut self, row: &S::Row, wanted: bool) {
-        let (b, p) = (self.block, self.position);
+        let b = self.block;
+        let p = self.position;
         let (this, last) = if self.this_half_first { (0, b) } else { (b, 0) };
         self.rows[this + p] = *row;
         let backward_row = self.rows[last + b - 1 - p];
@@ -206,7 +207,8 @@ mod tests {
         for (block, columns) in [(5, 4), (20, 16), (150, 16), (33, 7)] {
             let ridge = Factor::with_ridge(columns, 1e-6 * block as f64);
             let mut window = SlidingWindow::new(block, Factor::new(columns), ridge.clone());
-            let (mut slid, mut fresh) = (Solution::new(columns), Solution::new(columns));
+            let mut slid = Solution::new(columns);
+            let mut fresh = Solution::new(columns);
             for k in 0..7 * block {
                 window.push(&row(k));
                 slid.solve(window.current());
@@ -214,7 +216,8 @@ mod tests {
                 ((k + 1).saturating_sub(2 * block)..=k).for_each(|k| factor.add(&row(k)));
                 fresh.solve(&factor);
                 for prefix in 1..=columns {
-                    let (a, b) = (slid.coefficients(prefix), fresh.coefficients(prefix));
+                    let a = slid.coefficients(prefix);
+                    let b = fresh.coefficients(prefix);
                     let condition = fresh.condition(prefix);
                     for lane in 0..4 {
                         let size = b.iter().map(|b| b[lane].abs()).fold(1.0, f64::max);
@@ -238,7 +241,8 @@ mod tests {
             let mut window = SlidingWindow::new(block, Factor::new(columns), prior.clone());
             let blank = |k: usize| if k.is_multiple_of(rejected) { Factor::BLANK_ROW } else { row(k) };
             (0..length).for_each(|k| window.push(&blank(k)));
-            let (mut slid, mut fresh) = (Solution::new(columns), Solution::new(columns));
+            let mut slid = Solution::new(columns);
+            let mut fresh = Solution::new(columns);
             slid.solve(window.current());
             let mut factor = prior;
             (length.saturating_sub(2 * block)..length).for_each(|k| factor.add(&blank(k)));
@@ -267,7 +271,8 @@ mod tests {
             let ridge = Factor::with_ridge(columns, 1e-6 * block as f64);
             let mut window = SlidingWindow::new(block, Factor::new(columns), ridge.clone());
             (0..ticks).for_each(|k| window.push(&row(k)));
-            let (mut slid, mut fresh) = (Solution::new(columns), Solution::new(columns));
+            let mut slid = Solution::new(columns);
+            let mut fresh = Solution::new(columns);
             slid.solve(window.current());
             let mut factor = ridge;
             (ticks - 2 * block..ticks).for_each(|k| factor.add(&row(k)));

@@ -77,14 +77,16 @@ impl Chain {
     pub fn new(world_from_base: &IsometryMatrix3<f64>, joint_rad: &Joints) -> Self {
         let mut rotation = *world_from_base.rotation.matrix();
         let mut place_m = world_from_base.translation.vector;
-        let (mut origin_m, mut axis) = ([Vector3::zeros(); JOINTS], [Vector3::zeros(); JOINTS]);
+        let mut origin_m = [Vector3::zeros(); JOINTS];
+        let mut axis = [Vector3::zeros(); JOINTS];
         for (i, (shift_m, turn)) in LINKS.iter().enumerate() {
             place_m += rotation * Vector3::from(*shift_m);
             rotation = turn.after(&rotation);
             if i == JOINTS {
                 break;
             }
-            (origin_m[i], axis[i]) = (place_m, rotation.column(2).into_owned());
+            origin_m[i] = place_m;
+            axis[i] = rotation.column(2).into_owned();
             rotation = turned_about_z(&rotation, joint_rad[i]);
         }
         let rotation = Rotation3::from_matrix_unchecked(rotation);
@@ -202,7 +204,8 @@ mod tests {
                     moved[joint] += step;
                     Chain::new(&mount, &moved).world_from_flange
                 };
-                let (before, after) = (at(-H), at(H));
+                let before = at(-H);
+                let after = at(H);
                 let place = (after * nalgebra::Point3::from(on_flange_m)
                     - before * nalgebra::Point3::from(on_flange_m))
                     / (2.0 * H);

@@ -132,7 +132,8 @@ impl Inverse {
         check_joints(joint_rad)?;
         let pose = arm.pose(joint_rad);
         let trocar_m = rcm.settings().trocar_m;
-        let (miss_m, insertion_m) = (pose.axis_miss_m(&trocar_m).norm(), pose.insertion_m(&trocar_m));
+        let miss_m = pose.axis_miss_m(&trocar_m).norm();
+        let insertion_m = pose.insertion_m(&trocar_m);
         if miss_m > START_MISS_M {
             return Err(StartError::BesideTrocar { miss_m, most_m: START_MISS_M });
         }
@@ -206,7 +207,8 @@ impl Inverse {
 
     /// Slows down along a path through the trocar, then holds.
     pub fn brake(&mut self) -> Step {
-        (self.last_goal, self.target_motion_m) = (None, Vector3::zeros());
+        self.last_goal = None;
+        self.target_motion_m = Vector3::zeros();
         if self.moved_rad.iter().zip(&self.change_rad).all(|(moved, change)| moved.abs() <= *change) {
             self.moved_rad = Joints::zeros();
         } else {
@@ -321,7 +323,8 @@ impl Inverse {
     /// Smallest and largest change of each joint in this period, rad: limited by its speed, by the distance to the end
     /// of its range, and, if the arm is blocked, by its distance from the measured angle.
     fn bounds(&self) -> [Joints; 2] {
-        let (mut least, mut most) = (Joints::zeros(), Joints::zeros());
+        let mut least = Joints::zeros();
+        let mut most = Joints::zeros();
         let approach = (APPROACH_PER_S * self.period_s).min(1.0);
         let [below_rad, above_rad] = self.room_rad();
         for joint in 0..JOINTS {

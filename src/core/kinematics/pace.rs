@@ -31,9 +31,11 @@ pub(super) fn periods(step: &Joints, room: &[Joints; 2]) -> f64 {
 /// step between the two keeps the shaft in the trocar. If even coasting exceeds the limit, because the path is curved,
 /// the excess is the smallest possible on that line.
 pub(super) fn towards(moved: &Joints, coast: &Joints, wanted: &Joints, change: &Joints) -> Joints {
-    let (mut least, mut most) = (0.0_f64, 1.0_f64);
+    let mut least = 0.0_f64;
+    let mut most = 1.0_f64;
     for joint in 0..JOINTS {
-        let (bend, way) = (coast[joint] - moved[joint], wanted[joint] - coast[joint]);
+        let bend = coast[joint] - moved[joint];
+        let way = wanted[joint] - coast[joint];
         if way.abs() <= f64::EPSILON * change[joint] || change[joint].is_infinite() {
             continue;
         }

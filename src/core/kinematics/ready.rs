@@ -142,7 +142,10 @@ fn check_reach(arm: &Arm, tip_m: &Vector3<f64>, shaft: &Shaft) -> Result<(), Rea
 fn candidates(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, shaft: &Shaft) -> Result<Vec<Joints>, ReadyError> {
     let mut random = fastrand::Rng::with_seed(0x6e33);
     let mut good: Vec<(f64, Joints)> = Vec::new();
-    let (mut found, mut at_limits, mut singular, mut low) = (0, 0, 0, 0);
+    let mut found = 0;
+    let mut at_limits = 0;
+    let mut singular = 0;
+    let mut low = 0;
     let mut best_miss_m = f64::INFINITY;
     for _ in 0..STARTS {
         let start = Joints::from_fn(|joint, _| (2.0 * random.f64() - 1.0) * LIMIT_RAD[joint].min(PI));

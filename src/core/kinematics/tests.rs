@@ -50,7 +50,8 @@ fn drive(cone_deg: f64, steps: usize, seed: u64) -> Drive {
     let mut target_m = goal_m;
     let mut before = *inverse.joint_rad();
     let mut speed_before = Joints::zeros();
-    let (mut misses, mut times_us) = (Vec::with_capacity(steps), Vec::with_capacity(steps));
+    let mut misses = Vec::with_capacity(steps);
+    let mut times_us = Vec::with_capacity(steps);
     let mut drive = Drive {
         axis_miss_m: 0.0,
         speed_share: 0.0,
@@ -137,7 +138,9 @@ fn every_corner_of_the_space_is_reached_to_a_micrometre_through_the_trocar() {
 #[test]
 fn a_hands_motion_is_followed_without_lag() {
     let mut inverse = started(20.0);
-    let (mut worst_m, mut before, mut change_rad_s2) = (0.0_f64, [*inverse.joint_rad(); 2], 0.0_f64);
+    let mut worst_m = 0.0_f64;
+    let mut before = [*inverse.joint_rad(); 2];
+    let mut change_rad_s2 = 0.0_f64;
     for k in 0..5000 {
         let t_s = f64::from(k) * PERIOD_S;
         let share = t_s.min(1.0);

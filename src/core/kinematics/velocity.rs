@@ -73,7 +73,8 @@ pub(super) struct Wish {
 
 impl Task {
     pub(super) fn new(pose: &Pose, trocar_m: &Vector3<f64>) -> Self {
-        let (mut at_trocar, mut motion) = (Rows2::zeros(), Rows3::zeros());
+        let mut at_trocar = Rows2::zeros();
+        let mut motion = Rows3::zeros();
         let on_axis_m = trocar_m + pose.axis_miss_m(trocar_m);
         for joint in 0..JOINTS {
             let shift = pose.chain.point_per_joint(joint, &on_axis_m);

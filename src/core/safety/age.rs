@@ -37,7 +37,8 @@ mod tests {
         #[test]
         fn older_never_passes_more(age_s in prop::num::f64::ANY, more_s in 0.0..1.0f64) {
             let age = Age::new(0.005, 0.020);
-            let ((share, reason), (later, _)) = (age.share(age_s), age.share(age_s + more_s));
+            let (share, reason) = age.share(age_s);
+            let (later, _) = age.share(age_s + more_s);
             prop_assert!((0.0..=1.0).contains(&share) && later <= share);
             prop_assert_eq!(reason == Reason::Open, share >= 1.0);
             prop_assert!(age_s < 0.020 || share == 0.0);

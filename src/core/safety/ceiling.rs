@@ -33,7 +33,8 @@ impl Ceiling {
 
     /// `force_n` (N), shortened to the limit along its own direction, and why.
     pub fn under<const D: usize>(&self, force_n: SVector<f64, D>) -> (SVector<f64, D>, Reason) {
-        let (norm, most_n) = (force_n.norm(), self.most_n());
+        let norm = force_n.norm();
+        let most_n = self.most_n();
         if norm <= most_n {
             return (force_n, Reason::Open);
         }
@@ -54,7 +55,8 @@ mod tests {
         fn nothing_larger_passes_and_no_direction_is_bent(
             force in prop::array::uniform3(-1e3..1e3f64), ceiling_n in 0.0..20.0f64, device_n in 0.0..20.0f64,
         ) {
-            let (force, ceiling) = (Vector3::from(force), Ceiling::new(ceiling_n, device_n));
+            let force = Vector3::from(force);
+            let ceiling = Ceiling::new(ceiling_n, device_n);
             let (passed, reason) = ceiling.under(force);
             prop_assert!(passed.norm() <= ceiling_n.min(device_n) * (1.0 + 1e-12));
             prop_assert!(passed.cross(&force).norm() <= 1e-9 * force.norm() * (1.0 + passed.norm()));

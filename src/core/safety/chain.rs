@@ -392,8 +392,10 @@ mod tests {
         ) {
             let settings = ChainSettings::default();
             let mut chain = Chain::new(settings, 1e-3);
-            let (mut last, mut last_gain) = (Vector3::<f64>::zeros(), 1.0);
-            let (mut t_s, mut last_s) = (0.0, -1e-3);
+            let mut last = Vector3::<f64>::zeros();
+            let mut last_gain = 1.0;
+            let mut t_s = 0.0;
+            let mut last_s = -1e-3;
             for (force, age_s, speed_m_s, permitted, gain, spacing_s) in requests {
                 chain.set_gain_above_one(gain);
                 let force = Vector3::from(force);
@@ -407,7 +409,8 @@ mod tests {
                 prop_assert!(now.norm() == 0.0 || change <= 0.5 * (1.0 + 1e-9), "change {}", change);
                 let ramp = 2.0 * f64::max(t_s - last_s, 0.0);
                 prop_assert!((report.gain - last_gain).abs() <= ramp * (1.0 + 1e-9) + 2.001e-3);
-                (last, last_gain) = (now, report.gain);
+                last = now;
+                last_gain = report.gain;
                 last_s = if f64::is_finite(t_s) { t_s } else { last_s };
             }
         }

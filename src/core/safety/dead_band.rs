@@ -32,7 +32,8 @@ impl DeadBand {
             return 1.0;
         }
         if !speed_m_s.is_finite() {
-            (self.lately_m_s, self.counted_m_s) = (0.0, 0.0);
+            self.lately_m_s = 0.0;
+            self.counted_m_s = 0.0;
             return 0.0;
         }
         let fallen_m_s = self.lately_m_s + (speed_m_s - self.lately_m_s) * (dt_s / (FALL_S + dt_s));

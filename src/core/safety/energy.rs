@@ -63,7 +63,8 @@ impl<const D: usize> Energy<D> {
     /// What of `force_n` (N) may pass now, and why not all.
     pub fn controlled(&self, force_n: SVector<f64, D>) -> (SVector<f64, D>, Reason) {
         let share = (self.stored_j / SOFT_J).clamp(0.0, 1.0);
-        let (speed_m_s, giving_w) = (self.hand_m_s.norm(), force_n.dot(&self.hand_m_s));
+        let speed_m_s = self.hand_m_s.norm();
+        let giving_w = force_n.dot(&self.hand_m_s);
         if self.mode != EnergyMode::Control || share >= 1.0 || giving_w <= 0.0 || speed_m_s < 1e-6 {
             return (force_n, Reason::Open);
         }
@@ -96,7 +97,10 @@ mod tests {
     /// share taken while the hand itself pushed.
     fn pushed(mode: EnergyMode, seconds: f64, force: impl Fn(f64, f64, f64) -> f64) -> f64 {
         let mut gate = Energy::<1>::new(mode);
-        let (mut x, mut v, mut got_j, mut held_n) = (0.0, 0.0, 0.0, 0.0);
+        let mut x = 0.0;
+        let mut v = 0.0;
+        let mut got_j = 0.0;
+        let mut held_n = 0.0;
         for i in 0..(seconds * 1e3) as u32 {
             gate.observe(Some([x].into()), &[held_n].into(), 1e-3);
             held_n = gate.controlled([force(f64::from(i) * 1e-3, x, v)].into()).0.x;
@@ -150,7 +154,8 @@ mod tests {
             ),
         ) {
             let mut gate = Energy::<3>::new(EnergyMode::Control);
-            let (mut at_m, mut held_n) = (Vector3::zeros(), Vector3::zeros());
+            let mut at_m = Vector3::zeros();
+            let mut held_n = Vector3::zeros();
             for (force, way, late_s) in ticks {
                 let force = Vector3::from(force);
                 let now_m = at_m + Vector3::from(way);

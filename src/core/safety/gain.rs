@@ -69,7 +69,9 @@ mod tests {
         fn it_never_leaves_its_range_its_rate_or_its_permission(
             choices in prop::collection::vec((prop::num::f64::ANY, any::<bool>()), 1..200),
         ) {
-            let (mut gain, mut last, mut allowed) = (Gain::new(1.0, 2.0), 1.0, false);
+            let mut gain = Gain::new(1.0, 2.0);
+            let mut last = 1.0;
+            let mut allowed = false;
             for (choice, deliberate) in choices {
                 if deliberate {
                     gain.choose_above_one(choice);

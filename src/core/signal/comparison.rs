@@ -25,7 +25,8 @@ struct Figures {
 /// Root mean squares of the deviations of (v, a) from `truth`, which gives (x, v, a) at a time.
 fn deviation(kind: DifferentiatorKind, truth: impl Fn(f64, usize) -> [f64; 3]) -> [f64; 2] {
     let mut differentiator = Differentiator::new(kind, RATE_HZ);
-    let (mut sums, mut count) = ([0.0; 2], 0.0);
+    let mut sums = [0.0; 2];
+    let mut count = 0.0;
     for k in 0..12_000 {
         let [x, v, a] = truth(k as f64 / RATE_HZ, k);
         let found = differentiator.step(Lanes::splat(quantised(x)));
@@ -63,7 +64,8 @@ fn hand(t: f64) -> [f64; 3] {
         let w = TAU * hz;
         [amplitude * (w * t).sin(), amplitude * w * (w * t).cos(), -amplitude * w * w * (w * t).sin()]
     };
-    let (reach, tremor) = (wave(0.02, 0.5), wave(1e-4, 9.0));
+    let reach = wave(0.02, 0.5);
+    let tremor = wave(1e-4, 9.0);
     std::array::from_fn(|i| reach[i] + tremor[i])
 }
 

@@ -114,7 +114,8 @@ mod tests {
     /// Runs `motion(t)` through a differentiator and returns the worst errors of (v, a) after it has settled.
     fn worst_errors(kind: DifferentiatorKind, rate_hz: f64, motion: impl Fn(f64) -> [f64; 3]) -> (f64, f64) {
         let mut differentiator = Differentiator::new(kind, rate_hz);
-        let (mut dv, mut da) = (0.0_f64, 0.0_f64);
+        let mut dv = 0.0_f64;
+        let mut da = 0.0_f64;
         for k in 0..(5.0 * rate_hz) as usize {
             let [x, v, a] = motion(k as f64 / rate_hz);
             let found = differentiator.step(Lanes([x, 0.5 * x, 0.0, 0.0]));

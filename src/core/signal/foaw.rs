@@ -68,7 +68,8 @@ impl AdaptiveSlope {
         let at = |k: usize| self.samples.get(k).map_or(0.0, |sample| sample[lane]);
         let newest = at(0);
         let mut slope_per_tick = 0.0;
-        let (mut sum, mut weighted) = (0.0, 0.0);
+        let mut sum = 0.0;
+        let mut weighted = 0.0;
         for length in 1..self.samples.len() {
             let oldest = at(length);
             let line = (newest - oldest) / length as f64;

@@ -30,7 +30,8 @@ impl Kalman {
         // one.
         let step = TAU * bandwidth_hz * period_s;
         let fourth = step * step * (step * step);
-        let (a, q) = (transition(1.0), process_noise(fourth * fourth));
+        let a = transition(1.0);
+        let q = process_noise(fourth * fourth);
         let mut p = Matrix4::identity();
         for _ in 0..20_000 {
             let predicted = a * p * a.transpose() + q;
@@ -75,7 +76,8 @@ impl Kalman {
 }
 
 fn transition(t: f64) -> Matrix4<f64> {
-    let (t2, t3) = (t * t / 2.0, t * t * t / 6.0);
+    let t2 = t * t / 2.0;
+    let t3 = t * t * t / 6.0;
     Matrix4::new(1.0, t, t2, t3, 0.0, 1.0, t, t2, 0.0, 0.0, 1.0, t, 0.0, 0.0, 0.0, 1.0)
 }
 

@@ -56,7 +56,8 @@ impl Lanes {
     #[must_use]
     #[inline(always)]
     pub fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        let ([a0, a1, a2, a3], [b0, b1, b2, b3]) = (self.0, other.0);
+        let [a0, a1, a2, a3] = self.0;
+        let [b0, b1, b2, b3] = other.0;
         Self([f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3)])
     }
 

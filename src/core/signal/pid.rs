@@ -42,7 +42,8 @@ impl Pid {
 
     /// Resets the state.
     pub const fn reset(&mut self) {
-        (self.integral, self.last) = (0.0, None);
+        self.integral = 0.0;
+        self.last = None;
     }
 
     /// The output for this goal and measurement, `dt_s` after the last step. Input that is not finite gives zero and
@@ -70,7 +71,9 @@ mod tests {
     #[test]
     fn a_constant_load_leaves_no_error_at_last() {
         // A servo with a steady error of 0.05 rad that follows its goal within 10 ms.
-        let (mut pid, mut angle, goal) = (Pid::new(GAINS), 0.0, 0.4);
+        let mut pid = Pid::new(GAINS);
+        let mut angle = 0.0;
+        let goal = 0.4;
         for _ in 0..2000 {
             let commanded = goal + pid.step(goal, angle, 1e-3);
             angle += (commanded - 0.05 - angle) * 0.1;

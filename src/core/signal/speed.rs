@@ -75,10 +75,13 @@ impl<const D: usize> Speed<D> {
     fn slope(&self, axis: usize) -> f64 {
         let Some((now_s, now_m)) = self.readings.front() else { return 0.0 };
         let band_m = ROUNDING * self.step_m;
-        let (mut slope, mut least, mut most) = (0.0, f64::NEG_INFINITY, f64::INFINITY);
+        let mut slope = 0.0;
+        let mut least = f64::NEG_INFINITY;
+        let mut most = f64::INFINITY;
         let mut back = 1;
         while let Some((then_s, then_m)) = self.readings.get(back) {
-            let (dt_s, way_m) = (now_s - then_s, now_m[axis] - then_m[axis]);
+            let dt_s = now_s - then_s;
+            let way_m = now_m[axis] - then_m[axis];
             let line = way_m / dt_s;
             if !(least..=most).contains(&line) {
                 break;

@@ -81,8 +81,10 @@ impl Regression {
     fn fit(x: &[f32], y: &[f32], outputs: usize) -> Self {
         let rows = y.len() / outputs.max(1);
         let width = x.len() / rows.max(1);
-        let (nx, ny) = (Normalisation::of(x, width, 0..rows), Normalisation::of(y, outputs, 0..rows));
-        let (mut x, mut y) = (x.to_vec(), y.to_vec());
+        let nx = Normalisation::of(x, width, 0..rows);
+        let ny = Normalisation::of(y, outputs, 0..rows);
+        let mut x = x.to_vec();
+        let mut y = y.to_vec();
         x.chunks_mut(width).for_each(|row| nx.apply(row));
         y.chunks_mut(outputs).for_each(|row| ny.apply(row));
         let mut weights = linear::solve(&x, &y, (width, outputs), &(0..rows).collect::<Vec<_>>());

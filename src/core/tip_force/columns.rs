@@ -112,7 +112,8 @@ impl Expansion {
             None if feature < self.measured() => format!("rotation entry {}", feature - self.plain.len()),
             None => {
                 let place = feature - self.measured();
-                let (direction, load) = (place / (1 + self.loads.len()), place % (1 + self.loads.len()));
+                let direction = place / (1 + self.loads.len());
+                let load = place % (1 + self.loads.len());
                 let sign = format!("sign of {}", inputs[self.directions[direction].0]);
                 if load == 0 { sign } else { format!("{sign} times {}", inputs[self.loads[load - 1]]) }
             }

@@ -47,7 +47,8 @@ impl Span {
     const NONE: Self = Self { low: f32::INFINITY, high: f32::NEG_INFINITY };
 
     const fn add(&mut self, value: f32) {
-        (self.low, self.high) = (self.low.min(value), self.high.max(value));
+        self.low = self.low.min(value);
+        self.high = self.high.max(value);
     }
 
     /// Width of the range; zero before the first value.

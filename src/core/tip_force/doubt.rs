@@ -57,10 +57,12 @@ impl Doubt {
         let room = if whole_sessions { 1.0 } else { ROOM };
         let rows: Vec<usize> = (0..x.len() / stride).collect();
         let mut doubt = Self::geometry(x, stride, width, &rows, seed);
-        let (mut distances, mut reaches) = (Vec::new(), Vec::new());
+        let mut distances = Vec::new();
+        let mut reaches = Vec::new();
         let mut scratch = vec![0.0; width];
         for (fit, judge) in folds {
-            let (mut fold_distances, mut fold_reaches) = (Vec::new(), Vec::new());
+            let mut fold_distances = Vec::new();
+            let mut fold_reaches = Vec::new();
             let fold = Self::geometry(x, stride, width, fit, seed);
             for &row in &thinned(judge, ROWS / folds.len().max(1)) {
                 let features = &x[row * stride..row * stride + width];

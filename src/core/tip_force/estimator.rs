@@ -27,7 +27,8 @@ pub struct Estimator {
 impl Estimator {
     /// Prepares a model; allocates everything that it needs.
     pub fn new(model: Model) -> Self {
-        let (features, scratch) = (vec![0.0; model.expansion.width()], vec![0.0; model.doubt.width]);
+        let features = vec![0.0; model.expansion.width()];
+        let scratch = vec![0.0; model.doubt.width];
         Self { model, features, scratch }
     }
 

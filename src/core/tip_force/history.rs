@@ -115,7 +115,8 @@ impl Memory {
         if turned {
             self.swing = side * (load - self.load);
         }
-        (self.side, self.load) = (side, load);
+        self.side = side;
+        self.load = load;
         turned
     }
 
@@ -142,7 +143,8 @@ mod tests {
     #[test]
     fn a_midline_measures_coulomb_friction_at_each_reversal_and_holds_the_load_while_it_turns() {
         let derived = Derived::parse("midline:f_n:x_m:0.05:1.0").unwrap().unwrap();
-        let (mut memory, mut friction) = (derived.memory(None), derived.memory(None));
+        let mut memory = derived.memory(None);
+        let mut friction = derived.memory(None);
         let stop = Derived::parse("presliding:x_m:0.02").unwrap().unwrap();
         let mut worst = 0.0_f32;
         for k in 0..4000_u16 {

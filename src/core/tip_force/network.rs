@@ -83,7 +83,8 @@ pub struct Member {
 impl Member {
     /// A network with these layers and the linear path; `None` if the sizes do not match.
     pub fn new(layers: Vec<Layer>, skip: Layer) -> Option<Self> {
-        let (first, last) = (layers.first()?, layers.last()?);
+        let first = layers.first()?;
+        let last = layers.last()?;
         let chained = layers.windows(2).all(|pair| pair[0].outputs == pair[1].inputs);
         let fits = first.inputs == skip.inputs && last.outputs == skip.outputs && skip.outputs <= MAX_OUTPUTS;
         (chained && fits).then_some(Self { layers, skip })
@@ -191,7 +192,8 @@ mod tests {
     fn random_member(widths: &[usize], generator: &mut fastrand::Rng) -> Member {
         let mut layer = |inputs: usize, outputs: usize| {
             let mut draw = |n: usize| (0..n).map(|_| generator.f32() - 0.5).collect::<Vec<_>>();
-            let (weights, bias) = (draw(inputs * outputs), draw(outputs));
+            let weights = draw(inputs * outputs);
+            let bias = draw(outputs);
             Layer::new(inputs, outputs, &weights, &bias).unwrap()
         };
         let layers = widths.windows(2).map(|pair| layer(pair[0], pair[1])).collect();

@@ -25,7 +25,8 @@ impl Normalisation {
     /// The normalisation of `rows` of a matrix with `width` columns, stored row by row.
     pub fn of(values: &[f32], width: usize, rows: impl Iterator<Item = usize> + Clone) -> Self {
         let count = rows.clone().count().max(1) as f64;
-        let (mut mean, mut variance) = (vec![0.0_f64; width], vec![0.0_f64; width]);
+        let mut mean = vec![0.0_f64; width];
+        let mut variance = vec![0.0_f64; width];
         for row in rows.clone() {
             for (mean, value) in mean.iter_mut().zip(&values[row * width..]) {
                 *mean += f64::from(*value) / count;

@@ -31,7 +31,8 @@ fn golden() -> [(Frame, Vec<u8>); 2] {
 
 fn random_frame(random: &mut fastrand::Rng) -> Frame {
     let mut three = || [(); 3].map(|()| (random.f32() - 0.5) * 200.0);
-    let (force_n, torque_nm) = (three(), three());
+    let force_n = three();
+    let torque_nm = three();
     let inertial = Inertial { acceleration_m_s2: three(), angular_velocity_rad_s: three() };
     Frame {
         status: random.u16(..) & STATUS_BITS,
@@ -108,7 +109,9 @@ fn a_clean_stream_is_read_whole_in_pieces_of_any_length() {
 #[test]
 fn damaged_frames_are_counted_one_by_one_and_the_others_kept() {
     let mut random = fastrand::Rng::with_seed(3);
-    let (mut kept, mut stream, mut damaged) = (Vec::new(), Vec::new(), 0);
+    let mut kept = Vec::new();
+    let mut stream = Vec::new();
+    let mut damaged = 0;
     for _ in 0..5000 {
         let frame = Frame { inertial: None, ..random_frame(&mut random) };
         let mut bytes = encoded(&frame);
@@ -146,7 +149,9 @@ fn a_payload_full_of_headers_is_not_locked_onto() {
 fn fuzz(rounds: u64, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut decoder = Decoder::default();
-    let (mut sent, mut found, mut fed) = (0_u64, 0_u64, 0_u64);
+    let mut sent = 0_u64;
+    let mut found = 0_u64;
+    let mut fed = 0_u64;
     for round in 0..rounds {
         let mut bytes = if random.u8(..) < 128 {
             sent += 1;

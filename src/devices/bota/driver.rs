@@ -249,7 +249,8 @@ impl Judge {
             return self.refuse(Loss::Implausible);
         }
         self.health.accept(now_s);
-        (self.usable_s, self.suspect) = (now_s, Loss::Silent);
+        self.usable_s = now_s;
+        self.suspect = Loss::Silent;
         Some(Stamped { device_s: Some(device_s), arrival_s: now_s, value: reading })
     }
 

@@ -157,7 +157,8 @@ fn what_came_before_the_first_poll_is_old_and_the_sensor_is_stopped_in_the_end()
 
 #[test]
 fn datagrams_of_a_wrong_length_are_damaged_ones() {
-    let ([near, _far_control], [stream, mut far]) = (MemoryBytes::pair(), MemoryDatagrams::pair());
+    let [near, _far_control] = MemoryBytes::pair();
+    let [stream, mut far] = MemoryDatagrams::pair();
     let link = Link::new(Box::new(near), Some(Box::new(stream)));
     let mut driver =
         Driver::of(Opened { link, identity: Identity::default(), rate_hz: RATE_HZ, low_latency: true, stop: b"x" });

@@ -299,7 +299,8 @@ fn first_readings(
     timeouts: Timeouts,
 ) -> Result<(), Trouble> {
     let wait = timeouts.stream + Duration::from_secs_f64((FIRST_READINGS + 2) as f64 / rate_hz);
-    let (begin, place) = (Instant::now(), place.to_owned());
+    let begin = Instant::now();
+    let place = place.to_owned();
     let mut frames: Vec<Frame> = Vec::new();
     while frames.len() < FIRST_READINGS {
         link.receive(|frame| frames.push(frame))
@@ -327,7 +328,8 @@ fn first_readings(
     steps_us.sort_unstable();
     let measured_hz = 1e6 / f64::from(steps_us[steps_us.len() / 2].max(1));
     if measured_hz > rate_hz * RATE_FACTOR || measured_hz < rate_hz / RATE_FACTOR {
-        let (command, answer) = (format!("{rate_hz:.0} Hz"), format!("it measures at {measured_hz:.0} Hz"));
+        let command = format!("{rate_hz:.0} Hz");
+        let answer = format!("it measures at {measured_hz:.0} Hz");
         return Err(Trouble::Refused { place, command, answer });
     }
     Ok(())

@@ -67,7 +67,8 @@ pub(super) struct Session {
 
 impl Session {
     pub(super) fn new(line: Box<dyn Bytes>, place: &str, timeouts: Timeouts) -> Self {
-        let (heard, decoder) = (Vec::with_capacity(2 * HEARD_MAX), Decoder::default());
+        let heard = Vec::with_capacity(2 * HEARD_MAX);
+        let decoder = Decoder::default();
         Self { line, place: place.to_owned(), timeouts, heard, decoder, bytes: 0, frames: 0 }
     }
 

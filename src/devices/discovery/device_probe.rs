@@ -77,7 +77,8 @@ where
         let begin = Instant::now();
         let mut device = (self.open)()?;
         let end = Instant::now() + LISTEN.min(timeout.saturating_sub(begin.elapsed()));
-        let (mut first, mut last) = (None, None);
+        let mut first = None;
+        let mut last = None;
         while Instant::now() < end && !matches!(device.health().standing, Standing::Lost(_)) {
             if device.poll(begin.elapsed().as_secs_f64()).is_some() {
                 last = Some(Instant::now());

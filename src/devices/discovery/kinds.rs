@@ -118,7 +118,8 @@ fn ndi(place: &str) -> Result<Box<dyn Probe>, Trouble> {
     let mut settings = ndi::Settings { wired: true, ..ndi::Settings::default() };
     if place.contains('/') || place.starts_with("COM") {
         let (port, baud) = line("ndi", place, settings.baud)?;
-        (settings.port, settings.baud) = (Some(port.to_owned()), baud);
+        settings.port = Some(port.to_owned());
+        settings.baud = baud;
     } else if place.is_empty() {
         return Err(wrong("ndi", place, "the unit's address or its device file"));
     } else {

@@ -89,7 +89,9 @@ impl Probe for SerialProbe {
         let mut line = Serial::open(&self.settings).map_err(|trouble| exact(trouble, ids.as_ref()))?;
         let errors_before = line.line_errors();
         let end = Instant::now() + LISTEN.min(timeout.saturating_sub(begin.elapsed()));
-        let (mut heard, mut first_s, mut buffer) = (Vec::new(), None, [0; 4096]);
+        let mut heard = Vec::new();
+        let mut first_s = None;
+        let mut buffer = [0; 4096];
         while Instant::now() < end {
             match line.receive(&mut buffer) {
                 Ok(0) => std::thread::sleep(NAP),

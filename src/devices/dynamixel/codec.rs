@@ -196,7 +196,8 @@ impl Incoming {
                 self.refuse();
                 continue;
             }
-            let (id, instruction) = (rest[4], rest[PREFIX]);
+            let id = rest[4];
+            let instruction = rest[PREFIX];
             self.body.clear();
             if (id, instruction) == (BROADCAST, STATUS) {
                 self.body.extend_from_slice(&covered[PREFIX + 1..]);

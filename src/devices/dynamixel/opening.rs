@@ -113,7 +113,8 @@ struct Answer {
 
 impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
     pub(super) fn new(line: &'a mut T, pace: &'a mut P, place: &'a str, timeouts: Timeouts) -> Self {
-        let (incoming, outgoing) = (Incoming::new(LONGEST), Outgoing::new(LONGEST));
+        let incoming = Incoming::new(LONGEST);
+        let outgoing = Outgoing::new(LONGEST);
         Self { line, pace, place, incoming, outgoing, heard: 0, timeouts }
     }
 
@@ -151,7 +152,8 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
             *version = self.ask(servo.id, &Instruction::Ping)?.and_then(|answer| answer.data.get(2).copied());
         }
         if firmware == [None; SERVOS] {
-            let (place, others) = (self.place.to_owned(), self.everybody()?);
+            let place = self.place.to_owned();
+            let others = self.everybody()?;
             if others.is_empty() {
                 return Err(Trouble::Silent { place });
             }
@@ -242,7 +244,8 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
     /// Whether the firmware of all servos supports the fast sync read.
     fn answers_fast(&mut self, settings: &Settings) -> Result<bool, Trouble> {
         let ids = settings.servos.each_ref().map(|servo| servo.id);
-        let (address, count) = (table::TICK.address, MOTION_BYTES as u16);
+        let address = table::TICK.address;
+        let count = MOTION_BYTES as u16;
         for _ in 0..self.timeouts.tries {
             self.send(BROADCAST, &Instruction::SyncRead { address, count, ids: &ids, fast: true })?;
             let whole = |packet: &Packet<'_>| packet.id == BROADCAST && packet.instruction == STATUS;

@@ -248,7 +248,8 @@ impl ServoSettings {
 
     /// Lowest and highest goal, ticks.
     pub(super) fn limits_ticks(&self) -> (f64, f64) {
-        let (low, high) = (ticks_from_rad(self.position_min_rad).ceil(), ticks_from_rad(self.position_max_rad).floor());
+        let low = ticks_from_rad(self.position_min_rad).ceil();
+        let high = ticks_from_rad(self.position_max_rad).floor();
         if self.operating_mode == OperatingMode::Position {
             (low.clamp(0.0, TICKS_PER_TURN - 1.0), high.clamp(0.0, TICKS_PER_TURN - 1.0))
         } else {

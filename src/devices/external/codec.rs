@@ -247,7 +247,8 @@ impl Datagram {
         };
         let names = HEADER_BYTES + message.names_bytes();
         if names > HEADER_BYTES {
-            (datagram.product, datagram.serial) = (part(body, HEADER_BYTES), part(body, HEADER_BYTES + PRODUCT_BYTES));
+            datagram.product = part(body, HEADER_BYTES);
+            datagram.serial = part(body, HEADER_BYTES + PRODUCT_BYTES);
         }
         for (number, bytes) in datagram.numbers.iter_mut().zip(body[names..].chunks_exact(8)) {
             *number = f64::from_le_bytes(part(bytes, 0));
@@ -298,7 +299,8 @@ mod tests {
                 ..Datagram::blank(message)
             };
             if matches!(message, Message::Reading(_)) {
-                (datagram.product, datagram.serial) = (padded("a handle"), padded("SN-1"));
+                datagram.product = padded("a handle");
+                datagram.serial = padded("SN-1");
             }
             for (place, number) in datagram.numbers.iter_mut().take(message.numbers()).enumerate() {
                 *number = place as f64 - 0.125;
@@ -327,7 +329,8 @@ mod tests {
             let mut bytes: Vec<u8> = (0..random.usize(0..BYTES_MAX + 9)).map(|_| random.u8(..)).collect();
             if bytes.len() > 8 && random.bool() {
                 bytes[..4].copy_from_slice(&MAGIC);
-                (bytes[4], bytes[5]) = (VERSION, random.u8(..));
+                bytes[4] = VERSION;
+                bytes[5] = random.u8(..);
             }
             assert!(Datagram::decode(&bytes).is_err());
         }

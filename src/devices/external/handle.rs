@@ -66,7 +66,8 @@ fn within(values: &[f64], limit: f64) -> bool {
 
 /// The reading in a datagram, if its numbers are possible.
 fn reading(datagram: &Datagram) -> Option<HandleReading> {
-    let (position_m, velocity_m_s) = (datagram.three(0), datagram.three(7));
+    let position_m = datagram.three(0);
+    let velocity_m_s = datagram.three(7);
     let [w, i, j, k] = std::array::from_fn(|at| datagram.numbers[3 + at]);
     let gripper_rad = datagram.numbers[10];
     let orientation = if datagram.has(status::HAS_ORIENTATION) {
@@ -76,7 +77,8 @@ fn reading(datagram: &Datagram) -> Option<HandleReading> {
     } else {
         None
     };
-    let (has_velocity, has_gripper) = (datagram.has(status::HAS_VELOCITY), datagram.has(status::HAS_GRIPPER));
+    let has_velocity = datagram.has(status::HAS_VELOCITY);
+    let has_gripper = datagram.has(status::HAS_GRIPPER);
     let possible = within(&position_m, POSITION_MAX_M)
         && (!has_velocity || within(&velocity_m_s, SPEED_MAX_M_S))
         && (!has_gripper || within(&[gripper_rad], GRIPPER_MAX_RAD));

@@ -123,7 +123,8 @@ impl Line {
         self.now_us = self.begins_us + OPENING_US + ((now_s - first_s).max(0.0) * 1e6) as u64;
         let known_us = self.sent.newest_until(self.now_us.saturating_sub(self.age_max_us));
         let must_know_us = known_us.unwrap_or(self.begins_us + 1);
-        let (mut newest, mut is_backlog) = (None, true);
+        let mut newest = None;
+        let mut is_backlog = true;
         for _ in 0..READS_MAX {
             let count = match self.datagrams.receive(&mut self.buffer) {
                 Ok(Some(count)) => count,

@@ -71,7 +71,8 @@ pub(super) fn meet(
 
 fn first_of(datagrams: &mut dyn Datagrams, kind: Kind, settings: &Settings) -> Result<Datagram, Trouble> {
     let place = settings.place();
-    let (begin, mut buffer) = (Instant::now(), [0; BYTES_MAX + 1]);
+    let begin = Instant::now();
+    let mut buffer = [0; BYTES_MAX + 1];
     let mut trouble = Trouble::NobodySends { place: place.clone() };
     let wrong = |found: String| Trouble::WrongProduct {
         place: place.clone(),
@@ -110,8 +111,11 @@ pub(super) struct Met {
 /// Answers until a datagram shows that the program has heard it.
 fn shake_hands(datagrams: &mut dyn Datagrams, first: &Datagram, watchdog_us: u32, begins_us: u64) -> Option<Met> {
     let Message::Reading(kind) = first.message else { return None };
-    let (begin, mut buffer, mut wire) = (Instant::now(), [0; BYTES_MAX + 1], [0; BYTES_MAX]);
-    let (mut sequence, mut newest) = (0, *first);
+    let begin = Instant::now();
+    let mut buffer = [0; BYTES_MAX + 1];
+    let mut wire = [0; BYTES_MAX];
+    let mut sequence = 0;
+    let mut newest = *first;
     while begin.elapsed() < ANSWER_MAX {
         sequence += 1;
         let command = Datagram {

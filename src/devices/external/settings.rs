@@ -151,7 +151,8 @@ impl Settings {
         let refuse = |key: &str, value: String, allowed: &str| {
             Err(Trouble::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })
         };
-        let (ip, port) = (self.listen.ip(), self.listen.port());
+        let ip = self.listen.ip();
+        let port = self.listen.port();
         if port == 0 || ip.is_unspecified() || ip.is_multicast() {
             let allowed = "one address of this computer and a port, such as 127.0.0.1:47200";
             return refuse("listen", self.listen.to_string(), allowed);

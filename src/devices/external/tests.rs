@@ -61,7 +61,8 @@ impl Bench {
         let mut buffer = [0; BYTES_MAX];
         while let Ok(Some(count)) = self.wire.receive(&mut buffer) {
             let command = Datagram::decode(&buffer[..count]).unwrap();
-            (self.next.echo_us, self.heard) = (command.time_us, Some(command));
+            self.next.echo_us = command.time_us;
+            self.heard = Some(command);
         }
     }
 
@@ -140,7 +141,8 @@ fn a_handle_tells_where_it_is_and_is_given_a_force_within_its_limits() {
 #[test]
 fn late_repeated_and_exchanged_readings_are_counted_and_never_handed_on() {
     let (mut bench, mut handle) = handle();
-    let (accepted, echo_us) = (handle.health().readings, bench.next.echo_us);
+    let accepted = handle.health().readings;
+    let echo_us = bench.next.echo_us;
     let old = bench.next;
     let bad: [fn(&mut Datagram); 4] = [
         |_| {},
@@ -235,7 +237,8 @@ fn damaged_impossible_and_faulty_ones_are_told() {
     bench.next.watchdog_us = 0;
     assert_eq!(run(&mut bench, &mut handle, Bench::send), Some(Loss::Implausible), "nobody would switch it off");
     let (mut bench, mut handle) = self::handle();
-    (bench.next.status, bench.next.fault) = (status::FAULT, 0x1234);
+    bench.next.status = status::FAULT;
+    bench.next.fault = 0x1234;
     assert_eq!(run(&mut bench, &mut handle, Bench::send), Some(Loss::Device { code: 0x1234 }));
     let (mut bench, mut handle) = self::handle();
     bench.next.status = status::HAS_ORIENTATION;
@@ -291,7 +294,8 @@ fn an_arm_follows_only_while_it_tells_so_and_only_within_its_limits() {
         assert!(arm.aim(&START_RAD.map(|rad| rad + 1e-4 * f64::from(step))));
         tick(&mut bench, &mut arm);
     }
-    let (at_rad, asked_rad) = (tick(&mut bench, &mut arm).joint_rad[0], START_RAD[0] + 0.05);
+    let at_rad = tick(&mut bench, &mut arm).joint_rad[0];
+    let asked_rad = START_RAD[0] + 0.05;
     assert!((at_rad - asked_rad).abs() < 3e-4, "{at_rad}, not {asked_rad}");
     assert!(!arm.aim(&START_RAD), "a step back by 0.05 rad");
     assert_eq!(arm.health().refused, 1);

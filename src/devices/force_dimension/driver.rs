@@ -201,9 +201,12 @@ impl Driver {
     pub fn set_force(&mut self, force_n: Vector3<f64>, gripper_n: f64) -> ForceAnswer {
         let (force_max_n, gripper_max_n) = self.limits_n;
         let mut answer = ForceAnswer::Taken;
-        let (mut force_n, mut gripper_n) = (force_n, gripper_n);
+        let mut force_n = force_n;
+        let mut gripper_n = gripper_n;
         if !force_n.iter().chain([&gripper_n]).all(|x| x.is_finite()) {
-            (force_n, gripper_n, answer) = (Vector3::zeros(), 0.0, ForceAnswer::NotFinite);
+            force_n = Vector3::zeros();
+            gripper_n = 0.0;
+            answer = ForceAnswer::NotFinite;
         }
         // Axis by axis first, so that the squares of large numbers stay finite.
         let cut_n = force_n.map(|axis| axis.clamp(-force_max_n, force_max_n));
@@ -250,7 +253,8 @@ impl Driver {
         let timed_out = report.counters.timed_out_calls - self.counters.timed_out_calls;
         self.health.lost += missing + timed_out;
         self.cycle = Some(report.cycle);
-        (self.status, self.counters) = (report.status, report.counters);
+        self.status = report.status;
+        self.counters = report.counters;
         self.health.damaged = report.counters.failed_calls;
         self.health.refused = report.counters.implausible;
         self.failing = report.failing;

@@ -86,7 +86,8 @@ pub fn attached(settings: &Settings) -> Result<Vec<(u16, Identity)>, Trouble> {
             open.push(device);
         }
         let told = |device: &OpenDevice| {
-            let (kind, serial) = (Kind::of(device.kind().ok()?), device.serial().ok()?);
+            let kind = Kind::of(device.kind().ok()?);
+            let serial = device.serial().ok()?;
             Some((serial, Identity::of_handle(kind, device.name(), Some(serial), device.firmware().ok())))
         };
         open.iter().filter_map(told).collect()
@@ -99,7 +100,8 @@ pub fn attached(settings: &Settings) -> Result<Vec<(u16, Identity)>, Trouble> {
 /// Checks that its status allows its use.
 fn check(place: &str, status: &Status) -> Result<(), Trouble> {
     if status.reset {
-        let (place, mode) = (place.to_owned(), "reset (calibration)".to_owned());
+        let place = place.to_owned();
+        let mode = "reset (calibration)".to_owned();
         let cure = "Put the handle to its rest position and press the button on the base, then wait.".to_owned();
         return Err(Trouble::NotReady { place, mode, cure });
     }

@@ -269,7 +269,8 @@ impl OpenDevice {
 
     /// Position and orientation; one exchange with the device.
     pub(super) fn pose(&self) -> Result<(Pose, Success), SdkError> {
-        let ([mut x, mut y, mut z], mut frame) = ([0.0; 3], [0.0; 9]);
+        let [mut x, mut y, mut z] = [0.0; 3];
+        let mut frame = [0.0; 9];
         let places = (&raw mut x, &raw mut y, &raw mut z, frame.as_mut_ptr());
         // SAFETY: three doubles and an array of three by three that live through the call.
         let code = unsafe { (self.sdk.functions.pose)(places.0, places.1, places.2, places.3, self.id) };

@@ -153,7 +153,8 @@ impl Worker {
     /// made after it is there when the loop comes again. Without one a cycle takes a period. Returns when the next one was due.
     fn wait(&mut self, begin: Instant) -> Instant {
         // The loop comes once a period, a little sooner or later.
-        let (earliest, mut latest) = (begin + self.period / 2, begin + self.period);
+        let earliest = begin + self.period / 2;
+        let mut latest = begin + self.period;
         if self.is_led {
             latest += self.period / 2;
         }
@@ -192,7 +193,9 @@ impl Worker {
     }
 
     const fn report(&self, reading: Option<HandleReading>) -> Report {
-        let (cycle, status, counters) = (self.cycle, self.status, self.counters);
+        let cycle = self.cycle;
+        let status = self.status;
+        let counters = self.counters;
         let failing = match self.failure {
             Some(error) => Some(error.loss()),
             None => None,
@@ -354,7 +357,8 @@ fn plausible(
     }
     let orientation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(frame));
     let velocity_m_s = velocity_m_s.map(Vector3::from).filter(|velocity| velocity.iter().all(|x| x.is_finite()));
-    let (orientation, gripper_rad) = (Some(orientation), Some(gripper_rad));
+    let orientation = Some(orientation);
+    let gripper_rad = Some(gripper_rad);
     Some(HandleReading { position_m, orientation, gripper_rad, velocity_m_s, buttons })
 }
 

@@ -210,7 +210,9 @@ mod tests {
     }
 
     fn decoded(stream: &[u8], random: &mut fastrand::Rng) -> (Vec<Next>, u64) {
-        let (mut decoder, mut found, mut rest) = (Decoder::default(), Vec::new(), stream);
+        let mut decoder = Decoder::default();
+        let mut found = Vec::new();
+        let mut rest = stream;
         while !rest.is_empty() {
             let count = random.usize(1..=40).min(rest.len());
             decoder.room()[..count].copy_from_slice(&rest[..count]);

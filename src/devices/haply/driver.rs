@@ -127,7 +127,8 @@ impl Driver {
         self.asked_on = on;
         match self.line.send(&force_request(force_n.map(|axis| axis as f32).into())) {
             Ok(()) => {
-                (self.open, self.asked_s) = (self.open + 1, self.now_s);
+                self.open += 1;
+                self.asked_s = self.now_s;
                 self.pushes = force_n != Vector3::zeros();
             }
             Err(loss) => self.lose(loss),
@@ -168,7 +169,8 @@ impl Driver {
                 self.open = self.open.saturating_sub(1);
                 match next {
                     Next::State(state) => {
-                        (newest, self.bad_in_a_row) = (Some(state), 0);
+                        newest = Some(state);
+                        self.bad_in_a_row = 0;
                         self.skipped_before = self.decoder.skipped();
                         self.health.accept(self.now_s);
                     }

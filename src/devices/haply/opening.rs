@@ -29,7 +29,9 @@ impl DeviceInfo {
 
 /// Reads what comes within the time of one answer, at most until `enough`.
 fn heard(line: &mut dyn Bytes, enough: usize) -> Result<Vec<u8>, Loss> {
-    let (begin, mut heard, mut buffer) = (Instant::now(), Vec::new(), [0; 256]);
+    let begin = Instant::now();
+    let mut heard = Vec::new();
+    let mut buffer = [0; 256];
     while begin.elapsed() < ANSWER_MAX && heard.len() < enough {
         match line.receive(&mut buffer)? {
             0 => sleep(NAP),
@@ -54,7 +56,8 @@ fn drain(line: &mut dyn Bytes) -> Result<(), Loss> {
 pub(super) fn meet(line: &mut dyn Bytes, settings: &Settings) -> Result<Identity, Trouble> {
     let place = settings.port.clone();
     let gone = |_: Loss| Trouble::Absent { place: place.clone() };
-    let (mut any, mut found) = (false, None);
+    let mut any = false;
+    let mut found = None;
     for _ in 0..ATTEMPTS {
         drain(line).map_err(gone)?;
         line.send(&[WAKE_UP]).map_err(gone)?;

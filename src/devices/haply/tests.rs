@@ -95,7 +95,8 @@ fn ticks(driver: &mut Driver, now_s: &mut f64, count: u32, force_n: Vector3<f64>
 
 #[test]
 fn it_tells_where_the_grip_is_from_the_centre_and_takes_a_force_within_its_limit() {
-    let ((fake, mut driver), mut now_s) = (opened(&Settings::at("/dev/ttyACM0")), 0.0);
+    let (fake, mut driver) = opened(&Settings::at("/dev/ttyACM0"));
+    let mut now_s = 0.0;
     assert_eq!((driver.identity().serial.as_str(), driver.identity().firmware.as_str()), ("049D", "9"));
     fake.change(|inner| inner.state.velocity_m_s = [0.25, 0.0, -0.5]);
     fake.change(|inner| inner.state.position_m[2] += 0.0625);
@@ -127,7 +128,8 @@ fn it_tells_where_the_grip_is_from_the_centre_and_takes_a_force_within_its_limit
 
 #[test]
 fn each_question_has_one_answer_and_without_one_the_next_is_asked_in_time() {
-    let ((fake, mut driver), mut now_s) = (opened(&Settings::at("/dev/ttyACM0")), 0.0);
+    let (fake, mut driver) = opened(&Settings::at("/dev/ttyACM0"));
+    let mut now_s = 0.0;
     ticks(&mut driver, &mut now_s, 100, Vector3::zeros());
     let asked = fake.0.lock().unwrap().forces_n.len();
     assert!((101..=103).contains(&asked), "{asked}");
@@ -142,7 +144,8 @@ fn each_question_has_one_answer_and_without_one_the_next_is_asked_in_time() {
 #[test]
 fn what_is_wrong_is_told_in_time() {
     let run = |change: fn(&mut Inner)| {
-        let ((fake, mut driver), mut now_s) = (opened(&Settings::at("/dev/ttyACM0")), 0.0);
+        let (fake, mut driver) = opened(&Settings::at("/dev/ttyACM0"));
+        let mut now_s = 0.0;
         ticks(&mut driver, &mut now_s, 10, Vector3::zeros());
         fake.change(change);
         let begin_s = now_s;
@@ -196,7 +199,8 @@ fn who_is_not_the_handle_is_told_with_what_to_do() {
 
 #[test]
 fn a_force_is_taken_back_at_once_also_from_a_handle_that_does_not_answer() {
-    let ((fake, mut driver), mut now_s) = (opened(&Settings::at("/dev/ttyACM0")), 0.0);
+    let (fake, mut driver) = opened(&Settings::at("/dev/ttyACM0"));
+    let mut now_s = 0.0;
     driver.switch_force(true);
     ticks(&mut driver, &mut now_s, 5, Vector3::x());
     fake.change(|inner| inner.answers = false);

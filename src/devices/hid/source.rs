@@ -167,7 +167,8 @@ fn emulated(path: &std::path::Path) -> Result<(Box<dyn Datagrams>, HidIdentity),
         std::io::ErrorKind::ConnectionRefused => Trouble::NobodyListens { place: place.clone() },
         _ => Trouble::of_port(path, &error, "the socket of an emulator belongs to who started it"),
     })?;
-    let (begin, mut buffer) = (Instant::now(), [0; 256]);
+    let begin = Instant::now();
+    let mut buffer = [0; 256];
     while begin.elapsed() < TIMEOUT {
         match packets.receive(&mut buffer) {
             Ok(Some(count)) => {

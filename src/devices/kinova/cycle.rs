@@ -80,7 +80,8 @@ mod tests {
     #[test]
     fn lost_late_and_doubled_answers_are_told_apart_also_where_numbers_wrap() {
         for start in [1_u16, 65_530] {
-            let (mut cycle, mut health) = (Cycle::default(), Health::default());
+            let mut cycle = Cycle::default();
+            let mut health = Health::default();
             let number = |k: u16| start.wrapping_add(k);
             for k in 0..20 {
                 // This number was used by a call.

@@ -118,7 +118,8 @@ impl<'a> Frame<'a> {
     /// # Errors
     /// [`Damaged`] if structure, version or length are not those of a frame.
     pub fn decode(bytes: &'a [u8]) -> Result<Self, Damaged> {
-        let (mut raw, mut payload) = (None, [].as_slice());
+        let mut raw = None;
+        let mut payload = [].as_slice();
         for field in Fields::of(bytes) {
             match field? {
                 (1, value) => raw = Some(raw_header(value.bytes()?)?),

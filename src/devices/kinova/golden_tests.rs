@@ -148,7 +148,8 @@ fn a_dirty_stream_is_taken_up_again_and_counted() {
         encode_packet(&request(7, message, Rpc::SEND_TWIST), &twist(), &mut out);
         out
     };
-    let (mut stream, mut noise) = (Vec::new(), 0);
+    let mut stream = Vec::new();
+    let mut noise = 0;
     for message in 0..200 {
         for _ in 0..random.usize(..30) {
             // Includes the first byte of a mark, so that incomplete marks occur.
@@ -163,7 +164,9 @@ fn a_dirty_stream_is_taken_up_again_and_counted() {
     stream.extend(MARK);
     stream.extend([0, 0, 0, 3, 0xff, 0xff, 0xff]);
     stream.extend(packet(200));
-    let (mut reader, mut next, mut rest) = (PacketReader::default(), 0, stream.as_slice());
+    let mut reader = PacketReader::default();
+    let mut next = 0;
+    let mut rest = stream.as_slice();
     while !rest.is_empty() {
         let count = random.usize(1..50).min(rest.len()).min(reader.room().len());
         reader.room()[..count].copy_from_slice(&rest[..count]);
@@ -183,7 +186,8 @@ fn storm(frames: u32, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed);
     let known = [KEEP_ALIVE, SEND_TWIST, REFRESH, FEEDBACK, REFUSED, CREATE_SESSION].map(bytes);
     let mut reader = PacketReader::default();
-    let (mut decoded, mut packets) = (0_u64, 0_u64);
+    let mut decoded = 0_u64;
+    let mut packets = 0_u64;
     for _ in 0..frames {
         let mut frame = if random.u8(..4) == 0 {
             (0..random.usize(..64)).map(|_| random.u8(..)).collect()

@@ -68,10 +68,12 @@ mod tests {
         let jacobian = jacobian(&joint_rad);
         let h = 1e-6;
         for j in 0..ARM_JOINTS {
-            let (mut before, mut after) = (joint_rad, joint_rad);
+            let mut before = joint_rad;
+            let mut after = joint_rad;
             before[j] -= h;
             after[j] += h;
-            let (before, after) = (tool(&before), tool(&after));
+            let before = tool(&before);
+            let after = tool(&after);
             let linear = (after.translation.vector - before.translation.vector) / (2.0 * h);
             let angular = (after.rotation * before.rotation.inverse()).scaled_axis() / (2.0 * h);
             assert!((jacobian.fixed_view::<3, 1>(0, j) - linear).amax() < 1e-7);

@@ -104,7 +104,8 @@ impl Guard {
         let braking_s = self.limits.braking_s();
         let mut needed_s: f64 = 0.0;
         for j in 0..ARM_JOINTS {
-            let (at, speed_rad_s) = (target_rad[j], self.limits.speed_rad_s[j]);
+            let at = target_rad[j];
+            let speed_rad_s = self.limits.speed_rad_s[j];
             // An arm that was pushed out of its range may stay there or move back.
             if at < GEN3[j].low_rad.min(last_rad[j]) || at > GEN3[j].high_rad.max(last_rad[j]) {
                 return Err((j + 1, Beyond::Range));
@@ -157,7 +158,8 @@ impl Guard {
             let share = if left_s > step_s { 1.0 - step_s / left_s } else { 0.0 };
             for j in 0..ARM_JOINTS {
                 self.speed_rad_s[j] *= share;
-                let (low_rad, high_rad) = (GEN3[j].low_rad, GEN3[j].high_rad);
+                let low_rad = GEN3[j].low_rad;
+                let high_rad = GEN3[j].high_rad;
                 let at = self.command_rad[j];
                 self.command_rad[j] = (at + self.speed_rad_s[j] * step_s).clamp(low_rad.min(at), high_rad.max(at));
             }
@@ -255,7 +257,9 @@ mod tests {
             guard.step(TICK_S);
         }
         guard.brake();
-        let (mut last, mut at, mut ticks) = (speed, *guard.command_rad(), 0);
+        let mut last = speed;
+        let mut at = *guard.command_rad();
+        let mut ticks = 0;
         while !guard.is_still() {
             let next = *guard.step(TICK_S);
             for j in 0..ARM_JOINTS {
@@ -264,7 +268,8 @@ mod tests {
                 assert!((now / speed[j] - (next[0] - at[0]) / TICK_S / speed[0]).abs() < 1e-6, "one factor");
                 last[j] = now;
             }
-            (at, ticks) = (next, ticks + 1);
+            at = next;
+            ticks += 1;
         }
         assert!(f64::from(ticks) * TICK_S < limits.braking_s() + 2.0 * TICK_S, "{ticks}");
     }

@@ -68,7 +68,8 @@ pub fn open_clearing(settings: &Settings, clearing: &FaultClearing) -> Result<Dr
 fn prepare(lines: &mut Lines, settings: &Settings, clearing: &FaultClearing) -> Result<(Identity, Feedback), Trouble> {
     let joints: Number = ask(lines, Rpc::ACTUATOR_COUNT)?;
     if joints.value as usize != ARM_JOINTS {
-        let (expected, found) = (format!("arm with {ARM_JOINTS} joints"), format!("arm with {} joints", joints.value));
+        let expected = format!("arm with {ARM_JOINTS} joints");
+        let found = format!("arm with {} joints", joints.value);
         return Err(Trouble::WrongProduct { place: lines.place.clone(), expected, found });
     }
     let identity = identity(lines)?;

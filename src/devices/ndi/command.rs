@@ -345,7 +345,8 @@ impl<'a> Command<'a> {
         if arguments.len() != 6 + 2 * CHUNK {
             return Err(ErrorCode::PARAMETER_COUNT);
         }
-        let (handle, address) = (hex(arguments, 0, 2)? as u8, hex(arguments, 2, 4)? as u16);
+        let handle = hex(arguments, 0, 2)? as u8;
+        let address = hex(arguments, 2, 4)? as u16;
         let mut data = [0; CHUNK];
         for (k, byte) in data.iter_mut().enumerate() {
             *byte = hex(arguments, 6 + 2 * k, 2)? as u8;

@@ -95,12 +95,14 @@ impl Session {
     /// Waits for an ASCII reply.
     pub(super) fn wait(&mut self, timeout: Duration) -> Result<String, Failure> {
         let begin = Instant::now();
-        let (mut heard, mut damaged) = (begin, false);
+        let mut heard = begin;
+        let mut damaged = false;
         let mut any = false;
         while begin.elapsed() < timeout {
             let count = self.wire.receive(self.inbox.room()).map_err(|_| Failure::Gone)?;
             if count > 0 {
-                (heard, any) = (Instant::now(), true);
+                heard = Instant::now();
+                any = true;
                 self.inbox.filled(count);
                 while let Some(arrival) = self.inbox.next(Expected::Line) {
                     match arrival {

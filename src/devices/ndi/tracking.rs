@@ -91,7 +91,8 @@ impl Frames {
         let mut cursor = Cursor(body);
         let mut frames = Self::default();
         for _ in 0..cursor.byte()? {
-            let (handle, sight) = (cursor.byte()?, cursor.byte()?);
+            let handle = cursor.byte()?;
+            let sight = cursor.byte()?;
             let sight = match sight {
                 1 => Sight::Valid(cursor.transform()?),
                 2 => Sight::Missing,
@@ -159,9 +160,11 @@ impl Frames {
             } else {
                 Sight::Valid(cursor.text_transform()?)
             };
-            let (mut status, mut frame) = (0, 0);
+            let mut status = 0;
+            let mut frame = 0;
             if sight != Sight::Disabled {
-                (status, frame) = (cursor.hex(8)?, cursor.hex(8)?);
+                status = cursor.hex(8)?;
+                frame = cursor.hex(8)?;
             }
             cursor.rest_of_line()?;
             frames.push(HandleFrame { handle, sight, status: PortStatus(status), frame })?;
@@ -254,7 +257,8 @@ impl<'a> Cursor<'a> {
 
     /// Reads a sign and digits; returns the number times `scale`.
     fn decimal(&mut self, digits: usize, scale: f64) -> Result<f64, Malformed> {
-        let (sign, digits) = (self.byte()?, self.take(digits)?);
+        let sign = self.byte()?;
+        let digits = self.take(digits)?;
         let whole = digits.iter().try_fold(0.0, |whole, digit| {
             if digit.is_ascii_digit() { Ok(whole * 10.0 + f64::from(digit - b'0')) } else { Err(Malformed) }
         })?;

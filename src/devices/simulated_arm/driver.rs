@@ -66,7 +66,8 @@ impl Driver {
         for ((at, speed), command) in self.joint_rad.iter_mut().zip(&mut self.joint_rad_s).zip(self.guard.command_rad())
         {
             let way = (command - *at) * share;
-            (*at, *speed) = (*at + way, way / elapsed_s);
+            *at += way;
+            *speed = way / elapsed_s;
         }
         if self.mode == Mode::Braking && self.guard.is_still() {
             self.mode = Mode::Resting;
@@ -156,7 +157,8 @@ mod tests {
 
     #[test]
     fn it_follows_what_it_is_asked_only_while_it_servoes() {
-        let (mut arm, mut now_s) = (Driver::open(&Settings::at(START_RAD)).unwrap(), 0.0);
+        let mut arm = Driver::open(&Settings::at(START_RAD)).unwrap();
+        let mut now_s = 0.0;
         let first = polled(&mut arm, &mut now_s, 1);
         assert_eq!((first.joint_rad, first.servoing), (START_RAD, false));
         assert!(!arm.aim(&START_RAD), "it rests");
@@ -181,7 +183,8 @@ mod tests {
     #[test]
     fn what_is_beyond_its_limits_is_refused_and_ends_servoing() {
         for bad in [START_RAD.map(|rad| rad + 1.0), START_RAD.map(|_| f64::NAN), [9.0; ARM_JOINTS]] {
-            let (mut arm, mut now_s) = (Driver::open(&Settings::at(START_RAD)).unwrap(), 0.0);
+            let mut arm = Driver::open(&Settings::at(START_RAD)).unwrap();
+            let mut now_s = 0.0;
             arm.enter_servoing();
             polled(&mut arm, &mut now_s, 1);
             assert!(!arm.aim(&bad), "{bad:?}");
@@ -192,7 +195,8 @@ mod tests {
 
     #[test]
     fn its_lever_ends_servoing_from_another_thread() {
-        let (mut arm, mut now_s) = (Driver::open(&Settings::at(START_RAD)).unwrap(), 0.0);
+        let mut arm = Driver::open(&Settings::at(START_RAD)).unwrap();
+        let mut now_s = 0.0;
         let lever = Lever::default();
         Follower::attach(&arm, &lever);
         arm.enter_servoing();

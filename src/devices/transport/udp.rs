@@ -121,7 +121,8 @@ mod tests {
 
     /// The next datagram, with a long timeout for busy computers.
     fn next(udp: &mut Udp) -> Vec<u8> {
-        let (begin, mut buffer) = (Instant::now(), [0; 8]);
+        let begin = Instant::now();
+        let mut buffer = [0; 8];
         while begin.elapsed() < Duration::from_secs(20) {
             if let Some(count) = udp.receive(&mut buffer).unwrap() {
                 return buffer[..count].to_vec();

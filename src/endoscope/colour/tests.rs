@@ -88,7 +88,8 @@ fn bars_have_the_colours_of_the_standards_in_each_layout_and_range() {
             let picture = Raw { layout, colours, size_px: SIZE_PX, stride }.picture(&bytes).unwrap();
             let mut most = 0.0_f64;
             for (at, pixel) in picture.rgba.chunks_exact(4).enumerate() {
-                let (x, y) = (at % width, at / width);
+                let x = at % width;
+                let y = at / width;
                 let quarter = width * height + width / 2 * (y / 2) + x / 2;
                 let expected = reference([i420[at], i420[quarter], i420[quarter + width * height / 4]], colours);
                 for (value, expected) in pixel.iter().zip(expected) {

@@ -75,7 +75,8 @@ impl Decoder {
             none => none.insert(decoder::Decoder::new().map_err(|error| damage(&error))?),
         };
         let Some(yuv) = inner.decode(unit).map_err(|error| damage(&error))? else { return Ok(None) };
-        let ((width, height), (y_stride, u_stride, v_stride)) = (yuv.dimensions(), yuv.strides());
+        let (width, height) = yuv.dimensions();
+        let (y_stride, u_stride, v_stride) = yuv.strides();
         let size_px = [width, height];
         check_size(size_px)?;
         let mut hasher = DefaultHasher::new();

@@ -23,7 +23,8 @@ fn a_stream_comes_back_with_its_colours() {
     };
     // The encoder says that these are colours of BT.709, which nobody would guess for so small a picture.
     for size_px in [[128, 96], [640, 360]] {
-        let (mut encoder, mut decoder) = (Encoder::new(30.0).unwrap(), Decoder::default());
+        let mut encoder = Encoder::new(30.0).unwrap();
+        let mut decoder = Decoder::default();
         let rgb = bars(size_px);
         for number in 0..3 {
             let unit = encoder.encode(&rgb, size_px, false).unwrap();
@@ -43,7 +44,8 @@ fn a_stream_comes_back_with_its_colours() {
 #[test]
 fn the_same_picture_is_told_and_another_one_too() {
     let size_px = [160, 96];
-    let (mut encoder, mut decoder) = (Encoder::new(30.0).unwrap(), Decoder::default());
+    let mut encoder = Encoder::new(30.0).unwrap();
+    let mut decoder = Decoder::default();
     let mut hash = |rgb: &[u8]| {
         let unit = encoder.encode(rgb, size_px, true).unwrap();
         let taken = decoder.take(&unit, is_key(&unit), false).unwrap().unwrap();
@@ -88,7 +90,8 @@ fn parameters_of_a_huge_picture_are_refused_before_memory_is_taken() {
 fn mutate(seed: u64, count: usize) -> usize {
     let mut random = fastrand::Rng::with_seed(seed);
     let stream = stream([64, 48], 6);
-    let (mut decoder, mut decoded) = (Decoder::default(), 0);
+    let mut decoder = Decoder::default();
+    let mut decoded = 0;
     for number in 0..count {
         let mut unit = stream[number % stream.len()].clone();
         for _ in 0..random.usize(0..4) {

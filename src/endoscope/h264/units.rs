@@ -117,7 +117,8 @@ mod tests {
         #[test]
         fn all_pictures_are_found_however_the_stream_is_read(pictures in 1_usize..8, chunk in 1_usize..40) {
             let stream = stream(pictures);
-            let (mut splitter, mut found) = (Splitter::default(), Vec::new());
+            let mut splitter = Splitter::default();
+            let mut found = Vec::new();
             for chunk in stream.concat().chunks(chunk) {
                 splitter.take(chunk);
                 found.extend(std::iter::from_fn(|| splitter.next()));

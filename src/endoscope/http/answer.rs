@@ -178,7 +178,8 @@ impl Answer {
         }
         let rest = self.held.split_off(length);
         let body = std::mem::replace(&mut self.held, rest);
-        (self.state, self.searched) = (State::Between, 0);
+        self.state = State::Between;
+        self.searched = 0;
         Step::Give(Part { body, stamp_s: head.stamp_s })
     }
 
@@ -195,7 +196,8 @@ impl Answer {
         while body.last().is_some_and(|byte| matches!(byte, b'\r' | b'\n' | b'-')) {
             body.pop();
         }
-        (self.state, self.searched) = (State::Between, 0);
+        self.state = State::Between;
+        self.searched = 0;
         Ok(Step::Give(Part { body, stamp_s: head.stamp_s }))
     }
 

@@ -42,7 +42,8 @@ fn in_chunks(bytes: &[u8], chunk: usize) -> Vec<u8> {
 }
 
 fn taken(bytes: &[u8], chunk: usize) -> Result<Vec<Part>, Wrong> {
-    let (mut answer, mut parts) = (Answer::default(), VecDeque::new());
+    let mut answer = Answer::default();
+    let mut parts = VecDeque::new();
     for chunk in bytes.chunks(chunk) {
         answer.take(chunk, &mut parts)?;
     }
@@ -148,7 +149,8 @@ fn mutate(seed: u64, count: usize) {
             }
         }
         let chunk = random.usize(1..300);
-        let (mut answer, mut parts) = (Answer::default(), VecDeque::new());
+        let mut answer = Answer::default();
+        let mut parts = VecDeque::new();
         for chunk in bytes.chunks(chunk) {
             if answer.take(chunk, &mut parts).is_err() {
                 break;

@@ -228,7 +228,8 @@ const fn size_and_bits(level: i32) -> (u32, u32) {
 /// Code and length of each value.
 fn codes(lengths: &[u8; 16], values: &[u8]) -> Codes {
     let mut codes = [(0, 0); 256];
-    let (mut code, mut values) = (0, values.iter());
+    let mut code = 0;
+    let mut values = values.iter();
     for (length, &count) in (1..).zip(lengths) {
         for value in values.by_ref().take(usize::from(count)) {
             codes[usize::from(*value)] = (code, length);
@@ -292,13 +293,20 @@ fn line(block: &mut Block, first: usize, step: usize) {
     let sums: [f32; 4] = std::array::from_fn(|i| d[i] + d[7 - i]);
     let [s0, s1, s2, s3] = sums;
     let [d4, d5, d6, d7] = [d[3] - d[4], d[2] - d[5], d[1] - d[6], d[0] - d[7]];
-    let (even0, even1, odd0, odd1) = (s0 + s3, s1 + s2, s0 - s3, s1 - s2);
+    let even0 = s0 + s3;
+    let even1 = s1 + s2;
+    let odd0 = s0 - s3;
+    let odd1 = s1 - s2;
     let turned = (odd1 + odd0) * std::f32::consts::FRAC_1_SQRT_2;
-    let (a, b, c) = (d4 + d5, d5 + d6, d6 + d7);
+    let a = d4 + d5;
+    let b = d5 + d6;
+    let c = d6 + d7;
     let z5 = (a - c) * 0.382_683_43;
-    let (z2, z4) = (0.541_196_1 * a + z5, 1.306_563 * c + z5);
+    let z2 = 0.541_196_1 * a + z5;
+    let z4 = 1.306_563 * c + z5;
     let z3 = b * std::f32::consts::FRAC_1_SQRT_2;
-    let (z11, z13) = (d7 + z3, d7 - z3);
+    let z11 = d7 + z3;
+    let z13 = d7 - z3;
     let values = [even0 + even1, z11 + z4, odd0 + turned, z13 - z2, even0 - even1, z13 + z2, odd0 - turned, z11 - z4];
     for (i, value) in values.into_iter().enumerate() {
         block[first + i * step] = value;

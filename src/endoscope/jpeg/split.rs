@@ -39,7 +39,8 @@ impl Splitter {
                     let until = begin.unwrap_or(self.held.len().saturating_sub(1));
                     self.held.drain(..until);
                     begin?;
-                    (self.followed, self.state) = (2, State::Segments);
+                    self.followed = 2;
+                    self.state = State::Segments;
                 }
                 State::Segments => {
                     let head = self.held.get(self.followed..self.followed + 4)?;
@@ -100,7 +101,8 @@ mod tests {
     use crate::jpeg::{encode, tests::pattern};
 
     fn all(bytes: &[u8], chunk: usize) -> Vec<Vec<u8>> {
-        let (mut splitter, mut found) = (Splitter::default(), Vec::new());
+        let mut splitter = Splitter::default();
+        let mut found = Vec::new();
         for chunk in bytes.chunks(chunk) {
             splitter.take(chunk);
             found.extend(std::iter::from_fn(|| splitter.next()));

@@ -30,7 +30,8 @@ fn answers(encoding: &str) -> [Vec<u8>; 3] {
     let plays = "RTSP/1.0 200 OK\r\nCSeq: N\r\nSession: 7\r\nRange: npt=0.000-\r\n\r\n";
     let mut bytes = plays.as_bytes().to_vec();
     let mut encoder = Encoder::new(30.0).unwrap();
-    let (mut sequence, mut packets) = (7_u16, Vec::new());
+    let mut sequence = 7_u16;
+    let mut packets = Vec::new();
     for number in 0..4 {
         let mut rgb = pattern(SIZE_PX);
         rgb.rotate_right(6 * number as usize);
@@ -68,7 +69,8 @@ fn serve(stream: &mut TcpStream, answers: &[Vec<u8>]) {
     // A client that waits for the answer to another request does not get it.
     stream.set_read_timeout(Some(Duration::from_millis(20))).ok();
     for answer in answers {
-        let (mut request, mut buffer) = (Vec::new(), [0; 2048]);
+        let mut request = Vec::new();
+        let mut buffer = [0; 2048];
         while !request.windows(4).any(|four| four == b"\r\n\r\n") {
             match stream.read(&mut buffer) {
                 Ok(count) if count > 0 => request.extend_from_slice(&buffer[..count]),
@@ -96,7 +98,8 @@ fn camera(answers: Vec<Vec<u8>>) -> u16 {
 fn pictures_come_with_the_stamps_of_the_sender_and_their_end_is_told() {
     let port = camera(answers("H264").to_vec());
     let mut source = open("127.0.0.1", port, "/s").unwrap();
-    let (mut keys, mut stamps_s) = (Vec::new(), Vec::new());
+    let mut keys = Vec::new();
+    let mut stamps_s = Vec::new();
     let mut decoder = crate::h264::Decoder::default();
     let told = loop {
         match source.next() {

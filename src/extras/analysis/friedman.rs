@@ -55,7 +55,8 @@ pub fn test<Row: AsRef<[f64]>>(rows: &[Row]) -> Result<Friedman> {
         ties += ranks.ties;
         ranked.push(ranks);
     }
-    let (n, k) = (rows.len() as f64, conditions as f64);
+    let n = rows.len() as f64;
+    let k = conditions as f64;
     let spread = n * k * (k + 1.0) - ties / (k - 1.0);
     // Each row that is all the same takes k (k + 1) off: nothing is left where all of them are.
     if spread < 0.5 {

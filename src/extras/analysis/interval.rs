@@ -35,7 +35,8 @@ impl Interval {
 pub(crate) fn exact(sorted: &[f64], masses: &[f64], confidence: f64) -> Interval {
     // Rounding in the sums must not push a tail that is just reached above the limit.
     let missed = (1.0 - confidence) / 2.0 - 1e-14;
-    let (mut k, mut below) = (0, 0.0);
+    let mut k = 0;
+    let mut below = 0.0;
     for mass in masses {
         if k > 0 && below + mass >= missed {
             break;

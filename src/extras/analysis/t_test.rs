@@ -30,7 +30,9 @@ pub fn paired(first: &[f64], second: &[f64], confidence: f64) -> Result<TTest> {
 pub fn of_differences(differences: &[f64], confidence: f64) -> Result<TTest> {
     check::values("differences", differences, 2)?;
     check::share("the confidence", confidence)?;
-    let (n, mean, sd) = (differences.len() as f64, summary::raw_mean(differences), summary::raw_sd(differences));
+    let n = differences.len() as f64;
+    let mean = summary::raw_mean(differences);
+    let sd = summary::raw_sd(differences);
     let error = sd / n.sqrt();
     let t = mean / error;
     if !check::varies(differences) || !t.is_finite() {

@@ -121,7 +121,8 @@ impl Marker {
     pub fn start(library: Option<&Path>, program: &str, machine: &str) -> Result<Self, LslError> {
         let lsl = Lsl::open(library)?;
         let (marks, comes) = bounded(QUEUE);
-        let (heard, ends) = (AtomicBool::new(false), AtomicBool::new(false));
+        let heard = AtomicBool::new(false);
+        let ends = AtomicBool::new(false);
         let shared = Arc::new(Shared { lsl, marks, dropped: AtomicU64::new(0), heard, ends });
         let info = Info {
             name: STREAM,

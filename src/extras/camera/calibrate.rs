@@ -98,7 +98,8 @@ pub(crate) fn of_view(board: &Board, view: &View) -> Corners {
 
 /// Views that can be used, and those that cannot.
 fn sorted_out(board: &Board, [width, _]: [usize; 2], views: &[View]) -> (Vec<usize>, Vec<(usize, LeftOut)>) {
-    let (mut used, mut left_out) = (Vec::new(), Vec::new());
+    let mut used = Vec::new();
+    let mut left_out = Vec::new();
     for (at, view) in views.iter().enumerate() {
         let is_whole = view.corners_px.len() == board.count();
         if !is_whole {
@@ -116,7 +117,8 @@ fn sorted_out(board: &Board, [width, _]: [usize; 2], views: &[View]) -> (Vec<usi
 
 fn too_few(used: &[usize], left_out: &[(usize, LeftOut)], of: usize) -> Option<Cause> {
     let count = |wanted: LeftOut| left_out.iter().filter(|(_, why)| *why == wanted).count();
-    let (blurred, repeated) = (count(LeftOut::Blurred), count(LeftOut::Repeated));
+    let blurred = count(LeftOut::Blurred);
+    let repeated = count(LeftOut::Repeated);
     let missing = VIEWS.saturating_sub(used.len());
     (missing > 0).then_some(if blurred >= missing && blurred >= repeated {
         Cause::Blurred { blurred, of }
@@ -181,7 +183,8 @@ fn chosen(base: &Fit, corners: &[Corners]) -> Option<(Found, Vec<Vector3<f64>>)>
         });
         let next = tried.min_by(|a, b| a.0.rms_px.total_cmp(&b.0.rms_px));
         let Some((error, fit, more)) = next.filter(|next| next.0.rms_px < (1.0 - PAYS) * best.0.rms_px) else { break };
-        (best, terms) = ((error, fit), more);
+        best = (error, fit);
+        terms = more;
     }
     let (HeldOut { rms_px, max_px }, fit) = best;
     let deviations = spread_out(&fit.deviations(corners, terms)?);

@@ -36,7 +36,8 @@ impl Coverage {
     /// Of one picture.
     pub fn of(picture: &Grey, corners_px: &[Vector2<f64>]) -> Self {
         let size_px @ [_, height] = picture.size_px();
-        let (mut lit, mut seen) = ([0_u32; COUNT], [0_u32; COUNT]);
+        let mut lit = [0_u32; COUNT];
+        let mut seen = [0_u32; COUNT];
         for y in (0..height).step_by(STEP) {
             for (x, value) in picture.row(y).iter().enumerate().step_by(STEP) {
                 if let Some(at) = cell(&Vector2::new(x as f64, y as f64), size_px) {

@@ -146,7 +146,8 @@ fn fine(picture: &Grey, board: &Board, rough: &[Vector2<f64>]) -> Option<Sight> 
     let smooth = picture.smooth(CORNERS_PX);
     let [across, down] = board.corners();
     let neighbours = |at: usize| {
-        let (i, j) = (at % across, at / across);
+        let i = at % across;
+        let j = at / across;
         let beside = [
             (i > 0, at.wrapping_sub(1)),
             (i + 1 < across, at + 1),

@@ -84,7 +84,8 @@ fn slopes(
     let turned = pose.rotation * place_m;
     let at = turned + pose.translation.vector;
     let flat = at.xy() / at.z;
-    let (bent, square) = (lens.bend.at(&flat), flat.norm_squared());
+    let bent = lens.bend.at(&flat);
+    let square = flat.norm_squared();
     let [x, y] = [flat.x, flat.y];
     let [fx, fy] = [lens.focal_px.x, lens.focal_px.y];
     let cross = 2.0 * x * y;
@@ -112,7 +113,9 @@ impl Fit {
         let found = terms.are_found();
         let mut all = Equations { lens: (Inner::zeros(), Parameters::zeros()), poses: Vec::with_capacity(views.len()) };
         for (view, pose) in views.iter().zip(&self.poses) {
-            let (mut mixed, mut outer, mut motion) = (Mixed::zeros(), Outer::zeros(), Motion::zeros());
+            let mut mixed = Mixed::zeros();
+            let mut outer = Outer::zeros();
+            let mut motion = Motion::zeros();
             for (place_m, seen) in view.places_m.iter().zip(&view.seen_px) {
                 let miss = seen - self.lens.project(&(pose * nalgebra::Point3::from(*place_m)).coords)?;
                 let (mut of_lens, of_pose) = slopes(&self.lens, pose, place_m);
@@ -158,7 +161,9 @@ impl Fit {
                 let next = equations.step(damping).map(|step| self.moved(&step, terms));
                 let reached = next.as_ref().and_then(|next| next.square(views));
                 if let (Some(next), Some(reached)) = (next, reached.filter(|reached| *reached < square)) {
-                    (self, square, damping) = (next, reached, (damping * 0.2).max(1e-12));
+                    self = next;
+                    square = reached;
+                    damping = (damping * 0.2).max(1e-12);
                     break;
                 }
                 damping *= 6.0;
@@ -244,10 +249,12 @@ fn damp<const N: usize>(matrix: &mut SMatrix<f64, N, N>, damping: f64) {
 
 /// The pose alone that explains a view best, from a first one.
 pub(crate) fn refined_pose(lens: &Lens, view: &Corners, first: Isometry3<f64>, steps: usize) -> Option<Isometry3<f64>> {
-    let (mut pose, mut damping) = (first, DAMPING);
+    let mut pose = first;
+    let mut damping = DAMPING;
     let mut square = view.square(lens, &pose)?;
     for _ in 0..steps {
-        let (mut outer, mut motion) = (Outer::zeros(), Motion::zeros());
+        let mut outer = Outer::zeros();
+        let mut motion = Motion::zeros();
         for (place_m, seen) in view.places_m.iter().zip(&view.seen_px) {
             let miss = seen - lens.project(&(pose * nalgebra::Point3::from(*place_m)).coords)?;
             let (_, of_pose) = slopes(lens, &pose, place_m);
@@ -263,7 +270,9 @@ pub(crate) fn refined_pose(lens: &Lens, view: &Corners, first: Isometry3<f64>, s
             let shift = pose.translation.vector + by.fixed_rows::<3>(3);
             let next = Isometry3::from_parts(Translation3::from(shift), turn * pose.rotation);
             if let Some(reached) = view.square(lens, &next).filter(|reached| *reached < square) {
-                (pose, square, damping) = (next, reached, damping * 0.2);
+                pose = next;
+                square = reached;
+                damping *= 0.2;
                 break;
             }
             damping *= 6.0;

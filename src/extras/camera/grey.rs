@@ -44,7 +44,8 @@ impl Grey {
     pub(crate) fn at(&self, place_px: &Vector2<f64>) -> f64 {
         let [width, height] = self.size_px;
         let within = |at: f64, side: usize| (at - 0.5).clamp(0.0, (side - 1) as f64);
-        let (x, y) = (within(place_px.x, width), within(place_px.y, height));
+        let x = within(place_px.x, width);
+        let y = within(place_px.y, height);
         let [left, top] = [x as usize, y as usize];
         let [right, bottom] = [(left + 1).min(width - 1), (top + 1).min(height - 1)];
         let [u, v] = [x - left as f64, y - top as f64];
@@ -91,7 +92,8 @@ impl Grey {
         let [width, height] = self.size_px.map(|side| side / 2);
         let mut values = Vec::with_capacity(width * height);
         for y in 0..height {
-            let (upper, lower) = (self.row(2 * y), self.row(2 * y + 1));
+            let upper = self.row(2 * y);
+            let lower = self.row(2 * y + 1);
             let pairs = upper.chunks_exact(2).zip(lower.chunks_exact(2)).take(width);
             values.extend(pairs.map(|(above, below)| 0.25 * (above[0] + above[1] + below[0] + below[1])));
         }

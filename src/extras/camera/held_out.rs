@@ -45,7 +45,8 @@ fn predicted(lens: &Lens, view: &Corners) -> Option<Vec<f64>> {
         let (places_m, seen_px) = pairs.map(|(_, (place, seen))| (*place, *seen)).unzip();
         Corners { places_m, seen_px }
     };
-    let (used, compared) = (half(0), half(1));
+    let used = half(0);
+    let compared = half(1);
     let first = plane::pose(lens, &used.places_m, &used.seen_px)?;
     compared.squares(lens, &refined_pose(lens, &used, first, STEPS)?)
 }

@@ -136,7 +136,8 @@ pub fn place(board: &Board, lens: &Lens, sight: &Sight, touches: &[Touch]) -> Re
     let held_out_px = root(errors_px.iter().map(|error| error * error).sum());
     let farthest = touches.iter().max_by(|a, b| away(a).total_cmp(&away(b)));
     let most_px = HELD_OUT * lens.size_px[0] as f64;
-    let (is_rigid, is_predicted) = (touches.iter().all(|touch| away(touch) <= RIGID_M), held_out_px <= most_px);
+    let is_rigid = touches.iter().all(|touch| away(touch) <= RIGID_M);
+    let is_predicted = held_out_px <= most_px;
     let lack = match farthest {
         Some(touch) if !is_rigid => Some(Lack::NotRigid { corner: touch.corner, by_m: away(touch) }),
         _ if !is_predicted => Some(Lack::HeldOut { rms_px: held_out_px, most_px }),

@@ -22,7 +22,8 @@ pub(crate) fn homography(from: &[Vector2<f64>], to: &[Vector2<f64>]) -> Option<M
     let [on_plane, in_picture] = [normaliser(from), normaliser(to)];
     let mut squares = SMatrix::<f64, 9, 9>::zeros();
     for (a, b) in from.iter().zip(to) {
-        let (p, q) = (on_plane * a.push(1.0), in_picture * b.push(1.0));
+        let p = on_plane * a.push(1.0);
+        let q = in_picture * b.push(1.0);
         for (axis, at) in [(0, q.x), (1, q.y)] {
             let mut row = SMatrix::<f64, 9, 1>::zeros();
             row.fixed_rows_mut::<3>(3 * axis).copy_from(&p);
@@ -60,7 +61,8 @@ pub(crate) fn pose(lens: &Lens, places_m: &[Vector3<f64>], seen_px: &[Vector2<f6
     let [a, b, c] = [0, 1, 2].map(|k| h.column(k).into_owned());
     let ahead = if c.z < 0.0 { -1.0 } else { 1.0 };
     let scale = 2.0 * ahead / (a.norm() + b.norm());
-    let (a, b) = (a * scale, b * scale);
+    let a = a * scale;
+    let b = b * scale;
     let rough = Matrix3::from_columns(&[a, b, a.cross(&b)]);
     let rotation = nearest_rotation(&rough)?;
     let place = c * scale;
@@ -70,7 +72,8 @@ pub(crate) fn pose(lens: &Lens, places_m: &[Vector3<f64>], seen_px: &[Vector2<f6
 /// The rotation nearest to a matrix.
 pub(crate) fn nearest_rotation(matrix: &Matrix3<f64>) -> Option<UnitQuaternion<f64>> {
     let svd = matrix.try_svd(true, true, 1e-14, 200)?;
-    let (u, v_t) = (svd.u?, svd.v_t?);
+    let u = svd.u?;
+    let v_t = svd.v_t?;
     let mut turned = Matrix3::identity();
     turned[(2, 2)] = (u * v_t).determinant().signum();
     let rotation = u * turned * v_t;

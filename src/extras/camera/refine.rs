@@ -42,10 +42,13 @@ fn towards(smooth: &Grey, place_px: &Vector2<f64>, reach_px: f64) -> Option<Vect
     if !(inside(place_px.x, width) && inside(place_px.y, height)) {
         return None;
     }
-    let (mut matrix, mut vector) = (Matrix2::zeros(), Vector2::zeros());
+    let mut matrix = Matrix2::zeros();
+    let mut vector = Vector2::zeros();
     let range = |at: f64| (at - 0.5 - reach_px).ceil() as usize..=(at - 0.5 + reach_px).floor() as usize;
     for y in range(place_px.y) {
-        let (above, here, below) = (smooth.row(y - 1), smooth.row(y), smooth.row(y + 1));
+        let above = smooth.row(y - 1);
+        let here = smooth.row(y);
+        let below = smooth.row(y + 1);
         for x in range(place_px.x) {
             let at_px = Vector2::new(x as f64 + 0.5, y as f64 + 0.5) - place_px;
             let gradient = Vector2::new(f64::from(here[x + 1] - here[x - 1]), f64::from(below[x] - above[x]));

@@ -57,7 +57,9 @@ fn strengths(smooth: &Grey) -> Vec<f32> {
     let [width, height] = smooth.size_px();
     let mut strength = vec![0.0; width * height];
     for y in 1..height - 1 {
-        let (above, here, below) = (smooth.row(y - 1), smooth.row(y), smooth.row(y + 1));
+        let above = smooth.row(y - 1);
+        let here = smooth.row(y);
+        let below = smooth.row(y + 1);
         let out = &mut strength[y * width..][..width];
         for x in 1..width - 1 {
             let xx = here[x - 1] + here[x + 1] - 2.0 * here[x];
@@ -87,7 +89,8 @@ fn crosswise(smooth: &Grey, place_px: &Vector2<f64>) -> Option<Saddle> {
         smooth.at(&(place_px + Vector2::new(cos, sin) * RADIUS_PX))
     });
     let (least, most) = ring.iter().fold((f64::INFINITY, 0.0), |(least, most), v| (v.min(least), v.max(most)));
-    let (contrast, middle) = (most - least, 0.5 * (most + least));
+    let contrast = most - least;
+    let middle = 0.5 * (most + least);
     if contrast < CONTRAST {
         return None;
     }

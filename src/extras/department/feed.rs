@@ -88,7 +88,8 @@ impl Feed {
 
     fn close_bundle(&mut self, closes: bool) {
         let parts = take(&mut self.parts);
-        (self.bytes, self.since_ns) = (0, None);
+        self.bytes = 0;
+        self.since_ns = None;
         self.tell(Told::Bundle(Bundle::new(self.session, self.number, parts, closes)));
         self.number += 1;
     }

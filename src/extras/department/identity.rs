@@ -120,8 +120,10 @@ impl Authority {
             params.extended_key_usages.push(ExtendedKeyUsagePurpose::ServerAuth);
         }
         let certificate = params.signed_by(&key, &issuer)?;
-        let (certificate, key) = (certificate.pem(), key.serialize_pem());
-        let (department, authority) = (self.department.clone(), self.certificate.clone());
+        let certificate = certificate.pem();
+        let key = key.serialize_pem();
+        let department = self.department.clone();
+        let authority = self.certificate.clone();
         let identity = Identity { department, name, role, authority, certificate, key };
         write(to, &identity)?;
         Ok(identity)

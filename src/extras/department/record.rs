@@ -166,7 +166,8 @@ impl<'a> Recording<'a> {
     fn catch_up(&mut self) -> Result<Step, DepartmentError> {
         loop {
             let Some(open) = &self.file else { return Ok(Step::Waits) };
-            let (due, session) = (open.copy.due(), open.session);
+            let due = open.copy.due();
+            let session = open.session;
             let bundles = self.ask_from(due)?;
             let next = bundles.iter().find(|bundle| bundle.number == due && bundle.session == session);
             if next.is_none() {

@@ -156,7 +156,8 @@ fn locked(state: &Mutex<State>) -> std::sync::MutexGuard<'_, State> {
 
 fn offer(session: &Session, name: &str, state: &Arc<Mutex<State>>, watchers: &Arc<AtomicU64>) -> zenoh::Result<Offers> {
     let answer = |key: String, answer: fn(&Query, &str, &Mutex<State>)| {
-        let (state, name) = (Arc::clone(state), name.to_owned());
+        let state = Arc::clone(state);
+        let name = name.to_owned();
         session.declare_queryable(key).callback(move |query| answer(&query, &name, &state)).wait()
     };
     let answers = [

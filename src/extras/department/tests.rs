@@ -45,7 +45,8 @@ impl Department {
         let folder = tempfile::tempdir().unwrap();
         let authority = Authority::create(folder.path(), name).unwrap();
         let issue = |name: &str, role| authority.issue(name, role, &folder.path().join(name)).unwrap();
-        let (rig, watcher) = (issue("theatre-1", Role::Rig), issue("teacher", Role::Watcher));
+        let rig = issue("theatre-1", Role::Rig);
+        let watcher = issue("teacher", Role::Watcher);
         Self { folder, rig, watcher }
     }
 
@@ -62,13 +63,15 @@ struct Running {
 
 impl Running {
     fn start(path: &Path, share: &Share) -> Self {
-        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
+        let rig = RigConfig::load("simulated").unwrap();
+        let scene = Scene::load("peg_transfer").unwrap();
         let file = |name: &str, text: String| Attached {
             name: name.to_owned(),
             media_type: "application/toml".to_owned(),
             data: text.into_bytes(),
         };
-        let (rig_text, scene_text) = (toml::to_string(&rig).unwrap(), toml::to_string(&scene).unwrap());
+        let rig_text = toml::to_string(&rig).unwrap();
+        let scene_text = toml::to_string(&scene).unwrap();
         let files = vec![file("rig.toml", rig_text), file("scene.toml", scene_text)];
         let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
         let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap();
@@ -180,7 +183,8 @@ fn a_screen_elsewhere_sees_the_loop_and_a_file_elsewhere_replays_to_the_bit() {
 
 #[test]
 fn strangers_and_those_without_a_certificate_are_refused() {
-    let (ours, theirs) = (Department::new("lab"), Department::new("lab"));
+    let ours = Department::new("lab");
+    let theirs = Department::new("lab");
     let share = ours.share();
     assert!(Rig::open(&ours.watcher, &address(&share)).is_ok());
     let refused = Rig::open(&theirs.watcher, &address(&share)).unwrap_err();
@@ -239,7 +243,8 @@ fn slow_way(to: SocketAddr, bytes_s: usize) -> SocketAddr {
                     }
                 }
             };
-            let (up, down) = ((here.try_clone().unwrap(), there.try_clone().unwrap()), (there, here));
+            let up = (here.try_clone().unwrap(), there.try_clone().unwrap());
+            let down = (there, here);
             thread::spawn(move || pass(up.0, up.1, None));
             thread::spawn(move || pass(down.0, down.1, Some(bytes_s)));
         }
@@ -296,7 +301,8 @@ fn figures_of_ten_watchers() {
             let [watched, dropped] = [share.watchers() as u64, share.dropped()];
             drop(watching);
             let summary = running.end();
-            let (wake, work) = (summary.wake_us, summary.work_us);
+            let wake = summary.wake_us;
+            let work = summary.work_us;
             println!(
                 "{count} watchers ({watched} connected, {dropped} messages of the recorder dropped): wake-up late by p50 {:.0} p99 {:.0} p99.9 {:.0} us, work p50 {:.0} p99.9 {:.0} us, {} of {} periods missed",
                 wake.p50, wake.p99, wake.p999, work.p50, work.p999, summary.missed, summary.ticks

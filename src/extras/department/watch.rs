@@ -53,8 +53,11 @@ impl About {
 
     pub(crate) fn begins(&mut self, head: &Head) {
         let Head { session, program, started_ns, .. } = head;
-        (self.session, self.program, self.started_ns) = (*session, program.clone(), *started_ns);
-        (self.rig, self.scene) = (String::new(), String::new());
+        self.session = *session;
+        self.program = program.clone();
+        self.started_ns = *started_ns;
+        self.rig = String::new();
+        self.scene = String::new();
     }
 
     pub(crate) fn file(&mut self, name: &str, text: String) {

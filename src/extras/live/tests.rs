@@ -54,7 +54,8 @@ impl Viewer {
         for _ in 0..READ_MAX {
             if let Message::Binary(bytes) = self.0.read().unwrap() {
                 assert_eq!(bytes[0], 1, "data of a message");
-                let (id, time_ns) = (bytes[1..5].try_into().unwrap(), bytes[5..13].try_into().unwrap());
+                let id = bytes[1..5].try_into().unwrap();
+                let time_ns = bytes[5..13].try_into().unwrap();
                 return (u32::from_le_bytes(id), u64::from_le_bytes(time_ns), bytes[13..].to_vec());
             }
         }

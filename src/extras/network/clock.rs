@@ -274,17 +274,22 @@ impl Clock {
         let half_s = self.kept().iter().map(Window::half_s).fold(f64::INFINITY, f64::min);
         self.half_s = half_s;
         let weight = |w: &Window| 1.0 / (1.0 + ((w.half_s() - half_s) / ROUND_TRIP_SCALE_S).powi(2)).max(1.0);
-        let (mut all, mut t, mut offset) = (0.0, 0.0, 0.0);
+        let mut all = 0.0;
+        let mut t = 0.0;
+        let mut offset = 0.0;
         for window in self.kept() {
             let weight = weight(window);
             all += weight;
             t += weight * (window.middle_s() - now_s);
             offset += weight * window.offset_s();
         }
-        let (t, offset) = (t / all, offset / all);
-        let (mut tt, mut to) = (all * (WINDOW_USUAL_S / SKEW_USUAL).powi(2) / self.kept().len().max(1) as f64, 0.0);
+        let t = t / all;
+        let offset = offset / all;
+        let mut tt = all * (WINDOW_USUAL_S / SKEW_USUAL).powi(2) / self.kept().len().max(1) as f64;
+        let mut to = 0.0;
         for window in self.kept() {
-            let (weight, away_s) = (weight(window), window.middle_s() - now_s - t);
+            let weight = weight(window);
+            let away_s = window.middle_s() - now_s - t;
             tt += weight * away_s * away_s;
             to += weight * away_s * (window.offset_s() - offset);
         }

@@ -17,7 +17,8 @@ struct World {
 
 impl World {
     fn new(seed: u64, delay_s: [f64; 2], jitter_s: f64) -> Self {
-        let (noise, clock) = (Noise::new(seed), Clock::default());
+        let noise = Noise::new(seed);
+        let clock = Clock::default();
         Self { noise, clock, delay_s, jitter_s, offset_s: 1234.5, skew: 0.0, t_s: 10.0, told: Vec::new() }
     }
 
@@ -33,8 +34,10 @@ impl World {
             self.t_s += 1e-3;
             let jitter_s = self.jitter_s;
             let mut way_s = |delay_s: f64| delay_s + self.noise.gaussian().abs() * jitter_s;
-            let (there_s, back_s) = (way_s(self.delay_s[0]), way_s(self.delay_s[1]));
-            let (received_s, sent_s) = (self.t_s + there_s, self.t_s + there_s + 0.7e-3);
+            let there_s = way_s(self.delay_s[0]);
+            let back_s = way_s(self.delay_s[1]);
+            let received_s = self.t_s + there_s;
+            let sent_s = self.t_s + there_s + 0.7e-3;
             let exchange = Exchange {
                 origin_s: self.t_s,
                 received_s: self.theirs(received_s),

@@ -48,7 +48,8 @@ impl Meter {
         let passed_s = now_s - self.begin_s;
         if passed_s >= 1.0 {
             self.rate_bit_s = (self.bytes - self.begin_bytes) as f64 * 8.0 / passed_s;
-            (self.begin_s, self.begin_bytes) = (now_s, self.bytes);
+            self.begin_s = now_s;
+            self.begin_bytes = self.bytes;
         }
     }
 }

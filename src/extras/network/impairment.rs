@@ -178,7 +178,9 @@ impl Impairment {
     pub fn pass(&mut self, now_s: f64, len: usize) -> Fate {
         let Settings { flap, duplicate, reorder, reorder_s, delay_s, overtakes, .. } = self.settings;
         // Every datagram draws the same numbers, whatever happens to it.
-        let (lost, twice, held) = (self.noise.uniform(), self.noise.uniform(), self.noise.uniform());
+        let lost = self.noise.uniform();
+        let twice = self.noise.uniform();
+        let held = self.noise.uniform();
         let jitter_s = self.jitter_s();
         let is_down = flap.is_some_and(|flap| now_s.rem_euclid(flap.every_s) >= flap.every_s - flap.down_s);
         if self.is_lost(now_s, lost) || is_down {
@@ -215,7 +217,8 @@ impl Impairment {
                     return false;
                 }
                 if self.until_s == f64::NEG_INFINITY {
-                    (self.is_bad, self.until_s) = (chance < share, now_s);
+                    self.is_bad = chance < share;
+                    self.until_s = now_s;
                 } else if self.until_s > now_s {
                     return self.is_bad;
                 } else {

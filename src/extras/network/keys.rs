@@ -306,7 +306,8 @@ mod tests {
         let keys = Keys::open(folder.path()).unwrap();
         assert_eq!(Keys::open(folder.path()).unwrap().private(), keys.private());
         assert!(!format!("{keys:?}").contains(&PublicKey(*keys.private()).to_string()), "never printed");
-        let (other, third) = (Keys::random().unwrap().public(), Keys::random().unwrap().public());
+        let other = Keys::random().unwrap().public();
+        let third = Keys::random().unwrap().public();
         let mut peers = Peers::open(folder.path()).unwrap();
         assert!(peers.list().is_empty());
         peers.add("theatre 2", other).unwrap();

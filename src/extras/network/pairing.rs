@@ -247,7 +247,8 @@ impl Pairing<'_> {
         let token = u64::from_le_bytes(token);
         let mut question = datagram(token, COMMIT, &own.commitment());
         let mut theirs: Option<Part> = None;
-        let (mut asked, mut buffer) = (None, [0; 2 * LEN]);
+        let mut asked = None;
+        let mut buffer = [0; 2 * LEN];
         while self.goes_on(begin) {
             if asked.is_none_or(|at: Instant| at.elapsed() >= AGAIN) {
                 socket.send(&question, follower);
@@ -328,7 +329,8 @@ impl Pairing<'_> {
 
 /// Sends the last answer, and again for each question that shows that it was lost.
 fn repeat(socket: &Socket, answer: &[u8; LEN], token: u64, to: SocketAddr) {
-    let (begin, mut buffer) = (Instant::now(), [0; 2 * LEN]);
+    let begin = Instant::now();
+    let mut buffer = [0; 2 * LEN];
     socket.send(answer, to);
     while begin.elapsed() < REPEATS {
         match next(socket, &mut buffer) {

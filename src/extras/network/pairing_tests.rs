@@ -31,12 +31,14 @@ fn both(console: &Keys, follower: &Keys, at: SocketAddr, reached: SocketAddr) ->
 
 #[test]
 fn the_code_of_the_other_screen_gives_the_keys_and_that_of_ones_own_does_not() {
-    let (console, follower) = (Keys::random().unwrap(), Keys::random().unwrap());
+    let console = Keys::random().unwrap();
+    let follower = Keys::random().unwrap();
     let mut codes = Vec::new();
     for _ in 0..2 {
         let at = free_address();
         let [ours, theirs] = both(&console, &follower, at, at).map(Result::unwrap);
-        let ([here, there], mut attempts) = ([ours.code().to_string(), theirs.code().to_string()], Attempts::default());
+        let [here, there] = [ours.code().to_string(), theirs.code().to_string()];
+        let mut attempts = Attempts::default();
         assert_ne!(here, there);
         assert_eq!(here.len(), 7);
         codes.push(here.clone());
@@ -50,7 +52,8 @@ fn the_code_of_the_other_screen_gives_the_keys_and_that_of_ones_own_does_not() {
 
 #[test]
 fn lost_datagrams_are_sent_again() {
-    let (console, follower) = (Keys::random().unwrap(), Keys::random().unwrap());
+    let console = Keys::random().unwrap();
+    let follower = Keys::random().unwrap();
     let at = free_address();
     let bad = Settings { loss: Loss::Independent { share: 0.3 }, ..Settings::default() };
     let home = (Ipv4Addr::LOCALHOST, 0).into();
@@ -105,7 +108,8 @@ fn who_stands_between_is_seen() {
 #[test]
 fn nobody_and_called_off_are_told() {
     let keys = Keys::random().unwrap();
-    let (stop, wait) = (AtomicBool::new(false), Duration::from_millis(50));
+    let stop = AtomicBool::new(false);
+    let wait = Duration::from_millis(50);
     let pairing = Pairing { keys: &keys, attempts: &mut Attempts::default(), wait, called_off: &stop };
     assert!(matches!(pairing.ask(free_address()), Err(PairingError::Nobody)));
     stop.store(true, Relaxed);

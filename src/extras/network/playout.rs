@@ -210,7 +210,10 @@ impl Playout {
     pub fn begin(&mut self) {
         self.next = self.end;
         self.parts = [EMPTY; PARTS];
-        (self.part_begin_s, self.first_s, self.delay_s, self.wanted_s) = (None, None, None, None);
+        self.part_begin_s = None;
+        self.first_s = None;
+        self.delay_s = None;
+        self.wanted_s = None;
     }
 
     /// Takes a payload that has arrived: its number, when it was sent (s, their clock) and when it came (s, ours), and whether it is

@@ -9,7 +9,8 @@ fn run(playout: &mut Playout, from: u64, count: u64, delay_s: impl Fn(u64) -> Op
     let mut under_way: Vec<(f64, u64)> =
         (from..from + count).filter_map(|i| Some((i as f64 * 1e-3 + delay_s(i)?, i))).collect();
     under_way.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (mut next, mut got) = (0, Vec::new());
+    let mut next = 0;
+    let mut got = Vec::new();
     for tick in from..from + count {
         let now_s = tick as f64 * 1e-3;
         while let Some(&(came_s, number)) = under_way.get(next).filter(|(came_s, _)| *came_s <= now_s) {

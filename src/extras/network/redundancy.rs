@@ -222,13 +222,15 @@ impl Losses {
     }
 
     fn judge(&mut self) {
-        let (word, bit) = ((self.judged / 64 % (ROOM / 64)) as usize, 1 << (self.judged % 64));
+        let word = (self.judged / 64 % (ROOM / 64)) as usize;
+        let bit = 1 << (self.judged % 64);
         let is_lost = self.came[word] & bit == 0;
         self.came[word] &= !bit;
         self.all += 1;
         self.lost += u64::from(is_lost);
         self.run = if is_lost { self.run.saturating_add(1).min(OUTAGE) } else { 0 };
-        let (part, run) = (&mut self.parts[self.part], self.run);
+        let part = &mut self.parts[self.part];
+        let run = self.run;
         if run < OUTAGE {
             part.all = part.all.saturating_add(1);
             part.lost = part.lost.saturating_add(u32::from(is_lost));

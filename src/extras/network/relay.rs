@@ -138,7 +138,8 @@ impl Work {
 
     /// Takes what has arrived; whether there was any.
     fn take(&mut self, now_s: f64) -> bool {
-        let (mut buffer, mut any) = ([0; BUFFER_LEN], false);
+        let mut buffer = [0; BUFFER_LEN];
+        let mut any = false;
         for _ in 0..TURN {
             let Some(arrival) = self.socket.receive(&mut buffer) else { break };
             any = true;
@@ -173,7 +174,8 @@ impl Work {
         let socket = Socket::open(crate::endpoint::towards(&to), Some(to)).ok()?;
         let seed = seed.wrapping_add(self.made * 2);
         self.made += 1;
-        let (there, back) = (Line::new(there, seed), Line::new(back, seed.wrapping_add(1)));
+        let there = Line::new(there, seed);
+        let back = Line::new(back, seed.wrapping_add(1));
         self.clients.push(Client { address, socket, there, back, heard_s: now_s });
         self.clients.last_mut()
     }
@@ -181,7 +183,8 @@ impl Work {
     fn count(&self) {
         let mut totals = [0; 4];
         for client in &self.clients {
-            let ((there, there_lost), (back, back_lost)) = (client.there.totals(), client.back.totals());
+            let (there, there_lost) = client.there.totals();
+            let (back, back_lost) = client.back.totals();
             for (total, more) in totals.iter_mut().zip([there, there_lost, back, back_lost]) {
                 *total += more;
             }

@@ -84,7 +84,9 @@ mod tests {
     fn it_agrees_with_a_set_of_all_numbers() {
         let mut rng = fastrand::Rng::with_seed(1);
         for base in [0_u64, 1 << 32] {
-            let (mut window, mut set, mut highest) = (Window::default(), HashSet::new(), 0);
+            let mut window = Window::default();
+            let mut set = HashSet::new();
+            let mut highest = 0;
             for i in 0..100_000_u64 {
                 let jump = if rng.u32(..1000) == 0 { rng.u64(..10_000) } else { 0 };
                 let number = (base + i + jump).saturating_sub(rng.u64(..3000));

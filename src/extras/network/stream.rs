@@ -204,7 +204,8 @@ impl Stream {
         let Some(room) = allowed.checked_sub(UDP_LEN + frame) else { return self.hold(payload) };
         let is_limited = room < DATAGRAM_MAX - frame;
         // Those that were held have not been sent at all.
-        let ((loss, again), overtaken) = (self.told_loss, self.told_overtaken);
+        let (loss, again) = self.told_loss;
+        let overtaken = self.told_overtaken;
         let wanted = copies_for(loss + overtaken, f64::max(again, loss + overtaken)).max(self.waiting);
         // Copies leave room for the next long payload: one that is held goes behind newer ones, and may never fit.
         let for_copies = room.saturating_sub(RECORD_MAX + self.history.longest());
@@ -292,7 +293,8 @@ impl Stream {
         if is_newest {
             self.newest = Some((sent_us, arrived_s));
             if let Some(Report { loss, loss_again, overtaken, .. }) = head.report {
-                (self.told_loss, self.told_overtaken) = ((share(loss), share(loss_again)), share(overtaken));
+                self.told_loss = (share(loss), share(loss_again));
+                self.told_overtaken = share(overtaken);
             }
         }
         self.take_payloads(&head, records, arrived_s);

@@ -104,7 +104,8 @@ fn a_third_of_the_datagrams_lost_costs_next_to_no_payload() {
     let before = link.figures(0).counts;
     link.run(60.0);
     let figures = link.figures(0);
-    let (lost, all) = (figures.counts.lost - before.lost, figures.counts.delivered - before.delivered);
+    let lost = figures.counts.lost - before.lost;
+    let all = figures.counts.delivered - before.delivered;
     println!("lost {lost} of {all}; {:?}, loss {:.3}", figures.copies, figures.loss);
     assert!((0.25..0.36).contains(&figures.loss) && (0.25..0.36).contains(&figures.loss_there));
     assert!((8..=11).contains(&figures.copies.wanted) && figures.copies.limit == Limit::None, "{:?}", figures.copies);
@@ -142,7 +143,8 @@ fn long_payloads_arrive_although_the_rate_has_no_room_for_their_copies() {
     link.run(30.0);
     let figures = link.figures(0);
     let long = link.got[0].iter().filter(|(number, _)| number.is_multiple_of(10)).count();
-    let (all, rate_bit_s) = (link.got[0].len(), figures.received.rate_bit_s / (1.0 - figures.loss));
+    let all = link.got[0].len();
+    let rate_bit_s = figures.received.rate_bit_s / (1.0 - figures.loss);
     println!("{long} of 3000 long ones, {all} of 30 000 in all, {:?}, {rate_bit_s:.0} bit/s", figures.copies);
     assert!(long > 1900, "{long} of 3000");
     assert!(all > 27_500, "{all} of 30 000");
@@ -228,7 +230,8 @@ fn attack(rounds: u32, seed: u64) -> u64 {
     let mut rng = fastrand::Rng::with_seed(seed);
     let mut datagram = [0; DATAGRAM_MAX];
     let mut kept: Vec<Vec<u8>> = Vec::new();
-    let (mut accepted, mut payloads) = (0, 0_u32);
+    let mut accepted = 0;
+    let mut payloads = 0_u32;
     for round in 0..rounds {
         let now_s = f64::from(round) * 1e-4;
         if round % 100 == 0 {
@@ -308,7 +311,8 @@ fn figures_of_lines() {
             let before = link.figures(0).counts;
             link.run(60.0);
             let figures = link.figures(0);
-            let (all, lost) = (figures.counts.delivered - before.delivered, figures.counts.lost - before.lost);
+            let all = figures.counts.delivered - before.delivered;
+            let lost = figures.counts.lost - before.lost;
             let late = (figures.counts.late - before.late) as f64 / all as f64 * 100.0;
             let error_s = figures.clock.map_or(f64::NAN, |clock| (clock.offset_s - link.offset_s).abs());
             println!(

@@ -227,12 +227,14 @@ impl Head {
         let mut report = None;
         if first & REPORTS != 0 {
             let ([high0, high1, loss, loss_again, overtaken, control], more) = rest.split_first_chunk::<6>()?;
-            (sent_us, rest) = (sent_us | u64::from(u16::from_le_bytes([*high0, *high1])) << 32, more);
+            sent_us |= u64::from(u16::from_le_bytes([*high0, *high1])) << 32;
+            rest = more;
             let mut echo = None;
             if first & ECHOES != 0 {
                 let (echo_us, more) = rest.split_first_chunk::<4>()?;
                 let (held_us, more) = more.split_first_chunk::<4>()?;
-                (echo, rest) = (Some((u32::from_le_bytes(*echo_us), u32::from_le_bytes(*held_us))), more);
+                echo = Some((u32::from_le_bytes(*echo_us), u32::from_le_bytes(*held_us)));
+                rest = more;
             }
             report =
                 Some(Report { echo, loss: *loss, loss_again: *loss_again, overtaken: *overtaken, control: *control });
@@ -289,7 +291,8 @@ impl Record<'_> {
         let bytes = self.bytes.unwrap_or(&[]);
         let len = if self.bytes.is_some() { u16::try_from(bytes.len()).ok()? } else { LEFT_OUT };
         let age = age(self.age_s);
-        let (first, second) = (number_len(len), number_len(age));
+        let first = number_len(len);
+        let second = number_len(age);
         let end = first + second + bytes.len();
         let (head, content) = room.get_mut(..end)?.split_at_mut(first + second);
         let (one, other) = head.split_at_mut(first);

@@ -11,7 +11,8 @@ const LEAST_PATH_M: f64 = 1e-3;
 /// Straight lines between the places at these times (s from the beginning, in order) over the way that the tip took; `None` if it took none.
 /// A leg with a gap in it is left out.
 pub(crate) fn path_economy(motion: &Motion<'_>, times_s: &[f64]) -> Option<f64> {
-    let (mut straight_m, mut way_m) = (0.0, 0.0);
+    let mut straight_m = 0.0;
+    let mut way_m = 0.0;
     for leg in times_s.windows(2) {
         let [from, to] = [leg[0], leg[1]].map(|t_s| (t_s * RATE_HZ).round() as usize);
         let within =

@@ -103,7 +103,8 @@ fn best(shape: Shape, points: &Points, [least, most]: [f64; 2]) -> LearningCurve
     let linear = |step: f64| Linear::fit(points, &|n| decay(shape, rate(step), n));
     let steps = (0..=GRID).map(f64::from);
     let start = steps.reduce(|a, b| if linear(b).square < linear(a).square { b } else { a }).unwrap_or(0.0);
-    let (mut low, mut high) = (start - 1.0, start + 1.0);
+    let mut low = start - 1.0;
+    let mut high = start + 1.0;
     // Sixty steps narrow the interval by 1e12.
     for _ in 0..60 {
         let inner = 0.618_033_988_749_895 * (high - low);
@@ -131,7 +132,8 @@ impl Linear {
         let count = points.len() as f64;
         let rows: Vec<(f64, f64)> = points.iter().map(|(n, time)| (left(*n), *time)).collect();
         let mean = |of: &dyn Fn(&(f64, f64)) -> f64| rows.iter().map(of).sum::<f64>() / count;
-        let (mean_x, mean_y) = (mean(&|row| row.0), mean(&|row| row.1));
+        let mean_x = mean(&|row| row.0);
+        let mean_y = mean(&|row| row.1);
         let (square_x, product) =
             (mean(&|row| (row.0 - mean_x) * (row.0 - mean_x)), mean(&|row| (row.0 - mean_x) * row.1));
         let gain = if square_x > 1e-18 { (product / square_x).max(0.0) } else { 0.0 };

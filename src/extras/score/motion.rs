@@ -134,17 +134,21 @@ fn smoothness(speed: &[f64], jerk: &[f64]) -> [Option<f64>; 2] {
 
 /// Peaks of a speed that starts from rest: turned round by [`PEAK_M_PER_S`] after a rise by as much. One that the end cuts off counts.
 fn peaks(speed: &[f64]) -> usize {
-    let (mut count, mut rising, mut turn) = (0, false, 0.0);
+    let mut count = 0;
+    let mut rising = false;
+    let mut turn = 0.0;
     for now in speed {
         if rising {
             turn = f64::max(turn, *now);
             if *now < turn - PEAK_M_PER_S {
-                (rising, turn) = (false, *now);
+                rising = false;
+                turn = *now;
             }
         } else {
             turn = f64::min(turn, *now);
             if *now > turn + PEAK_M_PER_S {
-                (rising, turn) = (true, *now);
+                rising = true;
+                turn = *now;
                 count += 1;
             }
         }

@@ -78,7 +78,8 @@ impl Trial {
             self.scorer.happening(&Happening { t_s, event: Event::Begun });
         }
         if engaged {
-            (self.engaged_s, self.before_pause) = (t_s, None);
+            self.engaged_s = t_s;
+            self.before_pause = None;
         } else if self.begun_s.is_some() && self.before_pause.is_none() {
             self.before_pause = Some(self.scorer.clone());
         }

@@ -231,7 +231,8 @@ impl Scorer {
 fn score_motion(score: &mut Score, tips: &[Track; SIDES], handled_s: &[Vec<f64>; SIDES], end_s: f64) {
     let motions = tips.each_ref().map(Motion::of);
     let each = motions.each_ref();
-    let (paths_m, depths_m) = (each.map(Motion::path_m), each.map(Motion::depth_m));
+    let paths_m = each.map(Motion::path_m);
+    let depths_m = each.map(Motion::depth_m);
     let depth_share =
         |side: usize| paths_m[side].filter(|path_m| *path_m > 0.0).and_then(|path_m| Some(depths_m[side]? / path_m));
     score.set_hands("path_length_m", paths_m);

@@ -64,7 +64,8 @@ mod tests {
         };
         let second = |n: i32| (0..=n).map(move |k| reach(k, n));
         let wobble = |k: i32| {
-            let (t, turn) = (f64::from(k) / 100.0, 2.0 * std::f64::consts::PI);
+            let t = f64::from(k) / 100.0;
+            let turn = 2.0 * std::f64::consts::PI;
             1.0 - (turn * t / 3.0).cos() + 0.2 * (turn * 4.0 * t).sin().powi(2)
         };
         let two = second(100).chain(std::iter::repeat_n(0.0, 50)).chain(second(100));

@@ -81,7 +81,8 @@ pub const TLX_SCALES: [(TlxScale, &str, &str); 6] = [
 /// Every pair of scales, in the order in which they are compared.
 pub const PAIRS: [(TlxScale, TlxScale); 15] = {
     let mut pairs = [(TlxScale::Mental, TlxScale::Mental); 15];
-    let (mut at, mut one) = (0, 0);
+    let mut at = 0;
+    let mut one = 0;
     while one < 6 {
         let mut other = one + 1;
         while other < 6 {

@@ -108,7 +108,8 @@ impl Study {
         let unreadable = || damaged(SEALED, "it was written by another version of the program".to_owned());
         let secret: Opened = serde_json::from_slice(&plain).map_err(|_| unreadable())?;
         let secret_text = String::from_utf8(plain).map_err(|_| unreadable())?;
-        let (scene, state) = (text(SCENE)?, State::new(&plan));
+        let scene = text(SCENE)?;
+        let state = State::new(&plan);
         Ok(Self { folder: folder.to_owned(), plan, scene, key, secret_text, secret, journal: None, state })
     }
 

@@ -40,7 +40,8 @@ pub(crate) fn trials(
     withheld: impl Fn(&str) -> Option<Measures>,
 ) -> Table {
     let excluded = exclusions(plan, state);
-    let (mut rows, mut missing) = (Vec::new(), Vec::new());
+    let mut rows = Vec::new();
+    let mut missing = Vec::new();
     for (participant, progress) in state.participants() {
         for made in &progress.trials {
             let is_out =
@@ -55,7 +56,8 @@ pub(crate) fn trials(
             let mut values = measures.clone();
             values
                 .extend(made.withheld.as_deref().filter(|_| opened.is_some()).and_then(&withheld).unwrap_or_default());
-            let (condition, number) = (shown(made.label, opened), Some(made.number));
+            let condition = shown(made.label, opened);
+            let number = Some(made.number);
             rows.push(Row { participant, condition, number, simulated: made.simulated, values });
         }
     }

@@ -51,7 +51,8 @@ impl Pressed {
         settings.pedal = None;
         let (worlds, watched) = Worlds::watched(&Scene::load(scene).unwrap(), 1000.0);
         let (desk, _) = Desk::start(&settings, worlds).unwrap();
-        let (inputs, begin) = ([None; SIDES], Instant::now());
+        let inputs = [None; SIDES];
+        let begin = Instant::now();
         let mut this = Self { desk, watched: watched.unwrap(), buttons, inputs, begin, _cap: cap };
         this.run(|this| this.desk.health().devices[0].standing == Standing::Connected);
         this.for_s(0.3);
@@ -162,7 +163,9 @@ fn a_cap_leads_the_hand_and_a_pedal_is_the_clutch() {
         let (mut desk, roster) = Desk::start(&settings, worlds).unwrap();
         assert_eq!(roster.len(), 2);
         let begin = Instant::now();
-        let (mut first_m, mut led_s, mut clutched) = (None, 0.0, false);
+        let mut first_m = None;
+        let mut led_s = 0.0;
+        let mut clutched = false;
         let mut hand_m = Vector3::zeros();
         while begin.elapsed() < Duration::from_secs(6) && led_s < 0.8 {
             let now_s = begin.elapsed().as_secs_f64();

@@ -36,14 +36,16 @@ fn devices(folder: &std::path::Path) -> (Settings, [Serving; 2]) {
     ];
     let whole = RigConfig::load("emulated").unwrap().devices.unwrap();
     let mut right = whole.right.unwrap();
-    let (arm, rcm) = (Arm::new(&right.mount).unwrap(), Rcm::new(&right.rcm).unwrap());
+    let arm = Arm::new(&right.mount).unwrap();
+    let rcm = Rcm::new(&right.rcm).unwrap();
     let tip_m = right.rcm.trocar_m + right.rcm.inward.normalize() * 0.12;
     let start_rad: [f64; 7] = find(&arm, &rcm, &tip_m).unwrap().joint_rad.into();
     right.arm = FollowerSettings::Simulated(simulated_arm::Settings::at(start_rad));
     right.servos = None;
     right.sensor = SensorSettings::Bota(bota::Settings::new(bota::Transport::GenA, port.display().to_string()));
     let handle = right.handle.force_dimension_mut().unwrap();
-    (handle.serial, handle.emulator) = (Some(5151), Some(serving[0].endpoint.parse().unwrap()));
+    handle.serial = Some(5151);
+    handle.emulator = Some(serving[0].endpoint.parse().unwrap());
     (Settings { right: Some(right), ..Settings::default() }, serving)
 }
 

@@ -101,14 +101,19 @@ const PARTS: [Part; 15] = [
         "wrist sensor and tool",
         |scene| scene.wrist.is_some() && scene.person.is_none(),
         |scene| {
-            (scene.wrist, scene.trocar, scene.tissue_sensor) = (None, None, None);
+            scene.wrist = None;
+            scene.trocar = None;
+            scene.tissue_sensor = None;
         },
     ),
     ("sensor under the tissue", |scene| scene.tissue_sensor.is_some(), |scene| scene.tissue_sensor = None),
 ];
 
 fn without_tissue(scene: &mut Scene) {
-    (scene.tissue, scene.lumps, scene.relaxation, scene.membrane) = (None, None, None, None);
+    scene.tissue = None;
+    scene.lumps = None;
+    scene.relaxation = None;
+    scene.membrane = None;
     scene.layers.clear();
 }
 
@@ -128,7 +133,8 @@ fn simulated(scene: &Scene) -> Simulated {
         let mut world = World::new(scene, RATE_HZ);
         return Box::new(move |now_s, outputs| world.exchange(now_s, outputs));
     }
-    let (mut worlds, right) = (Worlds::new(scene, RATE_HZ), Side::Right.index());
+    let mut worlds = Worlds::new(scene, RATE_HZ);
+    let right = Side::Right.index();
     Box::new(move |now_s, outputs| {
         let mut both = [Outputs::SAFE; SIDES];
         both[right] = *outputs;
@@ -198,10 +204,14 @@ impl Effects {
         let mut measured = Vec::with_capacity(ticks);
         forces(&whole, &commands, |force_n| measured.push(force_n));
         let effect = |((name, scene), cost_us): (&(&'static str, Scene), &f64)| {
-            let (mut at, mut squares, mut most_n) = (0, 0.0, 0.0_f64);
+            let mut at = 0;
+            let mut squares = 0.0;
+            let mut most_n = 0.0_f64;
             forces(scene, &commands, |force_n| {
                 let change_n = (force_n - measured[at]).norm();
-                (at, squares, most_n) = (at + 1, squares + change_n * change_n, most_n.max(change_n));
+                at += 1;
+                squares += change_n * change_n;
+                most_n = most_n.max(change_n);
             });
             let change_n = (squares / at.max(1) as f64).sqrt();
             Effect { effect: name, cost_us: costs[0] - cost_us, change_n, change_max_n: most_n }

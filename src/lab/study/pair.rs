@@ -228,7 +228,8 @@ impl Pair {
             self.follow(piece_s);
         }
         self.tip_n = self.tissue.contact_n(&self.tip_m, &self.tip_m_s);
-        let (noise, noise_n) = (&mut self.noise, self.trial.noise_n);
+        let noise = &mut self.noise;
+        let noise_n = self.trial.noise_n;
         let force_n = self.tip_n + Vector3::from_fn(|_, _| noise_n * noise.gaussian());
         self.identify(&force_n, &timing);
         let read_m = self.handle_m.map(|x| (x / RESOLUTION_M).round() * RESOLUTION_M);
@@ -283,7 +284,8 @@ impl Pair {
 
     fn move_handle(&mut self, intended_m: &Vector3<f64>, for_s: f64) {
         let dt_s = for_s / f64::from(SUBSTEPS);
-        let (handle, grip) = (self.trial.handle, self.trial.grip);
+        let handle = self.trial.handle;
+        let grip = self.trial.grip;
         let (mass_kg, stiffness_n_m, friction_n_s_m) =
             if self.gripped { (grip.kg, grip.n_m, grip.n_s_m) } else { (handle.kg, 0.0, handle.n_s_m) };
         for _ in 0..SUBSTEPS {
@@ -297,14 +299,16 @@ impl Pair {
     /// The follower: critically damped second order, exact for a constant command.
     fn follow(&mut self, dt_s: f64) {
         let omega = TAU * FOLLOWER_HZ;
-        let (offset_m, decay) = (self.tip_m - self.command_m, (-omega * dt_s).exp());
+        let offset_m = self.tip_m - self.command_m;
+        let decay = (-omega * dt_s).exp();
         let slope_m_s = self.tip_m_s + offset_m * omega;
         self.tip_m = self.command_m + (offset_m + slope_m_s * dt_s) * decay;
         self.tip_m_s = (self.tip_m_s - slope_m_s * (omega * dt_s)) * decay;
     }
 
     fn command(&mut self, read_m: &Vector3<f64>, passed_s: f64) {
-        let (way_m, most_m) = (read_m - self.command_m, FOLLOWER_M_S * passed_s);
+        let way_m = read_m - self.command_m;
+        let most_m = FOLLOWER_M_S * passed_s;
         self.command_m += way_m * (most_m / way_m.norm().max(most_m));
     }
 

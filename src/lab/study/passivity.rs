@@ -75,7 +75,8 @@ impl Task {
                 Vector3::new(0.0, 0.0, ABOVE_M - span_m * 0.5 * (1.0 - (TAU * t_s / self.period_s()).cos()))
             }
             Self::PegTransfer => {
-                let (count, t_s) = ((t_s / self.period_s()).floor(), t_s.rem_euclid(self.period_s()));
+                let count = (t_s / self.period_s()).floor();
+                let t_s = t_s.rem_euclid(self.period_s());
                 let deep = way(t_s, 0.9, 0.45) - way(t_s, 1.7, 0.45);
                 let side_m = if count.rem_euclid(2.0) < 1.0 { 0.03 } else { -0.03 };
                 let across_m = side_m * (2.0 * way(t_s, 0.0, 0.9) - 1.0) + 0.004 * way(t_s, 0.9, 0.45);
@@ -168,7 +169,8 @@ pub const WAYS: [(Mode, OwnMotion); 7] = [
 /// [`ReleaseError`] if the scene cannot be used.
 pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
     let tissue = pressed_tissue()?;
-    let (mut rows, mut held) = (Vec::new(), Vec::new());
+    let mut rows = Vec::new();
+    let mut held = Vec::new();
     let all = options.clocks.len() * WAYS.len() * DELAYS_MS.len();
     let ways = WAYS.into_iter().flat_map(|way| DELAYS_MS.map(|delay_ms| (way, delay_ms)));
     let ways = options.clocks.iter().flat_map(|clock| ways.clone().map(move |way| (*clock, way)));
@@ -239,7 +241,9 @@ pub fn tasked_over(
     let trial = trial(clock, way, delay_ms, Grip::FIRM, tissue(0), TREMOR_M);
     let mut pair = Pair::new(&trial, task.intended_m(0.0))?;
     let mut touch = 0;
-    let (mut energy_j, mut error_n, mut judged_s) = (0.0, 0.0, 0.0);
+    let mut energy_j = 0.0;
+    let mut error_n = 0.0;
+    let mut judged_s = 0.0;
     while pair.now_s() < TASK_S - 0.5 / RATE_HZ {
         let t_s = pair.now_s();
         let now = (t_s / task.period_s()) as u32;
@@ -247,7 +251,8 @@ pub fn tasked_over(
             touch = now;
             pair.exchange_tissue(tissue(touch));
         }
-        let (force_n, at_m) = (pair.force_n(), pair.handle_m());
+        let force_n = pair.force_n();
+        let at_m = pair.handle_m();
         // The hand is a period behind, as it is where ticks are counted.
         pair.step(|t_s, _| task.intended_m(t_s - 1.0 / RATE_HZ));
         if t_s >= FROM_S - 0.5 / RATE_HZ {

@@ -143,7 +143,8 @@ mod tests {
     fn rows(count: usize, duplicate: bool) -> Vec<Vec<f64>> {
         let row = |k: usize| {
             let t = k as f64 * 0.61;
-            let (a, b) = (t.sin(), (1.3 * t).cos());
+            let a = t.sin();
+            let b = (1.3 * t).cos();
             vec![1.0, a, if duplicate { 2.0 * a } else { a * b }, b, 0.5 + a - 2.0 * b + 0.1 * (7.0 * t).sin()]
         };
         (0..count).map(row).collect()

@@ -271,7 +271,8 @@ fn tried(way: &Way, gates: ChainSettings, handle: &Handle, tissue: Tissue) -> Re
 
 /// A hand presses as this trial says, and opens.
 pub(super) fn release(trial: &Trial, situation: Situation, contact_n: f64) -> Result<Row, ReleaseError> {
-    let (mode, delay_ms) = (trial.mode, 1e3 * trial.delay_s);
+    let mode = trial.mode;
+    let delay_ms = 1e3 * trial.delay_s;
     let mut intended_m = Vector3::new(0.0, 0.0, START_M);
     let mut pair = Pair::new(trial, intended_m)?;
     while pair.tip_n().z < contact_n {
@@ -319,13 +320,18 @@ pub(super) fn release(trial: &Trial, situation: Situation, contact_n: f64) -> Re
 
 /// Opens the hand and looks at the handle.
 fn watch(mut pair: Pair, intended_m: &Vector3<f64>, handle: &Handle, mut row: Row) -> Row {
-    let (from_m, swing_m_s) = (pair.handle_m(), pair.handle_m_s());
+    let from_m = pair.handle_m();
+    let swing_m_s = pair.handle_m_s();
     let swing_s = handle.kg / handle.n_s_m;
-    let (mut energy_j, mut travel_m, mut beyond_swing_m) = (0.0, 0.0_f64, 0.0_f64);
+    let mut energy_j = 0.0;
+    let mut travel_m = 0.0_f64;
+    let mut beyond_swing_m = 0.0_f64;
     pair.let_go();
-    let (from_s, mut t_s) = (pair.now_s(), 0.0);
+    let from_s = pair.now_s();
+    let mut t_s = 0.0;
     while t_s < AFTER_S - 0.5 / RATE_HZ {
-        let (held_n, at_m) = (pair.force_n(), pair.handle_m());
+        let held_n = pair.force_n();
+        let at_m = pair.handle_m();
         pair.step(|_, _| *intended_m);
         t_s = pair.now_s() - from_s;
         let way_m = pair.handle_m() - from_m;

@@ -161,8 +161,12 @@ fn stream(case: &Case, unit: f64, guard: bool) -> Stream {
     let settings = Settings::default();
     let mut differentiator = Differentiator::new(settings.differentiator, case.rate_hz);
     let bridge = (0.01 * case.rate_hz).ceil() as usize;
-    let (mut motions, mut last, mut last_t_s, mut missing) = (Vec::new(), Motion::default(), f64::NEG_INFINITY, 0);
-    let (mut rows, mut used) = (Vec::new(), Vec::new());
+    let mut motions = Vec::new();
+    let mut last = Motion::default();
+    let mut last_t_s = f64::NEG_INFINITY;
+    let mut missing = 0;
+    let mut rows = Vec::new();
+    let mut used = Vec::new();
     for raw in &case.samples {
         let usable = raw.position_m.is_finite() && raw.force_n.is_finite() && raw.t_s > last_t_s;
         last_t_s = last_t_s.max(raw.t_s);
@@ -197,7 +201,8 @@ fn scales(unit: f64) -> Scales {
 
 /// Fits of one solver at every instant of a case, and the state of the sliding window.
 fn fits(case: &Case, solver: Solver, stream: &Stream, unit: f64) -> Vec<(Fit, Option<Sliding>)> {
-    let (scales, ridge) = (scales(unit), Settings::default().ridge);
+    let scales = scales(unit);
+    let ridge = Settings::default().ridge;
     if solver != Solver::Sliding {
         let window = |k: usize| solver.fit(&stream.rows[k + 1 - case.window..=k], MAX_DEGREE, &scales, 0.0);
         return instants(case).map(|k| (window(k), None)).collect();
@@ -215,7 +220,8 @@ fn fits(case: &Case, solver: Solver, stream: &Stream, unit: f64) -> Vec<(Fit, Op
 
 /// Ticks at which the window is evaluated.
 fn instants(case: &Case) -> impl Iterator<Item = usize> {
-    let (first, window) = (warm(case.rate_hz, case.window), case.window);
+    let first = warm(case.rate_hz, case.window);
+    let window = case.window;
     [0, window / 2, window].into_iter().map(move |later| first + later)
 }
 
@@ -255,7 +261,8 @@ fn extreme(case: &Case) -> Result<Extreme, StabilityError> {
             }
         }
     }
-    let (identifier_finite, renderings) = (identifier_finite(case)?, rendering::extreme(case)?);
+    let identifier_finite = identifier_finite(case)?;
+    let renderings = rendering::extreme(case)?;
     let Case { group, name, rate_hz, window, .. } = case.clone();
     Ok(Extreme { group, name, rate_hz, window, identifier_finite, entries, renderings })
 }

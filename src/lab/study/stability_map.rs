@@ -184,7 +184,8 @@ impl StabilityMap {
         if gain <= 0.0 {
             return Verdict::Stable;
         }
-        let (gains, delays) = (around(&GAINS, gain), around(&DELAYS_S, delay_s));
+        let gains = around(&GAINS, gain);
+        let delays = around(&DELAYS_S, delay_s);
         let Some(mode) = MODES.iter().position(|mapped| *mapped == mode) else { return Verdict::Unstable };
         let mut worst = Verdict::Stable;
         for delay in delays {
@@ -307,17 +308,23 @@ pub fn trial(mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Result<
     let gates =
         ChainSettings { static_hold: true, energy: EnergyMode::Off, gain_rate_per_s: 1e3, ..ChainSettings::default() }
             .without_governor();
-    let (seed, clock) = (1, VirtualClock::PERFECT);
+    let seed = 1;
+    let clock = VirtualClock::PERFECT;
     let above_m = Vector3::new(0.0, 0.0, 2e-3);
     // The intended position of the hand at which tissue and feedback together balance it at the contact force.
     let deep_m =
         Vector3::new(0.0, 0.0, -CONTACT_N / stiffness_n_m - gain.min(4.0 / CONTACT_N) * CONTACT_N / Grip::FIRM.n_m);
-    let (own_motion, literal) = (OwnMotion::Follower, Recipe::default());
-    let (handle, grip, tremor_m, noise_n) = (Handle::OMEGA, Grip::FIRM, 0.0, NOISE_N);
+    let own_motion = OwnMotion::Follower;
+    let literal = Recipe::default();
+    let handle = Handle::OMEGA;
+    let grip = Grip::FIRM;
+    let tremor_m = 0.0;
+    let noise_n = NOISE_N;
     let trial =
         Trial { mode, own_motion, literal, delay_s, gates, gain, tissue, tremor_m, noise_n, handle, grip, seed, clock };
     let mut pair = Pair::new(&trial, above_m)?;
-    let (mut low_m, mut high_m) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+    let mut low_m = Vector3::repeat(f64::INFINITY);
+    let mut high_m = Vector3::repeat(f64::NEG_INFINITY);
     for tick in 0..(TRIAL_S * RATE_HZ) as u32 {
         let t_s = f64::from(tick) / RATE_HZ;
         let s = (t_s / APPROACH_S).min(1.0);

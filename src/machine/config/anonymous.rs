@@ -28,7 +28,10 @@ impl RigConfig {
             devices,
         } = &mut self;
         ANONYMOUS.clone_into(name);
-        (*desk, *simulated, *endoscope, *devices) = (None, None, None, None);
+        *desk = None;
+        *simulated = None;
+        *endoscope = None;
+        *devices = None;
         self
     }
 }

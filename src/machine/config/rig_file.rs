@@ -278,8 +278,10 @@ mod tests {
         file.swap("devices.right.handle", "devices.left.handle");
         file.swap("devices.right.sensor", "devices.left.sensor");
         let now = file.rig().unwrap().devices.unwrap();
-        let (right, left) = (now.right.unwrap(), now.left.unwrap());
-        let (right_was, left_was) = (was.right.unwrap(), was.left.unwrap());
+        let right = now.right.unwrap();
+        let left = now.left.unwrap();
+        let right_was = was.right.unwrap();
+        let left_was = was.left.unwrap();
         assert_eq!((&right.handle, &left.handle), (&left_was.handle, &right_was.handle));
         assert_eq!((&right.sensor, &left.sensor), (&left_was.sensor, &right_was.sensor));
         assert_eq!(right.arm, right_was.arm);

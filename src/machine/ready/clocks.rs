@@ -41,7 +41,8 @@ impl Item for Clocks {
         }
         let Some(newest) = self.newest else { return Progress::Asking(Ask::Nothing) };
         let (first, first_s) = self.first.get_or_insert((newest, now_s));
-        let (took_s, loop_s) = (now_s - *first_s, newest.t_s - first.t_s);
+        let took_s = now_s - *first_s;
+        let loop_s = newest.t_s - first.t_s;
         if took_s < TAKES_S {
             return Progress::Asking(Ask::Nothing);
         }
@@ -49,7 +50,8 @@ impl Item for Clocks {
         if by_s.is_nan() || by_s > APART_MAX_S {
             return Progress::Failed(Cause::LoopClock { by_s });
         }
-        let (missed, made) = (newest.missed.saturating_sub(first.missed), newest.index.saturating_sub(first.index));
+        let missed = newest.missed.saturating_sub(first.missed);
+        let made = newest.index.saturating_sub(first.index);
         let share = missed as f64 / (missed + made).max(1) as f64;
         if share > MISSED_MAX {
             return Progress::Failed(Cause::Missed { share });

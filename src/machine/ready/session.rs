@@ -51,7 +51,8 @@ pub struct Session {
 impl Session {
     /// The whole list for this rig.
     pub fn new(subject: Subject) -> Self {
-        let (list, arms) = (subject.list(), Arms::of(&subject));
+        let list = subject.list();
+        let arms = Arms::of(&subject);
         Self { subject, list, arms, work: None, latched_s: None, not_released: None, began_s: None, took_s: 0.0 }
     }
 
@@ -97,7 +98,9 @@ impl Session {
         for entry in self.list.iter_mut().filter(|entry| matches!(entry.state, State::Failed(_))) {
             entry.state = State::Waiting;
         }
-        (self.work, self.latched_s, self.not_released) = (None, None, None);
+        self.work = None;
+        self.latched_s = None;
+        self.not_released = None;
     }
 
     /// Adds one tick of any side.

@@ -54,7 +54,9 @@ impl Trocar {
         let (rest_m, since_s) = *self.rest.get_or_insert((tick.tip_m, tick.t_s));
         self.has_rested = tick.t_s - since_s >= RESTS_S;
         if (tick.tip_m - rest_m).norm() > RESTS_M {
-            (self.rest, self.watch, self.has_rested) = (None, None, false);
+            self.rest = None;
+            self.watch = None;
+            self.has_rested = false;
         }
     }
 }

@@ -94,7 +94,8 @@ impl<R: Rig, W: Wire> FarFollower<R, W> {
     }
 
     fn receive(&mut self, now_s: f64) {
-        let (heard, rate_hz) = (&mut self.heard, self.rate_hz);
+        let heard = &mut self.heard;
+        let rate_hz = self.rate_hz;
         self.wire.receive(now_s, &mut |bytes| {
             let Some(mut message) = FollowerMessage::unpack(bytes) else { return };
             let round_trip_s = now_s - message.t_s;
@@ -112,7 +113,8 @@ impl<R: Rig, W: Wire> FarFollower<R, W> {
             if last.at_s >= now_s {
                 keep_parameters(&mut message.sides, &last.message.sides);
             }
-            (last.message, last.at_s) = (message, now_s);
+            last.message = message;
+            last.at_s = now_s;
             last.delay.step(round_trip_s, rate_hz);
         });
         if self.heard.is_some_and(|heard| now_s - heard.at_s > GONE_AFTER_S) {
@@ -190,7 +192,8 @@ impl<R: Rig, W: Wire> Rig for FarFollower<R, W> {
         message.delay_ticks = self.heard.map_or(0, |heard| heard.delay.ticks);
         for bulletin in bulletins.iter().flatten() {
             let side = bulletin.side.index();
-            (message.mode, message.compares) = (bulletin.mode, bulletin.compares);
+            message.mode = bulletin.mode;
+            message.compares = bulletin.compares;
             let far = self.heard.and_then(|heard| heard.message.sides[side]);
             message.sides[side] = Some(self.sides[side].tell(bulletin, far.as_ref()));
         }

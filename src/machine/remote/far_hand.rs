@@ -63,7 +63,8 @@ mod tests {
     #[test]
     fn what_was_missed_in_a_gap_is_made_up_for_without_a_step() {
         let mut hand = FarHand::default();
-        let (mut told_m, mut before_m) = (0.0, 0.0);
+        let mut told_m = 0.0;
+        let mut before_m = 0.0;
         for tick in 0..400 {
             // 120 mm/s, and 50 ms of silence.
             if !(100..150).contains(&tick) {

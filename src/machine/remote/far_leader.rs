@@ -127,7 +127,8 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
         if let Some(heard) = newest.filter(|heard| heard.at_s >= now_s) {
             // Another console, or one that was started anew, has another clock and other counts: nothing was asked for in between.
             let goes_on = |before: &Heard| {
-                let (told_s, passed_s) = (heard.message.t_s - before.message.t_s, heard.at_s - before.at_s);
+                let told_s = heard.message.t_s - before.message.t_s;
+                let passed_s = heard.at_s - before.at_s;
                 (told_s - passed_s).abs() < SAME_CLOCK_S
             };
             let before = before.filter(goes_on).map(|before| before.message);

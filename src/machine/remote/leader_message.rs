@@ -81,7 +81,9 @@ impl LeaderMessage {
 
     pub(super) fn unpack(message: &[u8]) -> Option<Self> {
         let mut from = Unpacker::new(message);
-        let (t_s, delay_ticks, first) = (from.time()?, from.short()?, from.byte()?);
+        let t_s = from.time()?;
+        let delay_ticks = from.short()?;
+        let first = from.byte()?;
         let mode = modes().nth(usize::from(first & 0x7f))?;
         let mut told = Self { t_s, delay_ticks, mode, compares: first >> 7 == 1, sides: [None; SIDES] };
         while !from.is_empty() {

@@ -153,7 +153,8 @@ impl<'a> Unpacker<'a> {
     pub(super) fn turn(&mut self) -> Option<UnitQuaternion<f64>> {
         let bits = u64::from_le_bytes(self.take()?);
         let largest = (bits >> 60) as usize;
-        let (mut coords, mut squares) = (Vector4::zeros(), 0.0);
+        let mut coords = Vector4::zeros();
+        let mut squares = 0.0;
         if largest >= coords.len() {
             return None;
         }

@@ -45,7 +45,8 @@ impl Spread {
         if other.count == 0 {
             return;
         }
-        let (share, apart) = (f64::from(other.count) / f64::from(count), other.mean - self.mean);
+        let share = f64::from(other.count) / f64::from(count);
+        let apart = other.mean - self.mean;
         self.squares += other.squares + apart * apart * share * f64::from(self.count);
         self.mean += apart * share;
         self.low = self.low.min(other.low);
@@ -138,7 +139,10 @@ impl Gauge {
         let age = (health.age_s(now_s) / period_s).round().clamp(0.0, (AGES - 1) as f64);
         self.ages[age as usize] = self.ages[age as usize].saturating_add(1);
         let Health { readings, lost, damaged, refused, .. } = *health;
-        (self.readings, self.lost, self.damaged, self.refused) = (readings, lost, damaged, refused);
+        self.readings = readings;
+        self.lost = lost;
+        self.damaged = damaged;
+        self.refused = refused;
     }
 }
 
@@ -163,7 +167,8 @@ mod tests {
     #[test]
     fn joined_spreads_are_those_of_all_values() {
         let values: Vec<f64> = (0..500).map(|k| 100.0 + f64::from(k * k % 97) * 1e-3).collect();
-        let (mut whole, mut joined) = (Spread::NONE, Spread::NONE);
+        let mut whole = Spread::NONE;
+        let mut joined = Spread::NONE;
         for block in values.chunks(37) {
             let mut part = Spread::NONE;
             for value in block {
@@ -208,7 +213,8 @@ mod tests {
 
     #[test]
     fn ages_are_counted_in_periods_and_a_device_that_was_never_heard_is_as_old_as_can_be() {
-        let (mut gauge, mut health) = (Gauge::NONE, Health::default());
+        let mut gauge = Gauge::NONE;
+        let mut health = Health::default();
         gauge.tick(&health, 1.0, 1e-3);
         assert_eq!(gauge.ages[AGES - 1], 1);
         health.accept(1.001);

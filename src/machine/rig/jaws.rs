@@ -89,7 +89,8 @@ impl JawsControl {
 
     /// Forgets the last command.
     pub(super) fn reset(&mut self) {
-        (self.asked, self.last_s) = (None, None);
+        self.asked = None;
+        self.last_s = None;
         self.pids.iter_mut().for_each(Pid::reset);
     }
 }

@@ -64,7 +64,8 @@ struct Shown {
 /// Leads the arm as the rig does: a plan within the arm's limits, the driver's check, and now and then a clutch, which
 /// brakes and starts a new plan.
 fn drive(fraction: f64, cone_deg: f64, seed: u64, shown: &mut Shown) {
-    let (arm, rcm) = (arm(), rcm(cone_deg));
+    let arm = arm();
+    let rcm = rcm(cone_deg);
     let limits = JointLimits::of_arm(fraction, 0.05);
     let begin = |joint_rad: &Joints| Inverse::new(arm, rcm, PERIOD_S, joint_rad).unwrap().within(limits);
     let mut hand = Hand::new(seed);
@@ -82,7 +83,9 @@ fn drive(fraction: f64, cone_deg: f64, seed: u64, shown: &mut Shown) {
     let mut inverse = begin(settled.joint_rad());
     let mut guard = Guard::new(limits);
     guard.seed(inverse.joint_rad().as_ref());
-    let (mut last, mut moved, mut clutched) = (*inverse.joint_rad(), Joints::zeros(), 0_u32);
+    let mut last = *inverse.joint_rad();
+    let mut moved = Joints::zeros();
+    let mut clutched = 0_u32;
     for tick in 0..STEPS {
         let target_m = hand.next();
         clutched = if hand.random.u32(..1500) == 0 { 600 } else { clutched.saturating_sub(1) };
@@ -106,7 +109,8 @@ fn drive(fraction: f64, cone_deg: f64, seed: u64, shown: &mut Shown) {
             shown.behind_m.push(step.measures.tip_miss_m);
         }
         assert!(limit_margin_rad(&sent) > 0.0, "beyond the range of a joint in tick {tick}");
-        (last, moved) = (sent, way);
+        last = sent;
+        moved = way;
     }
 }
 
@@ -142,7 +146,8 @@ fn the_trocar_and_every_limit_are_kept_at_any_share_of_the_arms_speed() {
 
 #[test]
 fn an_arm_that_is_held_is_not_commanded_further_away_and_comes_back_through_the_trocar() {
-    let (arm, rcm) = (arm(), rcm(20.0));
+    let arm = arm();
+    let rcm = rcm(20.0);
     let limits = JointLimits::of_arm(0.3, 0.05);
     let mut inverse = Inverse::new(arm, rcm, PERIOD_S, &Joints::from(READY_RAD)).unwrap().within(limits);
     let middle_m = TROCAR_M - Vector3::z() * 0.12;

@@ -106,7 +106,8 @@ impl Shown {
 
     fn exchanged_place(&self, other: &Self) -> Option<Exchange> {
         let passes = |mount: &Arm, rcm: &Rcm| {
-            let (pose, trocar_m) = (mount.pose(&self.joints), &rcm.settings().trocar_m);
+            let pose = mount.pose(&self.joints);
+            let trocar_m = &rcm.settings().trocar_m;
             pose.axis_miss_m(trocar_m).norm() <= START_MISS_M && pose.insertion_m(trocar_m) > 0.0
         };
         if passes(&self.mount, &self.rcm) {
@@ -118,8 +119,10 @@ impl Shown {
     }
 
     fn exchanged_marker(&self, other: &Self) -> Option<Exchange> {
-        let (own, others) = (self.hand_eye?, other.hand_eye?);
-        let (seen, others_seen) = (self.c_from_m?, other.c_from_m?);
+        let own = self.hand_eye?;
+        let others = other.hand_eye?;
+        let seen = self.c_from_m?;
+        let others_seen = other.c_from_m?;
         let off = |hand_eye: HandEye, seen: &Isometry3<f64>| {
             let c_from_m = hand_eye.base_from_c.inverse() * self.base_from_s1 * hand_eye.s1_from_m;
             let place_m = (c_from_m.translation.vector - seen.translation.vector).norm();

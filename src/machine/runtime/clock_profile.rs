@@ -145,7 +145,9 @@ pub struct TickTime {
 impl TickTime {
     /// Puts this time into the timing of a tick.
     pub(super) const fn enter(self, timing: &mut Timing) {
-        (timing.now_s, timing.wake_s, timing.missed_now) = (self.now_s, self.wake_s, self.missed);
+        timing.now_s = self.now_s;
+        timing.wake_s = self.wake_s;
+        timing.missed_now = self.missed;
     }
 }
 
@@ -224,7 +226,8 @@ impl TickTimes {
             ClockProfile::Quiet => jitter::QUIET.late_ns(state, random),
             ClockProfile::Busy => jitter::BUSY.late_ns(state, random),
             ClockProfile::Late { percent } => {
-                let (is_late, late_us) = (random.uniform() < 1e-2 * percent, within(LATE_US, random.uniform()));
+                let is_late = random.uniform() < 1e-2 * percent;
+                let late_us = within(LATE_US, random.uniform());
                 if is_late { (1e3 * late_us).round() as u64 } else { 0 }
             }
             ClockProfile::Stall { ms } => self.stalled_ns(ms),

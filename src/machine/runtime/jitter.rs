@@ -91,7 +91,8 @@ impl JitterProfile {
 /// Value of a table of quantiles at this probability, linearly interpolated.
 fn at(quantiles: &[[f64; 2]], probability: f64) -> f64 {
     let above = quantiles.partition_point(|[from, _]| *from <= probability).clamp(1, quantiles.len() - 1);
-    let ([from, low], [to, high]) = (quantiles[above - 1], quantiles[above]);
+    let [from, low] = quantiles[above - 1];
+    let [to, high] = quantiles[above];
     low + (high - low) * (probability - from) / (to - from)
 }
 

@@ -68,7 +68,9 @@ mod tests {
     /// which ticks a sensor had nothing new, and how far the loop has moved in all, ns.
     fn late(begins_ns: &[u64], every_ns: u64, ticks: u64) -> (Vec<bool>, u64) {
         let mut random = fastrand::Rng::with_seed(1);
-        let (mut phase, mut now_ns, mut moved_ns) = (Phase::new(PERIOD_NS), 0, 0);
+        let mut phase = Phase::new(PERIOD_NS);
+        let mut now_ns = 0;
+        let mut moved_ns = 0;
         let mut next_ns: Vec<u64> = begins_ns.to_vec();
         let mut tick = || {
             now_ns += PERIOD_NS;

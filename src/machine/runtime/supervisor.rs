@@ -101,7 +101,8 @@ mod tests {
     #[test]
     fn a_loop_that_stands_still_loses_its_drives_once_and_one_without_drives_may_stand() {
         let pulse = Arc::new(Pulse::default());
-        let (lever, count) = (Lever::default(), Arc::new(AtomicU64::new(0)));
+        let lever = Lever::default();
+        let count = Arc::new(AtomicU64::new(0));
         let counted = Arc::clone(&count);
         lever.attach(move || {
             counted.fetch_add(1, Ordering::Relaxed);

@@ -139,7 +139,8 @@ pub fn tap() -> (Tap, TapEnd) {
     let (spare, spare_out) = bounded(TICKS_TAPPED_MAX + 1);
     let reserve = (0..TICKS_TAPPED_MAX).map(|_| Box::new(Stepped::NOTHING)).collect();
     touch(&entries, &entries_out);
-    let (offered, (file, filed)) = (Arc::<AtomicU64>::default(), unbounded());
+    let offered = Arc::<AtomicU64>::default();
+    let (file, filed) = unbounded();
     let filing = Filing { next: Arc::default(), calibrations: file };
     let tap =
         Tap { entries, spare: spare_out, reserve, kept: None, offered: Arc::clone(&offered), waits: false, filing };
@@ -186,7 +187,10 @@ impl Tap {
             self.number();
             return;
         };
-        (stepped.timing, stepped.inputs, stepped.outputs, stepped.ticks) = (*timing, *inputs, *outputs, *ticks);
+        stepped.timing = *timing;
+        stepped.inputs = *inputs;
+        stepped.outputs = *outputs;
+        stepped.ticks = *ticks;
         self.offer(Passed::Stepped(stepped));
     }
 

@@ -78,7 +78,8 @@ pub struct Handle {
 /// [`StartError::Thread`] if the operating system cannot create the thread.
 pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
     let Assembly { control, rig, roster, rate_hz, clock, scheduling, engage, tap } = assembly;
-    let (pulse, levers) = (Arc::new(Pulse::default()), rig.levers());
+    let pulse = Arc::new(Pulse::default());
+    let levers = rig.levers();
     let (commands, commands_in) = bounded(COMMANDS_WAITING_MAX);
     let (ticks_out, ticks) = bounded(TICKS_WAITING_MAX);
     let (events_out, events) = bounded(EVENTS_WAITING_MAX);
@@ -270,7 +271,8 @@ impl Realtime {
     }
 
     fn run_in_real_time(&mut self, start_ns: u64, timing: &mut Timing) {
-        let (mut deadline_ns, mut phase) = (start_ns, Phase::new(self.period_ns));
+        let mut deadline_ns = start_ns;
+        let mut phase = Phase::new(self.period_ns);
         while self.obey_commands(timing.now_s) {
             deadline_ns += self.period_ns + phase.step(self.is_late);
             os::sleep_until_ns(deadline_ns);

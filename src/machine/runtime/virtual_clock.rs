@@ -41,10 +41,12 @@ fn run(
 ) -> Summary {
     let Assembly { mut control, mut rig, rate_hz, engage, tap, .. } = assembly;
     let mut tap = tap.map(Tap::waiting);
-    let (mut times, mut supervisor) = (clock.tick_times(rate_hz), VirtualSupervisor::default());
+    let mut times = clock.tick_times(rate_hz);
+    let mut supervisor = VirtualSupervisor::default();
     // Half a period before the end: times are rounded.
     let end_s = ((seconds * rate_hz).round() - 0.5) / rate_hz;
-    let (mut meters, mut missed) = (Meters::default(), 0);
+    let mut meters = Meters::default();
+    let mut missed = 0;
     let mut command = engage.then_some(Command::Engage);
     let mut timing = Timing::default();
     let start = Instant::now();

@@ -57,7 +57,8 @@ impl Link for ProgrammedLink {
     }
 
     fn clear(&mut self) {
-        (self.sent, self.delivered) = (0, 0);
+        self.sent = 0;
+        self.delivered = 0;
     }
 
     fn send(&mut self, parcel: &Parcel) {

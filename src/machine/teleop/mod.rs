@@ -210,11 +210,13 @@ impl<L: Link> Loop<L> {
         timing: &Timing,
     ) -> ([Outputs; SIDES], [Option<Tick>; SIDES]) {
         let have_failed = self.pairs.each_ref().map(|pair| pair.as_ref().is_some_and(|pair| pair.has_failed()));
-        let (mut outputs, mut ticks) = ([Outputs::SAFE; SIDES], [None; SIDES]);
+        let mut outputs = [Outputs::SAFE; SIDES];
+        let mut ticks = [None; SIDES];
         for (i, pair) in self.pairs.iter_mut().enumerate() {
             let Some(pair) = pair else { continue };
             let (output, tick) = pair.step(have_failed[pair.side().other().index()], inputs[i], timing);
-            (outputs[i], ticks[i]) = (output, Some(tick));
+            outputs[i] = output;
+            ticks[i] = Some(tick);
         }
         (outputs, ticks)
     }

@@ -64,7 +64,8 @@ impl Ticks {
         self.early = (self.early - surplus - MOVES_PHASE).max(0.0);
         let drifts = self.late.max(self.early) > DRIFT_MAX;
         if drifts {
-            (self.late, self.early) = (0.0, 0.0);
+            self.late = 0.0;
+            self.early = 0.0;
         }
         // A tenth more for a loop that moves its phase.
         if surplus.abs() <= 1.1 && !drifts { Passed::Evenly } else { Passed::Unevenly }

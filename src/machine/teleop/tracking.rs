@@ -84,7 +84,8 @@ impl Tracking {
             self.compare(tip_m, behind);
         }
         let whole = self.lag_samples.floor();
-        let (late, later) = (self.back(whole as usize), self.back(whole as usize + 1));
+        let late = self.back(whole as usize);
+        let later = self.back(whole as usize + 1);
         late + (later - late) * (self.lag_samples - whole)
     }
 
@@ -144,7 +145,9 @@ mod tests {
     #[test]
     fn over_a_network_the_lag_is_still_the_followers_alone() {
         for behind in [1, 40, 600] {
-            let (mut tracking, lag_s, mut error_m) = (Tracking::new(1000.0), 0.021, 0.0);
+            let mut tracking = Tracking::new(1000.0);
+            let lag_s = 0.021;
+            let mut error_m = 0.0;
             for i in 0..5000 {
                 let t_s = f64::from(i) * 1e-3;
                 let seen_m = command(t_s - behind as f64 * 1e-3 - lag_s);

@@ -114,7 +114,8 @@ impl Mapping {
         for text in texts.iter().map(AsRef::as_ref) {
             let owned = || text.to_owned();
             let (name, source) = text.split_once('=').ok_or_else(|| MappingError::Form { text: owned() })?;
-            let (name, source) = (name.trim(), source.trim());
+            let name = name.trim();
+            let source = source.trim();
             let names = quantities(name);
             if names.is_empty() {
                 return Err(MappingError::Name { text: owned(), name: name.to_owned() });

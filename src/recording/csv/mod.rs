@@ -137,7 +137,8 @@ impl Recording {
             let leader = has_leader.then(|| table.column(&of_leader, "leader's motion", &cure(&leader_key)));
             columns.push((position, force, leader.transpose()?));
         }
-        let (mut samples, mut leader_m) = (Vec::new(), Vec::new());
+        let mut samples = Vec::new();
+        let mut leader_m = Vec::new();
         while table.advance()? {
             let t_s = table.number(&time)?;
             if let Some(&Sample { t_s: before_s, .. }) = samples.last()

@@ -176,8 +176,10 @@ const UPRIGHT: Quaternion = Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 };
 
 fn frames(time_ns: u64, values: &[f64; SIGNALS]) -> FrameTransforms {
     let timestamp = Some(Timestamp::of_ns(time_ns));
-    let (translation, rotation) = (Some(place(values)), Some(UPRIGHT));
-    let (parent_frame_id, child_frame_id) = ("world".into(), "left.tip".into());
+    let translation = Some(place(values));
+    let rotation = Some(UPRIGHT);
+    let parent_frame_id = "world".into();
+    let child_frame_id = "left.tip".into();
     FrameTransforms {
         transforms: vec![FrameTransform { timestamp, parent_frame_id, child_frame_id, translation, rotation }],
     }

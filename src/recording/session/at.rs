@@ -39,7 +39,8 @@ pub(super) fn write_all(file: &File, mut bytes: &[u8], mut at: u64) -> io::Resul
         if count == 0 {
             return Err(io::ErrorKind::WriteZero.into());
         }
-        (bytes, at) = (&bytes[count..], at + count as u64);
+        bytes = &bytes[count..];
+        at += count as u64;
     }
     Ok(())
 }
@@ -51,7 +52,8 @@ pub(super) fn read_exact(file: &File, mut bytes: &mut [u8], mut at: u64) -> io::
         if count == 0 {
             return Err(io::ErrorKind::UnexpectedEof.into());
         }
-        (bytes, at) = (&mut bytes[count..], at + count as u64);
+        bytes = &mut bytes[count..];
+        at += count as u64;
     }
     Ok(())
 }

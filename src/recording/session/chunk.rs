@@ -108,7 +108,8 @@ impl Chunk {
         }
         let uncompressed = self.raw.len() as u64;
         self.raw.clear();
-        let (times_ns, messages) = (self.times_ns.take(), std::mem::take(&mut self.messages));
+        let times_ns = self.times_ns.take();
+        let messages = std::mem::take(&mut self.messages);
         let compression = self.compression;
         Ok(Closed { bytes, compression, chunk, indexes, compressed, uncompressed, times_ns, messages })
     }

@@ -92,7 +92,8 @@ impl Layout {
         let mut end = Vec::new();
         format::end(&mut end, at + DATA_END as u64, 0, 0);
         layout.write(&end, footer_at)?;
-        (layout.room_end, layout.tail) = (at, tail);
+        layout.room_end = at;
+        layout.tail = tail;
         Ok(layout)
     }
 
@@ -169,7 +170,9 @@ impl Layout {
     pub(super) fn finish(mut self, summary: &mut Summary) -> io::Result<()> {
         self.reserve(0, 0, summary)?;
         let begin = self.data_end + DATA_END as u64;
-        let (mut at, mut crc, mut offsets) = (begin, crc32fast::Hasher::new(), Vec::new());
+        let mut at = begin;
+        let mut crc = crc32fast::Hasher::new();
+        let mut offsets = Vec::new();
         let mut group = |kind, from: u64, to: u64| {
             if to > from {
                 record(&mut offsets, kind::SUMMARY_OFFSET, |out| {
@@ -237,7 +240,8 @@ impl Layout {
 
     fn leave_room_up_to(&mut self, at: u64, tail: Tail, summary: &mut Summary) -> io::Result<()> {
         self.switch(&head(kind::ROOM, at - self.data_end - HEAD as u64), self.data_end)?;
-        (self.room_end, self.tail) = (at, tail);
+        self.room_end = at;
+        self.tail = tail;
         summary.is_in_file();
         Ok(())
     }
@@ -266,7 +270,9 @@ impl Layout {
         let Tail { indexes_at, statistics_at } = self.tail;
         let source = Source::File(self.file.try_clone()?, statistics_at);
         let mut walk = Walk::new(&source, indexes_at, statistics_at);
-        let (end, mut at, mut bytes) = (at + summary.indexes(), at, Vec::new());
+        let end = at + summary.indexes();
+        let mut at = at;
+        let mut bytes = Vec::new();
         while let Some(place) = walk.step()? {
             if place.kind == kind::CHUNK_INDEX {
                 bytes.extend_from_slice(&head(place.kind, place.length - HEAD as u64));

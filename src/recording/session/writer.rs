@@ -154,7 +154,8 @@ impl Writer {
         self.check("a larger schema", encoding.schema_data.len() as u64, RECORD_MAX)?;
         let id = self.channels.len() as u16;
         let known = self.schemas.iter().position(|known| same_schema(known, &encoding));
-        let (mut schema, mut channel) = (Vec::new(), Vec::new());
+        let mut schema = Vec::new();
+        let mut channel = Vec::new();
         let number = match known {
             _ if encoding.schema_encoding.is_empty() => 0,
             Some(known) => known as u16 + 1,
@@ -219,7 +220,8 @@ impl Writer {
         self.check("a larger attachment", data.len() as u64, RECORD_MAX)?;
         let mut bytes = Vec::with_capacity(data.len() + 256);
         format::attachment(&mut bytes, name, media_type, log_time_ns, data);
-        let (length, of_index) = (bytes.len() as u64, 128 + name.len() + media_type.len());
+        let length = bytes.len() as u64;
+        let of_index = 128 + name.len() + media_type.len();
         let at = self.reserve(length, of_index as u64)?;
         self.layout.append(&bytes).map_err(|error| WriteError::write(&self.path, &error))?;
         record(&mut self.summary.attachments, kind::ATTACHMENT_INDEX, |out| {

@@ -99,7 +99,8 @@ pub const KIND: &str = "ready_check";
 impl ReadyRecord {
     /// Age at `now`, s; `None` if its date is none, or later than `now` by more than a minute.
     pub fn age_s(&self, now: SystemTime) -> Option<u64> {
-        let (made_s, now_s) = (date::parse(&self.date)?, seconds(now));
+        let made_s = date::parse(&self.date)?;
+        let now_s = seconds(now);
         (made_s <= now_s + 60).then(|| now_s.saturating_sub(made_s))
     }
 

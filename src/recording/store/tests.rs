@@ -105,7 +105,8 @@ fn age_is_told_in_days() {
 fn the_calibration_before_is_kept() {
     let folder = tempfile::tempdir().unwrap();
     let store = Store::open(folder.path());
-    let (first, mut second) = (record("A1"), record("A1"));
+    let first = record("A1");
+    let mut second = record("A1");
     second.head.tool = "scissors".into();
     let path = store.save(&first).unwrap();
     store.save(&second).unwrap();

@@ -173,14 +173,16 @@ impl DataSet {
             history.columns = [find(position)?, find(load)?];
         }
         let optional = |name: &str| header.iter().position(|found| found == name);
-        let (trajectory, contact) = (optional("trajectory"), optional("contact"));
+        let trajectory = optional("trajectory");
+        let contact = optional("contact");
         if contact.is_none() {
             self.contact = None;
         }
         let file = self.files.len();
         self.files.push(path.to_owned());
         let first = self.rows();
-        let (mut start, mut last) = (first, None);
+        let mut start = first;
+        let mut last = None;
         let mut record = StringRecord::new();
         let wrong = |error: csv::Error| TipForceError::Open { path: path.to_owned(), reason: error.to_string() };
         while reader.read_record(&mut record).map_err(wrong)? {

@@ -160,7 +160,8 @@ fn member(tensors: &SafeTensors<'_>, m: usize, layers: usize) -> Result<Member, 
 }
 
 fn doubt(tensors: &SafeTensors<'_>, width: usize, limits: [f32; 3]) -> Result<Doubt, String> {
-    let (whitening, centres) = (values(tensors, "doubt.whitening")?, values(tensors, "doubt.centres")?);
+    let whitening = values(tensors, "doubt.whitening")?;
+    let centres = values(tensors, "doubt.centres")?;
     let range: Vec<[f32; 2]> = values(tensors, "doubt.range")?.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
     let fits = whitening.len() == width * width && range.len() == width && centres.len() % width.max(1) == 0;
     if !fits || centres.is_empty() || !limits.iter().all(|limit| limit.is_finite() && *limit > 0.0) {

@@ -207,7 +207,8 @@ impl Recorder {
     pub fn interrupt(&mut self) {
         self.features.reset();
         self.trajectory_ends_s = f64::NEG_INFINITY;
-        (self.tissue_zero_n, self.rest.count) = (None, 0.0);
+        self.tissue_zero_n = None;
+        self.rest.count = 0.0;
     }
 
     /// Number of rows.

@@ -88,7 +88,8 @@ fn pack_one(column: &[u64], same: Option<usize>, to: &mut Vec<u8>) {
 }
 
 fn differences(column: &[u64], way: u8) -> Vec<u64> {
-    let (mut before, mut step) = (0_u64, 0_u64);
+    let mut before = 0_u64;
+    let mut step = 0_u64;
     let mut one = |word: u64| {
         let now = word.wrapping_sub(before);
         let difference = match way {
@@ -96,14 +97,16 @@ fn differences(column: &[u64], way: u8) -> Vec<u64> {
             STEP => folded(now),
             _ => folded(now.wrapping_sub(step)),
         };
-        (before, step) = (word, now);
+        before = word;
+        step = now;
         difference
     };
     column.iter().map(|word| one(*word)).collect()
 }
 
 fn undone(mut words: Vec<u64>, way: u8) -> Vec<u64> {
-    let (mut before, mut step) = (0_u64, 0_u64);
+    let mut before = 0_u64;
+    let mut step = 0_u64;
     for word in &mut words {
         let value = match way {
             XOR => *word ^ before,
@@ -111,7 +114,8 @@ fn undone(mut words: Vec<u64>, way: u8) -> Vec<u64> {
             _ => before.wrapping_add(step.wrapping_add(unfolded(*word))),
         };
         step = value.wrapping_sub(before);
-        (before, *word) = (value, value);
+        before = value;
+        *word = value;
     }
     words
 }

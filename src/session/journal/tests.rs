@@ -342,7 +342,8 @@ fn of_an_endoscopes_marker_the_journal_keeps_how_the_picture_is_turned() {
         inputs: [Some(Inputs { view, ..Inputs::NOTHING }), None],
         check: Check { all: 0, stages: [[0; STAGES]; 2] },
     };
-    let (seen_at, seen) = (View::SeenAt { world_from_view, world_from_n }, View::Seen(world_from_view));
+    let seen_at = View::SeenAt { world_from_view, world_from_n };
+    let seen = View::Seen(world_from_view);
     let bytes = encoded(&[(Vec::new(), row(seen_at))]);
     assert_eq!(bytes, encoded(&[(Vec::new(), row(seen))]));
     let Ok((_, Message::Block(block))) = decode(&bytes) else { panic!("no block") };

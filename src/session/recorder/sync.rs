@@ -24,7 +24,8 @@ pub(crate) struct Sync {
 
 impl Sync {
     pub(crate) fn start(file: File) -> Result<Self, RecordError> {
-        let ((ends, asked), (tell, failure)) = (bounded(1), bounded(1));
+        let (ends, asked) = bounded(1);
+        let (tell, failure) = bounded(1);
         let run = move || {
             if let Err(error) = sync(&file, &asked) {
                 tell.send(error).ok();

@@ -170,7 +170,8 @@ impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Cursor<I> {
         let number = *ticks;
         *ticks += 1;
         *t_s = row.timing.now_s;
-        let (in_force, ticks) = (&*came_in_force, &*shown);
+        let in_force = &*came_in_force;
+        let ticks = &*shown;
         Ok(Some(Passed::Tick(Moment { number, row, in_force, events, outputs, ticks })))
     }
 }

@@ -145,8 +145,10 @@ struct Alone {
 }
 
 fn alone(pair: &mut Box<Pair>, rows: &[Vec<Row>], from_s: f64, other_has_failed: bool) -> Alone {
-    let (before, had_failed) = (pair.clone(), pair.has_failed());
-    let (mut lane, mut changes) = (Lane::default(), false);
+    let before = pair.clone();
+    let had_failed = pair.has_failed();
+    let mut lane = Lane::default();
+    let mut changes = false;
     for (number, row) in rows.iter().flatten().enumerate() {
         changes |= pair.has_failed() != had_failed;
         lane.step(pair, other_has_failed, number, row, from_s);

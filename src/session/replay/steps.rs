@@ -165,7 +165,8 @@ impl Open {
     }
 
     fn next(&mut self) -> Option<Step> {
-        let (passed, last) = (self.passed, self.passed == self.rows.len());
+        let passed = self.passed;
+        let last = self.passed == self.rows.len();
         if let Some((_, noted)) = self.noted.next_if(|(before, _)| last || *before <= passed) {
             return Some(step_of(noted));
         }
@@ -178,7 +179,8 @@ impl Open {
 
     /// The tick that [`Open::next`] came to and those up to the next thing that happens.
     fn run(&mut self) -> Vec<Row> {
-        let (first, last) = (self.passed.saturating_sub(1), self.rows.len());
+        let first = self.passed.saturating_sub(1);
+        let last = self.rows.len();
         let end = self.noted.peek().map_or(last, |(before, _)| (*before).clamp(self.passed, last));
         if (first, end) == (0, last) {
             self.passed = 0;

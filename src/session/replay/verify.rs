@@ -22,7 +22,8 @@ pub fn verify<I: Iterator<Item = Result<Numbered, ReplayError>>>(
     passed: impl FnMut(u64),
 ) -> Result<Outcome, ReplayError> {
     let machine = Machine::new(&journal.start().origin)?;
-    let (rows, outcome) = (Vec::new(), Outcome::default());
+    let rows = Vec::new();
+    let outcome = Outcome::default();
     let mut verifier = Verifier { machine, stretch_s, passed, rows, outcome, is_over: false };
     while let Some(part) = journal.next_part() {
         match part {
@@ -64,7 +65,8 @@ impl<F: FnMut(u64)> Verifier<'_, F> {
     }
 
     fn run(&mut self) -> Result<(), ReplayError> {
-        let (rows, from_s) = (take(&mut self.rows), self.stretch_s.start);
+        let rows = take(&mut self.rows);
+        let from_s = self.stretch_s.start;
         let Some(last) = rows.iter().flatten().last() else { return Ok(()) };
         let ran = self.machine.run(&rows, from_s)?;
         let Outcome { ticks, before, seconds, differs, .. } = &mut self.outcome;
@@ -73,8 +75,10 @@ impl<F: FnMut(u64)> Verifier<'_, F> {
         *seconds = last.timing.now_s;
         for (number, row, check) in ran.checks(&rows, from_s) {
             if check != row.check {
-                let (tick, t_s) = (begin + number as u64, row.timing.now_s);
-                (*differs, *seconds) = (Some(Differs { tick, t_s, place: check.differs(&row.check) }), t_s);
+                let tick = begin + number as u64;
+                let t_s = row.timing.now_s;
+                *differs = Some(Differs { tick, t_s, place: check.differs(&row.check) });
+                *seconds = t_s;
                 self.is_over = true;
                 return Ok(());
             }

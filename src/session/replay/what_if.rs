@@ -115,8 +115,13 @@ pub fn compare<I: Iterator<Item = Result<Numbered, ReplayError>>>(
     mut each: impl FnMut(&Tick, &Tick),
 ) -> Result<([Option<Compared>; SIDES], u64, Option<Hole>), ReplayError> {
     let origin = &journal.start().origin;
-    let (mut recorded, mut changed) = (Machine::new(origin)?, Machine::new(&change.origin(origin))?);
-    let (mut sides, mut ticks, mut before, mut hole, mut events) = ([None; SIDES], 0, 0, None, Vec::new());
+    let mut recorded = Machine::new(origin)?;
+    let mut changed = Machine::new(&change.origin(origin))?;
+    let mut sides = [None; SIDES];
+    let mut ticks = 0;
+    let mut before = 0;
+    let mut hole = None;
+    let mut events = Vec::new();
     while let Some(step) = journal.next() {
         match step? {
             Step::Operation(operation) => {
@@ -140,7 +145,8 @@ pub fn compare<I: Iterator<Item = Result<Numbered, ReplayError>>>(
                 if is_from(now_s, stretch_s.end) {
                     break;
                 }
-                let ((_, as_was), (_, as_if)) = (recorded.step(row), changed.step(row));
+                let (_, as_was) = recorded.step(row);
+                let (_, as_if) = changed.step(row);
                 recorded.take_events(&mut events);
                 changed.take_events(&mut events);
                 if !is_from(now_s, stretch_s.start) {

@@ -49,7 +49,8 @@ impl Measured {
         let figures = &mut self.figures;
         let length_n = force_n.norm();
         if length_n > figures.peak_n {
-            (figures.peak_n, figures.peak_at_s) = (length_n, t_s);
+            figures.peak_n = length_n;
+            figures.peak_at_s = t_s;
         }
         figures.samples += 1;
         figures.integral_n_s += length_n * dt_s;
@@ -101,7 +102,8 @@ mod tests {
     fn a_sine_along_each_axis_has_the_figures_of_the_books() {
         // Whole periods of 1, 2 and 3 Hz with 2, 1 and 0.5 N: standard deviations are the amplitudes over the root of two.
         let mut measured = Measured::default();
-        let (mut lengths_n, mut peak_n) = (0.0, 0.0_f64);
+        let mut lengths_n = 0.0;
+        let mut peak_n = 0.0_f64;
         for i in 0..4000 {
             let t_s = f64::from(i) * 1e-3;
             let force_n =

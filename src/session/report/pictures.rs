@@ -27,7 +27,9 @@ impl PicturesFigures {
         }
         self.longest_gap_s = self.longest_gap_s.max(t_s - self.times_s[1]);
         self.times_s[1] = t_s;
-        (self.count, self.bytes, self.dropped) = (self.count + 1, self.bytes.saturating_add(bytes), dropped);
+        self.count += 1;
+        self.bytes = self.bytes.saturating_add(bytes);
+        self.dropped = dropped;
     }
 
     /// Pictures a second; `None` with fewer than two.

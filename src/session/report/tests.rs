@@ -26,7 +26,8 @@ fn made(path: &Path) {
         let (_, names, _) = plots().into_iter().find(|(name, ..)| name == topic).unwrap();
         JointStateEncoder::new("world", &names.iter().map(String::as_str).collect::<Vec<_>>())
     };
-    let (mut force, mut gate) = (encoder("right/forces"), encoder("right/gates"));
+    let mut force = encoder("right/forces");
+    let mut gate = encoder("right/gates");
     for i in 0..10_000_u32 {
         let t_s = f64::from(i) * 1e-3;
         let time_ns = START_NS + u64::from(i) * 1_000_000;
@@ -43,7 +44,9 @@ fn made(path: &Path) {
         values[Gate::Permission.index()] = f64::from(u8::from(!(2000..8000).contains(&i)));
         values[Gate::Ceiling.index()] = f64::from(u8::from((3000..4500).contains(&i)));
         // Stored energy, withheld force, state.
-        (values[10], values[11], values[13]) = (0.1 - 1e-5 * f64::from(i), 0.25, state);
+        values[10] = 0.1 - 1e-5 * f64::from(i);
+        values[11] = 0.25;
+        values[13] = state;
         writer.message(gates, time_ns, gate.encode(time_ns, &values, &[], &[]).unwrap()).unwrap();
         if i == 8000 {
             let told =

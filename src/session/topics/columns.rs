@@ -25,7 +25,8 @@ impl Columns {
     /// For the topic of this name; `None` if it is not one of named numbers.
     pub(crate) fn of(topic: &str) -> Option<Self> {
         let (_, known, _) = plots().into_iter().find(|(name, ..)| name == topic)?;
-        let (decoder, values) = (JointStateDecoder::default(), Vec::new());
+        let decoder = JointStateDecoder::default();
+        let values = Vec::new();
         Some(Self { known, decoder, read: Vec::new(), places: None, values })
     }
 

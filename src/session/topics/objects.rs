@@ -294,7 +294,8 @@ pub(crate) fn standing_of(numbers: &[f64]) -> Option<Standing> {
     for (side, [touches, on_wire]) in Side::ALL.into_iter().zip([[right, right_on], [left, left_on]]) {
         loops[side.index()] = WireLoop { touches: touches > 0.5, on_wire: on_wire > 0.5 };
     }
-    let (ended, marks) = (ended > 0.5, Vec::new());
+    let ended = ended > 0.5;
+    let marks = Vec::new();
     Some(Standing { ended, share, marked, found, touches, passed, placed, dropped, loops, marks })
 }
 

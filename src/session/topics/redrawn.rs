@@ -27,7 +27,8 @@ pub(crate) fn frames(time_ns: u64, of: &FrameTransforms) -> FrameTransforms {
 pub(crate) fn arrows(time_ns: u64, of: &SceneUpdate) -> SceneUpdate {
     let anew = |id: String| {
         let arrows = of.entities.iter().find(|entity| entity.id == id)?.arrows.clone();
-        let (timestamp, frame_id) = (Some(Timestamp::of_ns(time_ns)), WORLD.to_owned());
+        let timestamp = Some(Timestamp::of_ns(time_ns));
+        let frame_id = WORLD.to_owned();
         Some(SceneEntity { timestamp, frame_id, id, arrows, ..SceneEntity::default() })
     };
     SceneUpdate { entities: Side::ALL.into_iter().map(name_of_arrows).filter_map(anew).collect() }

@@ -73,7 +73,8 @@ impl Scene {
         }
         self.due_s = t_s + EVERY_S;
         let timestamp = Some(Timestamp::of_ns(time_ns));
-        let (mut frames, mut scene) = (FrameTransforms::default(), SceneUpdate::default());
+        let mut frames = FrameTransforms::default();
+        let mut scene = SceneUpdate::default();
         for tick in ticks {
             if let Some(world_from_n) = tick.view.world_from_n().filter(|_| !has_endoscope(&frames)) {
                 frames.transforms.push(FrameTransform {
@@ -115,7 +116,8 @@ fn has_endoscope(frames: &FrameTransforms) -> bool {
 pub(crate) fn endoscope_of(data: &[u8]) -> Option<Isometry3<f64>> {
     let frames = FrameTransforms::decode(data).ok()?;
     let frame = frames.transforms.iter().find(|frame| frame.child_frame_id == ENDOSCOPE)?;
-    let (at, turn) = (frame.translation?, frame.rotation?);
+    let at = frame.translation?;
+    let turn = frame.rotation?;
     let turn = UnitQuaternion::try_new(nalgebra::Quaternion::new(turn.w, turn.x, turn.y, turn.z), 1e-6)?;
     let world_from_n = Isometry3::from_parts(Vector3::new(at.x, at.y, at.z).into(), turn);
     world_from_n.to_homogeneous().iter().all(|number| number.is_finite()).then_some(world_from_n)

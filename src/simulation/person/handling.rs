@@ -91,7 +91,8 @@ impl Handling {
 
     /// A random axis across the vertical, times a random angle up to `most_rad`.
     fn tilt(&mut self, most_rad: f64) -> UnitQuaternion<f64> {
-        let (angle, side) = (most_rad * self.noise.uniform().sqrt(), TAU * self.noise.uniform());
+        let angle = most_rad * self.noise.uniform().sqrt();
+        let side = TAU * self.noise.uniform();
         UnitQuaternion::from_scaled_axis(Vector3::new(side.cos(), side.sin(), 0.0) * angle)
     }
 
@@ -104,7 +105,9 @@ impl Handling {
         self.to = to;
         let turn_s = self.from.world_from_s1.angle_to(&to.world_from_s1) / TURN_RAD_S;
         let way_s = (to.tip_m - self.from.tip_m).norm() / WAY_M_S;
-        (self.way_s, self.in_way_s, self.lift_m) = (turn_s.max(way_s).max(WAY_MIN_S), 0.0, lift_m);
+        self.way_s = turn_s.max(way_s).max(WAY_MIN_S);
+        self.in_way_s = 0.0;
+        self.lift_m = lift_m;
         self.is_new = true;
     }
 
@@ -112,7 +115,8 @@ impl Handling {
     fn now(&self) -> Held {
         let s = (self.in_way_s / self.way_s.max(1e-9)).min(1.0);
         let share = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
-        let (from, to) = (&self.from, &self.to);
+        let from = &self.from;
+        let to = &self.to;
         let lift = Vector3::z() * (self.lift_m * (std::f64::consts::PI * share).sin());
         let turn = from.world_from_s1.try_slerp(&to.world_from_s1, share, 1e-9).unwrap_or(to.world_from_s1);
         Held { tip_m: from.tip_m + (to.tip_m - from.tip_m) * share + lift, world_from_s1: turn }
@@ -136,7 +140,8 @@ impl Person {
     /// Holds the tool like this where he finds it comfortable, in front of a picture that is turned like this.
     #[must_use]
     pub fn turned(mut self, world_from_s1: UnitQuaternion<f64>, world_from_view: UnitQuaternion<f64>) -> Self {
-        (self.world_from_s1, self.turn) = (world_from_s1, (world_from_s1, world_from_s1));
+        self.world_from_s1 = world_from_s1;
+        self.turn = (world_from_s1, world_from_s1);
         let noise = self.handling.noise.clone();
         self.handling = Handling { world_from_view, ..Handling::new(noise, self.tip_m, world_from_s1) };
         self
@@ -165,7 +170,8 @@ impl Person {
         self.handling.handle = Move { from_m: handle_m, to_m: handle_m, seconds: 0.0 };
         self.handling.from = Held { tip_m: self.tip_m, world_from_s1: self.world_from_s1 };
         self.handling.to = self.handling.from;
-        (self.handling.way_s, self.handling.in_way_s) = (0.0, 0.0);
+        self.handling.way_s = 0.0;
+        self.handling.in_way_s = 0.0;
         match self.prompt {
             Prompt::Touch { point } => self.touch_point(point),
             Prompt::MoveTip(way) => {
@@ -238,7 +244,8 @@ impl Person {
         if self.in_reach_s >= self.reach.seconds {
             let to_m = self.beyond(&wall_m);
             let seconds = self.between(REACH_S).max((to_m - self.tip_m).norm() / WAY_M_S);
-            (self.reach, self.in_reach_s) = (Move { from_m: self.tip_m, to_m, seconds }, 0.0);
+            self.reach = Move { from_m: self.tip_m, to_m, seconds };
+            self.in_reach_s = 0.0;
         }
         self.reach_on(0.0);
     }

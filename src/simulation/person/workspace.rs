@@ -50,7 +50,8 @@ mod tests {
             let at = Workspace::of(&scene);
             for target_m in &scene.targets_m {
                 for axis in [0, 1] {
-                    let ([low_m, high_m], drag_m) = (at.across_m[axis], scene.hand.drag_m);
+                    let [low_m, high_m] = at.across_m[axis];
+                    let drag_m = scene.hand.drag_m;
                     let inside = low_m + drag_m..=high_m - drag_m;
                     assert!(inside.contains(&target_m[axis]), "{side:?}: {target_m} is outside of {at:?}");
                 }

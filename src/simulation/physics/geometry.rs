@@ -45,10 +45,14 @@ impl Segment {
 
     /// The closest points of this and of another (Ericson, Real-Time Collision Detection, 2005, 5.1.9).
     pub(crate) fn closest_pair(&self, other: &Self) -> [Vector3<f64>; 2] {
-        let (d1, d2) = (self.to_m - self.from_m, other.to_m - other.from_m);
+        let d1 = self.to_m - self.from_m;
+        let d2 = other.to_m - other.from_m;
         let between = self.from_m - other.from_m;
-        let (a, b, e) = (d1.norm_squared(), d1.dot(&d2), d2.norm_squared());
-        let (c, f) = (d1.dot(&between), d2.dot(&between));
+        let a = d1.norm_squared();
+        let b = d1.dot(&d2);
+        let e = d2.norm_squared();
+        let c = d1.dot(&between);
+        let f = d2.dot(&between);
         let parallel = a * e - b * b;
         let share = if parallel > 1e-9 * a * e && a > 0.0 { ((b * f - c * e) / parallel).clamp(0.0, 1.0) } else { 0.5 };
         let theirs = other.closest(&self.at(share));
@@ -79,7 +83,8 @@ impl Circle {
     fn nearer(&self, ours_m: &Vector3<f64>, segment: &Segment) -> Vector3<f64> {
         let once_m = self.closest(&segment.closest(ours_m));
         let twice_m = self.closest(&segment.closest(&once_m));
-        let (first_m, second) = ((once_m - ours_m).norm(), twice_m - once_m);
+        let first_m = (once_m - ours_m).norm();
+        let second = twice_m - once_m;
         let factor = if first_m > TINY_M { (second.norm() / first_m).min(FACTOR_MOST) } else { 0.0 };
         self.closest(&(twice_m + second * (factor / (1.0 - factor))))
     }
@@ -106,7 +111,8 @@ impl Circle {
         let squares = places_m.map(|place_m| (segment.closest(&place_m) - place_m).norm_squared());
         let mut best = [None::<usize>; 2];
         for i in 0..PLACES {
-            let (before, after) = (squares[(i + PLACES - 1) % PLACES], squares[(i + 1) % PLACES]);
+            let before = squares[(i + PLACES - 1) % PLACES];
+            let after = squares[(i + 1) % PLACES];
             if squares[i] < before && squares[i] <= after {
                 let nearer = |than: Option<usize>| than.is_none_or(|than| squares[i] < squares[than]);
                 if nearer(best[0]) {
@@ -134,7 +140,8 @@ impl Circle {
 
 /// Near the lowest point of the parabola through a place and its two neighbours.
 fn between(places_m: &[Vector3<f64>; PLACES], squares: &[f64; PLACES], i: usize) -> Vector3<f64> {
-    let (before, after) = ((i + PLACES - 1) % PLACES, (i + 1) % PLACES);
+    let before = (i + PLACES - 1) % PLACES;
+    let after = (i + 1) % PLACES;
     let bend = squares[before] - 2.0 * squares[i] + squares[after];
     let share = if bend > 0.0 { 0.5 * (squares[before] - squares[after]) / bend } else { 0.0 };
     let towards = if share < 0.0 { before } else { after };
@@ -168,7 +175,8 @@ mod tests {
     fn the_nearest_place_is_that_of_a_fine_search() {
         let mut runner = proptest::test_runner::TestRunner::deterministic();
         let tested = runner.run(&(place(), place()), |(from_m, to_m)| {
-            let (circle, segment) = (circle(), Segment { from_m, to_m });
+            let circle = circle();
+            let segment = Segment { from_m, to_m };
             let fine_m = (0..7200)
                 .map(|i| {
                     let (sin, cos) = libm::sincos(f64::from(i) * std::f64::consts::TAU / 7200.0);
@@ -192,7 +200,8 @@ mod tests {
     proptest! {
         #[test]
         fn no_pair_of_points_of_two_segments_is_closer(a in place(), b in place(), c in place(), d in place()) {
-            let (one, other) = (Segment { from_m: a, to_m: b }, Segment { from_m: c, to_m: d });
+            let one = Segment { from_m: a, to_m: b };
+            let other = Segment { from_m: c, to_m: d };
             let [ours_m, theirs_m] = one.closest_pair(&other);
             let fine_m = (0..=500)
                 .map(|i| one.at(f64::from(i) / 500.0))

@@ -128,7 +128,8 @@ impl Objects {
             };
             rings.push(Ring::new(&setting.ring, centre_m, &directions));
         }
-        let (count, pegs) = (rings.len(), setting.pegs.at_m.len());
+        let count = rings.len();
+        let pegs = setting.pegs.at_m.len();
         let mut objects = Self {
             period_s,
             substeps: substeps(setting, period_s),
@@ -170,7 +171,8 @@ impl Objects {
             }
         }
         for note in &mut self.notes {
-            (note.supported, note.touched_by) = (false, [false; SIDES]);
+            note.supported = false;
+            note.touched_by = [false; SIDES];
         }
         let step_s = self.period_s / f64::from(self.substeps);
         for substep in 1..=self.substeps {
@@ -251,7 +253,8 @@ fn substeps(setting: &Setting, period_s: f64) -> u32 {
 }
 
 fn laws(setting: &Setting) -> Laws {
-    let (contact, friction) = (&setting.contact, &setting.friction);
+    let contact = &setting.contact;
+    let friction = &setting.friction;
     let stiffness_n_m = contact.ring_stiffness_n_m;
     // Half of critical for a ring between two fingers, whose rim is three times as light as the whole.
     let damping_s = (setting.ring.mass_kg / (6.0 * stiffness_n_m)).sqrt();

@@ -175,7 +175,9 @@ impl Ring {
     /// Throws it, for tests.
     #[cfg(test)]
     pub(crate) fn throw(&mut self, centre_m: Vector3<f64>, velocity_m_s: Vector3<f64>, momentum: Vector3<f64>) {
-        (self.centre_m, self.velocity_m_s, self.momentum) = (centre_m, velocity_m_s, momentum);
+        self.centre_m = centre_m;
+        self.velocity_m_s = velocity_m_s;
+        self.momentum = momentum;
         self.wake();
         self.place(&crate::physics::geometry::directions());
         self.turn();

@@ -98,25 +98,30 @@ impl Tool {
         }
         let hinge_m = |at: &Instrument| at.tip_m - at.world_from_jaws * Vector3::z() * self.jaws.finger_length_m;
         self.hinge_m_s = (hinge_m(&self.to) - hinge_m(&self.from)) / self.period_s;
-        (self.force_n, self.torque_nm, self.opening_n) = (Vector3::zeros(), Vector3::zeros(), 0.0);
+        self.force_n = Vector3::zeros();
+        self.torque_nm = Vector3::zeros();
+        self.opening_n = 0.0;
         self.touching = Touching::default();
     }
 
     /// Puts the capsules where they are at this share of the step.
     pub(crate) fn place(&mut self, share: f64) {
-        let (from, to) = (self.from.world_from_jaws.into_inner(), self.to.world_from_jaws.into_inner());
+        let from = self.from.world_from_jaws.into_inner();
+        let to = self.to.world_from_jaws.into_inner();
         let to = if from.dot(&to) < 0.0 { -to } else { to };
         let world_from_jaws = UnitQuaternion::new_normalize(from * (1.0 - share) + to * share);
         let between = |from: &Vector3<f64>, to: &Vector3<f64>| from * (1.0 - share) + to * share;
         self.tip_m = between(&self.from.tip_m, &self.to.tip_m);
-        let (x, z) = (world_from_jaws * Vector3::x(), world_from_jaws * Vector3::z());
+        let x = world_from_jaws * Vector3::x();
+        let z = world_from_jaws * Vector3::z();
         self.about = world_from_jaws * Vector3::y();
         self.hinge_m = self.tip_m - z * self.jaws.finger_length_m;
         let (sin, cos) = libm::sincos(0.5 * self.opening_rad);
         for finger in 0..SHAFT {
             let side = side_of(finger);
             // Closed fingers lie side by side: the middle of each is its radius away from the hinge.
-            let (out, along) = (x * cos - z * (side * sin), z * cos + x * (side * sin));
+            let out = x * cos - z * (side * sin);
+            let along = z * cos + x * (side * sin);
             let from_m = self.hinge_m + out * (side * self.jaws.finger_radius_m);
             self.parts[finger] = Segment { from_m, to_m: from_m + along * self.jaws.finger_length_m };
         }

@@ -52,7 +52,8 @@ impl Watch {
                     self.last = Some(side);
                 }
             }
-            let (waiting, missed) = (&mut self.waiting, &mut self.missed);
+            let waiting = &mut self.waiting;
+            let missed = &mut self.missed;
             following.look(ring, state, self.last, objects.period_s(), &mut |event| {
                 if waiting.len() < WAITING_MOST {
                     waiting.push_back(event);

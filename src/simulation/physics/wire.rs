@@ -108,7 +108,9 @@ impl Wire {
             friction: contact.friction,
             patch_radius_m: 0.0,
         };
-        let (curve, loops, states) = (setting.curve(), [None, None], [WireState::default(); SIDES]);
+        let curve = setting.curve();
+        let loops = [None, None];
+        let states = [WireState::default(); SIDES];
         Self { setting: setting.clone(), period_s, curve, law, loops, states }
     }
 
@@ -133,7 +135,8 @@ impl Wire {
         let mut loads = [Loads::default(); SIDES];
         for side in 0..SIDES {
             let Some(at) = instruments[side].filter(Instrument::is_sane) else {
-                (self.loops[side], self.states[side]) = (None, WireState::default());
+                self.loops[side] = None;
+                self.states[side] = WireState::default();
                 continue;
             };
             let circle = self.setting.hoop.circle(&at);
@@ -153,7 +156,8 @@ impl Wire {
         let both_m = self.setting.radius_m + self.setting.hoop.tube_radius_m;
         let found = self.curve.near(&held.circle, both_m);
         held.through_m = self.through_m(held, &found, both_m);
-        let (mut loads, mut state) = (Loads::default(), WireState { along_m: held.through_m, ..WireState::default() });
+        let mut loads = Loads::default();
+        let mut state = WireState { along_m: held.through_m, ..WireState::default() };
         let outside = held.through_m.filter(|along_m| {
             let beyond_m = held.off_axis_m(&self.curve.at(*along_m)) - held.circle.radius_m;
             beyond_m > 0.0
@@ -191,7 +195,8 @@ impl Wire {
 
     /// The lowest point of the loop on the board.
     fn on_board(&self, held: &mut Loop, loads: &mut Loads) {
-        let (Circle { centre_m, axis, radius_m, .. }, board) = (held.circle, &self.setting.board);
+        let Circle { centre_m, axis, radius_m, .. } = held.circle;
+        let board = &self.setting.board;
         let down = -Vector3::z() + axis * axis.z;
         let (lowest, _) = unit_or(&down, &Vector3::zeros());
         let at_m = centre_m + lowest * radius_m - Vector3::z() * self.setting.hoop.tube_radius_m;

@@ -25,7 +25,8 @@ pub(super) struct Palpation {
 impl Palpation {
     /// Of this scene; `None` if nobody looks for lumps in it.
     pub(super) fn of(scene: &Scene) -> Option<Self> {
-        let (tissue, task) = (scene.tissue?, scene.task.as_ref()?);
+        let tissue = scene.tissue?;
+        let task = scene.task.as_ref()?;
         let lumps = scene.placed_lumps().filter(|_| scene.is_searched())?.list;
         Some(Self {
             found: vec![false; lumps.len()],
@@ -42,7 +43,9 @@ impl Palpation {
     /// The trial begins anew.
     pub(super) fn begin(&mut self) {
         self.found.fill(false);
-        (self.marks, self.marked, self.ended) = ([None; MARKS_MAX], 0, false);
+        self.marks = [None; MARKS_MAX];
+        self.marked = 0;
+        self.ended = false;
     }
 
     /// Marks the place under a tip; beside the tissue there is none. The last lump that is found ends the trial.

@@ -12,13 +12,15 @@ const STEPS_MAX: u32 = 60;
 pub(super) fn force_n(layers: &[Layer], depth_m: f64) -> f64 {
     // Each layer alone would be the stiffest answer: the softest of them bounds the force.
     let alone_n = |layer: &Layer| layer.stiffness * depth_m.powf(layer.exponent);
-    let (mut low_n, mut high_n) = (0.0, layers.iter().map(alone_n).fold(f64::INFINITY, f64::min));
+    let mut low_n = 0.0;
+    let mut high_n = layers.iter().map(alone_n).fold(f64::INFINITY, f64::min);
     if !(high_n > 0.0 && high_n.is_finite()) {
         return 0.0;
     }
     let mut force_n = high_n / layers.len() as f64;
     for _ in 0..STEPS_MAX {
-        let (mut given_m, mut slope_m_n) = (0.0, 0.0);
+        let mut given_m = 0.0;
+        let mut slope_m_n = 0.0;
         for layer in layers {
             let by_m = (force_n / layer.stiffness).powf(1.0 / layer.exponent);
             given_m += by_m;

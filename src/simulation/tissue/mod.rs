@@ -163,7 +163,8 @@ mod tests {
     fn over_a_hidden_lump_the_force_is_that_of_the_law_and_fades_while_it_is_held() {
         let scene = Scene::load("lumps").unwrap();
         let config = scene.tissue.unwrap();
-        let (lumps, relaxation) = (scene.lumps.clone().unwrap(), scene.relaxation.unwrap());
+        let lumps = scene.lumps.clone().unwrap();
+        let relaxation = scene.relaxation.unwrap();
         for lump in &lumps.list {
             let mut tissue = Tissue::of(&scene, 1e-3).unwrap();
             let [x_m, y_m] = lump.at_m;
@@ -181,7 +182,8 @@ mod tests {
     #[test]
     fn what_a_scene_does_not_list_changes_nothing() {
         let scene = Scene::load("peg_transfer").unwrap();
-        let (mut plain, mut of_scene) = (Tissue::new(scene.tissue.unwrap()), Tissue::of(&scene, 1e-3).unwrap());
+        let mut plain = Tissue::new(scene.tissue.unwrap());
+        let mut of_scene = Tissue::of(&scene, 1e-3).unwrap();
         for i in 0..2000 {
             let t_s = f64::from(i) * 1e-3;
             let tip_m = Vector3::new(0.01 * t_s, 0.0, 0.005 * (5.0 * t_s).cos());

@@ -86,8 +86,10 @@ mod tests {
 
     #[test]
     fn steps_of_unequal_length_relax_as_equal_ones() {
-        let (mut even, mut uneven) = (Relaxing::new(CONFIG, STEP_S), Relaxing::new(CONFIG, STEP_S));
-        let (mut t_s, mut forces_n) = (0.0, [0.0; 2]);
+        let mut even = Relaxing::new(CONFIG, STEP_S);
+        let mut uneven = Relaxing::new(CONFIG, STEP_S);
+        let mut t_s = 0.0;
+        let mut forces_n = [0.0; 2];
         for i in 0..1000_u32 {
             // Every tenth step is 4 ms late, and the next one comes 0.5 ms after it.
             for step_s in if i % 10 == 0 { [5e-3, 0.5e-3] } else { [STEP_S; 2] } {
@@ -105,7 +107,8 @@ mod tests {
     #[test]
     fn it_takes_energy_in_every_cycle_and_never_pulls() {
         let mut tissue = Relaxing::new(CONFIG, STEP_S);
-        let (mut work_j, mut before_m) = (0.0, 0.0);
+        let mut work_j = 0.0;
+        let mut before_m = 0.0;
         for i in 0..20_000 {
             let depth_m = 0.005 * (1.0 - (f64::from(i) * 0.004).cos());
             let force_n = tissue.step(500.0 * depth_m);

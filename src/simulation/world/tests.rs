@@ -54,7 +54,10 @@ fn free_motion_measures_noise_only() {
 #[test]
 fn without_a_listed_part_the_part_is_ideal() {
     let mut scene = Scene::load("peg_transfer").unwrap();
-    (scene.tissue, scene.leader, scene.follower, scene.sensor) = (None, None, None, None);
+    scene.tissue = None;
+    scene.leader = None;
+    scene.follower = None;
+    scene.sensor = None;
     let inputs = run(&scene, 5.0);
     assert!(inputs.iter().all(|i| force_n(i) == Vector3::zeros()));
     assert!(inputs.windows(2).all(|pair| pair[1].tip_m == pair[0].hand.position_m));
@@ -70,7 +73,9 @@ fn a_force_on_the_hand_moves_it_and_a_poisoned_one_does_not() {
         }
         world.hand().position_m()
     };
-    let (still, up, poisoned) = (pushed(Vector3::zeros()), pushed(Vector3::z() * 4.0), pushed(Vector3::z() * f64::NAN));
+    let still = pushed(Vector3::zeros());
+    let up = pushed(Vector3::z() * 4.0);
+    let poisoned = pushed(Vector3::z() * f64::NAN);
     assert!((up.z - still.z) > 0.003, "{}", up.z - still.z);
     assert_eq!(poisoned, still);
 }
@@ -117,7 +122,8 @@ fn a_pause_of_100_ms_takes_the_hand_100_ms_further() {
         });
         world.hand().position_m()
     };
-    let (without, with) = (after(&mut (0..=250)), after(&mut (0..=150).chain([250])));
+    let without = after(&mut (0..=250));
+    let with = after(&mut (0..=150).chain([250]));
     assert!((with - without).norm() < 1e-9, "{without} {with}");
     assert!((after(&mut (0..=150)) - without).norm() > 5e-3, "it moves meanwhile");
 }

@@ -64,7 +64,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let program = std::env::current_exe().context("cannot find the path of this program")?;
         return output::line(&rules::install_command(&program.to_string_lossy()));
     }
-    let (mut probes, mut emulated) = (Vec::new(), None);
+    let mut probes = Vec::new();
+    let mut emulated = None;
     for text in &arguments.probe {
         probes.push(probe_named(text).map_err(|trouble| anyhow::anyhow!("{trouble}"))?);
     }
@@ -96,7 +97,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 /// An error if a device has a problem: whoever asks from a script must learn of it.
 fn end(report: &Report) -> anyhow::Result<()> {
-    let (troubled, all) = (report.devices.iter().filter(|device| is_trouble(device)).count(), report.devices.len());
+    let troubled = report.devices.iter().filter(|device| is_trouble(device)).count();
+    let all = report.devices.len();
     if troubled > 0 {
         bail!("{troubled} of {all} devices cannot be used; the cause and what to do stand beside each");
     }
@@ -110,7 +112,8 @@ const fn is_trouble(device: &Diagnosis) -> bool {
 /// Formats rows in columns as wide as their widest entry.
 fn table(text: &mut String, rows: &[[String; 3]]) {
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let (first, second) = (width(0), width(1));
+    let first = width(0);
+    let second = width(1);
     for [a, b, c] in rows {
         writeln!(text, "{}", format!("  {a:first$}  {b:second$}  {c}").trim_end()).ok();
     }

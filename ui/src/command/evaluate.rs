@@ -94,7 +94,8 @@ fn regression(figures: &Evaluation, data: &DataSet) -> String {
         let (low, high) =
             points.iter().flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
         let room = 0.05 * (high - low).max(1e-9);
-        let (low, high) = (low - room, high + room);
+        let low = low - room;
+        let high = high + room;
         Chart {
             title: figures.outputs[k].clone(),
             x: Axis::linear("measured", low, high),

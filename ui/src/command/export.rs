@@ -134,7 +134,8 @@ impl From<PlottedError> for Failed {
 fn table(reader: &Reader, times_ns: Range<u64>, arguments: &Arguments, leave: &Leave) -> anyhow::Result<()> {
     let Arguments { session, out, arm, .. } = arguments;
     let arm = plotted::arm(reader, session, *arm)?;
-    let (mut rows, mut trouble) = (0_u64, None);
+    let mut rows = 0_u64;
+    let mut trouble = None;
     let written = write_atomically(out, |file| {
         writeln!(file, "{HEADER}")?;
         let filled = plotted::each_tick(reader, session, arm, times_ns, |tick| {
@@ -232,7 +233,8 @@ mod tests {
 
     #[test]
     fn a_force_that_is_not_known_has_empty_fields() {
-        let (known, unknown) = (Vector3::new(0.0, 0.5, -1.0), Vector3::repeat(f64::NAN));
+        let known = Vector3::new(0.0, 0.5, -1.0);
+        let unknown = Vector3::repeat(f64::NAN);
         let tick = PlottedTick {
             time_ns: 7,
             t_s: 0.25,

@@ -115,7 +115,8 @@ struct Missing {
 fn once_more(journal: Opened, session: &Path, stretch_s: &Range<f64>, json: bool) -> anyhow::Result<()> {
     let journal = journal.with_context(|| session.display().to_string())?;
     let start = journal.start().clone();
-    let (begin, mut read) = (Instant::now(), 0);
+    let begin = Instant::now();
+    let mut read = 0;
     let outcome = verify(journal, stretch_s, |ticks| read = ticks);
     let outcome = outcome.with_context(|| format!("{} ({read} ticks before were replayed)", session.display()))?;
     let took_s = begin.elapsed().as_secs_f64();

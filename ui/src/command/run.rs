@@ -179,7 +179,8 @@ pub(crate) fn run_with(
             plan.scene.name
         );
     }
-    let (servers, reel) = (arguments.watching.start()?, Reel::default());
+    let servers = arguments.watching.start()?;
+    let reel = Reel::default();
     let to = Destination { file: arguments.record.as_deref(), audiences: servers.audiences(&plan, &reel) };
     let pictures = (&reel, servers.show_pictures());
     let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock(), arguments.seconds, pictures)?;
@@ -330,7 +331,8 @@ fn on_the_real_clock(
     while handle.is_running() && !leave.is_asked() && end.is_none_or(|end| Instant::now() < end) {
         let rest = end.map_or(Duration::MAX, |end| end.saturating_duration_since(Instant::now()));
         thread::sleep(rest.min(Duration::from_millis(50)));
-        let (mut newest, mut command) = (None, None);
+        let mut newest = None;
+        let mut command = None;
         let seen_s = truth::now_s();
         handle.drain_ticks(|tick| {
             newest = Some(*tick);

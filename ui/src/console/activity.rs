@@ -33,10 +33,12 @@ impl Usual {
         if block.count == 0 {
             return 0.0;
         }
-        let (mean, noise) = (block.mean, block.deviation());
+        let mean = block.mean;
+        let noise = block.deviation();
         self.blocks += 1;
         if self.blocks <= LEARNING {
-            (self.mean, self.noise) = (mean, if self.blocks == 1 { noise } else { self.noise.min(noise) });
+            self.mean = mean;
+            self.noise = if self.blocks == 1 { noise } else { self.noise.min(noise) };
             return 0.0;
         }
         let apart = (mean - self.mean).abs() / (least + APART * self.noise);

@@ -228,9 +228,12 @@ impl ConsoleApp {
         let Some(door) = &self.door else { return };
         self.taken = Instant::now();
         let rate_hz = self.live.rig.rate_hz;
-        let (wizards, in_force, diary) = (&mut self.wizards, &mut self.in_force, &mut self.diary);
+        let wizards = &mut self.wizards;
+        let in_force = &mut self.in_force;
+        let diary = &mut self.diary;
         let eyes = &mut self.panels.eyes;
-        let (calibrated, mut check) = (in_force.side(), self.checking.run_mut());
+        let calibrated = in_force.side();
+        let mut check = self.checking.run_mut();
         let mut run = self.page.as_mut().and_then(|page| page.run_mut());
         self.live.take_in(door, |news| {
             if let Some(check) = &mut check {
@@ -320,7 +323,8 @@ impl ConsoleApp {
     fn layout(&mut self, ui: &mut Ui) {
         let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
-            let (calibrating, before) = (self.is_calibrating(), self.role());
+            let calibrating = self.is_calibrating();
+            let before = self.role();
             self.live.engage_closed = match self.may(Action::Engage) {
                 Reach::Cannot(why) => Some(why),
                 Reach::Can | Reach::Absent => None,
@@ -331,7 +335,9 @@ impl ConsoleApp {
             self.top_bar.can_undo = [self.history.can_undo(), self.history.can_redo()];
             self.sessions.look_after();
             self.top_bar.recorded = self.sessions.shown();
-            let (live, bar, settings) = (&self.live, &mut self.top_bar, &mut self.settings.now);
+            let live = &self.live;
+            let bar = &mut self.top_bar;
+            let settings = &mut self.settings.now;
             top_bar_ui(ui, live, bar, &mut self.outbox, settings, calibrating);
             let chosen = (self.role() != before).then_some(Action::View(self.role()));
             if let Some(action) = self.top_bar.wanted.take().or(chosen) {

@@ -107,7 +107,8 @@ mod tests {
 
     #[test]
     fn the_ellipsoid_is_where_the_errors_are_and_holds_nineteen_in_twenty() {
-        let (mean_n, deviations_n) = (Vector3::new(0.1, -0.2, 0.3), Vector3::new(0.05, 0.1, 0.4));
+        let mean_n = Vector3::new(0.1, -0.2, 0.3);
+        let deviations_n = Vector3::new(0.05, 0.1, 0.4);
         let ellipsoid = cloud(mean_n, deviations_n).ellipsoid().unwrap();
         assert!((ellipsoid.mean_n - mean_n).norm() < 0.08, "{}", ellipsoid.mean_n);
         assert!((0.91..=0.98).contains(&ellipsoid.holds), "{}", ellipsoid.holds);

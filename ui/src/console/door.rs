@@ -283,7 +283,8 @@ mod tests {
 
     /// A loop at rest, its connection, and a channel that reports when the window is woken.
     fn at_rest() -> (Door, mpsc::Receiver<()>) {
-        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
+        let rig = RigConfig::load("simulated").unwrap();
+        let scene = Scene::load("peg_transfer").unwrap();
         let calibrations = Default::default();
         let handle = start(&Plan { rig, scene, calibrations, engage: false }).unwrap();
         let (woken, wakes) = mpsc::channel();
@@ -291,7 +292,8 @@ mod tests {
     }
 
     fn wait_for(door: &Door, good: impl Fn(&Tick) -> bool) -> Vec<Tick> {
-        let (began, mut ticks) = (Instant::now(), Vec::new());
+        let began = Instant::now();
+        let mut ticks = Vec::new();
         while !ticks.last().is_some_and(&good) {
             assert!(began.elapsed() < Duration::from_mins(2));
             thread::sleep(Duration::from_millis(5));
@@ -343,7 +345,8 @@ mod tests {
         let noisy: Vec<Tick> = (0..40)
             .map(|i| {
                 let mut noisy = tick;
-                (noisy.index, noisy.wake_s) = (tick.index + i, 1e-3);
+                noisy.index = tick.index + i;
+                noisy.wake_s = 1e-3;
                 noisy.measured_n = tick.measured_n.add_scalar(if i % 2 == 0 { 0.2 } else { -0.2 });
                 noisy
             })

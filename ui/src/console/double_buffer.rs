@@ -35,7 +35,8 @@ mod tests {
 
     #[test]
     fn what_was_shown_before_is_not_written() {
-        let (ctx, mut buffer) = (Context::default(), DoubleBuffer::default());
+        let ctx = Context::default();
+        let mut buffer = DoubleBuffer::default();
         let picture = Picture { size_px: [1, 1], rgba: vec![255; 4] };
         assert_eq!(buffer.id(), None);
         let ids = [(); 4].map(|()| {

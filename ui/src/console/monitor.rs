@@ -139,7 +139,8 @@ impl Monitor {
             match heard {
                 Heard::Runs(rig, scene) => {
                     self.live = Some(Box::new(Live::of_elsewhere(*rig, *scene)));
-                    (self.trouble, self.heard) = (None, Instant::now());
+                    self.trouble = None;
+                    self.heard = Instant::now();
                 }
                 Heard::Rests => (self.live, self.trouble) = (None, Some(text::monitor::RESTS.get().to_owned())),
                 Heard::Trouble(why) => self.trouble = Some(why),
@@ -149,7 +150,8 @@ impl Monitor {
                         live.replay(events.iter(), &ticks);
                         live.show_newer_objects(objects);
                     }
-                    (self.trouble, self.heard) = (None, Instant::now());
+                    self.trouble = None;
+                    self.heard = Instant::now();
                 }
             }
         }

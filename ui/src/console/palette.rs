@@ -69,7 +69,8 @@ impl Palette {
             let edit = ui.add(edit.desired_width(f32::INFINITY).font(theme::regular(16.0)));
             ctx.accesskit_node_builder(edit.id, |node| node.set_label(SEARCH.get()));
             if edit.changed() {
-                (search.at, search.asked) = (None, None);
+                search.at = None;
+                search.asked = None;
             }
             edit.request_focus();
             let found = found(&search.words, rows);
@@ -108,7 +109,8 @@ impl Keys {
     fn take(ctx: &Context) -> Self {
         ctx.input_mut(|input| {
             let mut pressed = |key| input.consume_key(egui::Modifiers::NONE, key);
-            let (up, down) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown));
+            let up = pressed(Key::ArrowUp);
+            let down = pressed(Key::ArrowDown);
             Self { by: isize::from(down) - isize::from(up), enter: pressed(Key::Enter) }
         })
     }

@@ -79,7 +79,8 @@ impl Photographer {
     /// stopped.
     pub(super) fn step(&mut self, ctx: &egui::Context, live: &Live, settings: &mut Settings) -> bool {
         let Some((name, role, front, light)) = SHOTS.get(self.next) else { return self.since.elapsed() > LAST };
-        (settings.role, settings.light) = (*role, *light);
+        settings.role = *role;
+        settings.light = *light;
         settings.layout = Layout { front: front.iter().copied().collect(), ..Layout::default() };
         let least = if self.next == 0 { FILLED } else { SETTLED };
         let shown = self.since.elapsed();

@@ -101,7 +101,10 @@ impl Sessions {
     /// Records into the folder `sessions` of the user's data folder; lets those of these servers watch.
     pub(crate) fn of_user(data_folder: Option<&Path>, servers: Servers) -> Self {
         let shelf = data_folder.map(|folder| Shelf::new(folder.join("sessions"), MOST_BYTES));
-        let (now, trouble, looked, full_in) = (None, None, None, None);
+        let now = None;
+        let trouble = None;
+        let looked = None;
+        let full_in = None;
         Self { shelf, servers, now, trouble, looked, full_in, rests: false, reel: Reel::default() }
     }
 
@@ -285,7 +288,8 @@ mod tests {
     use super::*;
 
     fn plan() -> Plan {
-        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
+        let rig = RigConfig::load("simulated").unwrap();
+        let scene = Scene::load("peg_transfer").unwrap();
         Plan { rig, scene, calibrations: Default::default(), engage: true }
     }
 
@@ -340,7 +344,8 @@ mod tests {
         let handle = start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap();
         // However short it is, it is not deleted.
         sessions.toggle_kept();
-        let (mut marks_s, mut log) = (VecDeque::new(), AlarmLog::default());
+        let mut marks_s = VecDeque::new();
+        let mut log = AlarmLog::default();
         let began = Instant::now();
         let newest_s = || {
             let mut newest_s = None;

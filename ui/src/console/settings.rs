@@ -67,7 +67,8 @@ pub struct PictureSettings {
 
 impl Default for PictureSettings {
     fn default() -> Self {
-        let (contrast_percent, gamma_percent) = (100, 100);
+        let contrast_percent = 100;
+        let gamma_percent = 100;
         Self { brightness_percent: 0, contrast_percent, gamma_percent, crop_percent: [0; 4], forces_of_now: false }
     }
 }

@@ -46,7 +46,8 @@ impl ContactStiffness {
             return;
         }
         let share = dt_s / self.weight_s;
-        let (way, force) = (tip_m - self.way_m, force_n - self.force_n);
+        let way = tip_m - self.way_m;
+        let force = force_n - self.force_n;
         self.way_m += share * way;
         self.force_n += share * force;
         let keep = 1.0 - share;

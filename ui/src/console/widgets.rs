@@ -165,7 +165,9 @@ pub fn sign_ui(ui: &mut Ui, what: Sign, radius: f32, colour: Color32) -> Respons
 /// The symbol of a force beside its name: a line with a cone, or a beaded line with a double cone.
 pub fn force_sign(painter: &Painter, palette: &theme::Palette, rect: Rect, rendered: bool) {
     let colour = if rendered { palette.rendered } else { palette.measured };
-    let (y, left, right) = (rect.center().y, rect.left(), rect.right());
+    let y = rect.center().y;
+    let left = rect.left();
+    let right = rect.right();
     let cone = |tip: f32| {
         let points = vec![pos2(tip, y), pos2(tip - 9.0, y - 5.0), pos2(tip - 9.0, y + 5.0)];
         painter.add(egui::Shape::convex_polygon(points, colour, Stroke::NONE));

@@ -158,7 +158,8 @@ pub(super) fn forces(session: &Figures, arm: &ArmFigures) -> String {
     let names = [("measured", COLOURS[4]), ("delayed", COLOURS[3]), ("rendered", COLOURS[0])];
     let mut out = begin(3.0 * PLOT + 20.0, &format!("Forces of the {} arm over time", arm.side));
     for (i, (trace, (name, colour))) in arm.traces.iter().zip(names).enumerate() {
-        let (top, bottom) = (PLOT * i as f64 + 20.0, PLOT * (i + 1) as f64 - 6.0);
+        let top = PLOT * i as f64 + 20.0;
+        let bottom = PLOT * (i + 1) as f64 - 6.0;
         let up = |force_n: f64| bottom - force_n / (1.05 * largest_n) * (bottom - top);
         let step_n = step(largest_n, 4.0);
         let decimals = (-step_n.log10().floor()).max(0.0) as usize;
@@ -180,7 +181,8 @@ pub(super) fn forces(session: &Figures, arm: &ArmFigures) -> String {
         for (bucket, range) in trace.buckets.iter().enumerate() {
             let Some([least_n, most_n]) = range else { continue };
             let x = across((bucket as f64 + 0.5) * trace.step_s, session.length_s);
-            let (high, low) = (up(*most_n), up(*least_n));
+            let high = up(*most_n);
+            let low = up(*least_n);
             write!(path, "M{x:.1} {:.1}V{:.1}", high - 0.6, low + 0.6).ok();
         }
         writeln!(out, "<path d=\"{path}\" stroke=\"{colour}\" stroke-width=\"1.7\" fill=\"none\"/>").ok();

@@ -71,7 +71,8 @@ mod tests {
     fn the_names_stand_in_the_order_of_the_roster() {
         for name in ["emulated", "paper", "desk"] {
             let rig = RigConfig::load(name).unwrap();
-            let (names, scene) = (rig.device_names(), Scene::load("bimanual").unwrap());
+            let names = rig.device_names();
+            let scene = Scene::load("bimanual").unwrap();
             let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
             let roster = plan.assembly().unwrap().roster;
             assert_eq!(names.len(), roster.len(), "{name}: {names:?}");

@@ -210,7 +210,8 @@ fn no_name_and_no_date_is_left_and_every_force_is() {
     planted(&session, &full);
     assert_eq!(found(&all_bytes(&full)).len(), PLANTED.len() + 3, "all of them are in the session");
 
-    let (out, part) = (at("a.mcap"), at("b.mcap"));
+    let out = at("a.mcap");
+    let part = at("b.mcap");
     let text = |path: &Path| path.display().to_string();
     let exported = elsewhere(&["export", &text(&full), "--out", &text(&out), "--anonymous"]).output().unwrap();
     assert!(exported.status.success(), "{}", String::from_utf8_lossy(&exported.stderr));
@@ -266,7 +267,10 @@ fn an_anonymous_session_has_a_report_and_a_table_and_can_be_cut_again() {
     let folder = tempfile::tempdir().unwrap();
     let session = recorded(folder.path());
     let at = |name: &str| folder.path().join(name).display().to_string();
-    let (out, again, one, both) = (at("a.mcap"), at("again.mcap"), at("one.csv"), at("both.csv"));
+    let out = at("a.mcap");
+    let again = at("again.mcap");
+    let one = at("one.csv");
+    let both = at("both.csv");
     refused(&["export", &session, "--out", &one, "--arm", "left", "--anonymous"], "--anonymous is for a session");
     done(&["export", &session, "--out", &out, "--anonymous", "--from", "0.5"]);
     done(&["export", &out, "--out", &again, "--from", "1"]);

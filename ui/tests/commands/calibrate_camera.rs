@@ -26,7 +26,8 @@ fn lens() -> Lens {
 /// A folder with pictures of a board that is held at these poses of the emulator.
 fn pictures(folder: &Path, poses: impl Iterator<Item = u32>) {
     let board = Board::new([9, 6], 0.01).unwrap();
-    let (portrait, mut hands) = (Portrait::new(&lens()), held(board, &lens()));
+    let portrait = Portrait::new(&lens());
+    let mut hands = held(board, &lens());
     for number in poses {
         let greys = portrait.draw(&board, &hands(2.2 * f64::from(number) + 0.5));
         let rgb: Vec<u8> = greys.iter().flat_map(|grey| [*grey as u8; 3]).collect();
@@ -44,7 +45,8 @@ fn a_folder_of_pictures_gives_the_lens_and_changes_the_rig_file() {
     let mut file = RigFile::of("simulated").unwrap();
     file.set("endoscope.url", "http://127.0.0.1:1/");
     file.save(&rig).unwrap();
-    let (from, to) = (folder.path().to_str().unwrap(), rig.to_str().unwrap());
+    let from = folder.path().to_str().unwrap();
+    let to = rig.to_str().unwrap();
     let output = nima(&["calibrate", "camera", from, "--square-mm", "10", "--out", to, "--json"]);
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success() && told.contains("99.jpg: no board is seen"), "{told}");

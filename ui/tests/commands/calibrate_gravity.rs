@@ -14,7 +14,8 @@ fn poses(folder: &Path, count: usize, sign: f64) -> String {
     let mut text = String::from("fx_n,fy_n,fz_n,ax,ay,az\n");
     for i in 0..count {
         let z = 1.0 - (2.0 * i as f64 + 1.0) / count as f64;
-        let (r, turn) = ((1.0 - z * z).sqrt(), 2.4 * i as f64);
+        let r = (1.0 - z * z).sqrt();
+        let turn = 2.4 * i as f64;
         let down = [r * turn.cos(), r * turn.sin(), z].map(|d| d * 9.80665);
         let [fx, fy, fz] = down.map(|d| 0.4 * d + 1.0);
         let [ax, ay, az] = down.map(|d| -d * sign);
@@ -35,7 +36,8 @@ fn refused(arguments: &[&str], words: &str) {
 #[test]
 fn good_poses_are_accepted_and_written() {
     let folder = tempfile::tempdir().unwrap();
-    let (file, out) = (poses(folder.path(), 12, 1.0), folder.path().join("g.toml"));
+    let file = poses(folder.path(), 12, 1.0);
+    let out = folder.path().join("g.toml");
     let output = nima(&[&file, "--json", "--sensor", "FT1", "--out", out.to_str().unwrap()]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -48,7 +50,8 @@ fn good_poses_are_accepted_and_written() {
 #[test]
 fn a_wrong_sign_is_named_and_written_only_under_a_name() {
     let folder = tempfile::tempdir().unwrap();
-    let (file, out) = (poses(folder.path(), 12, -1.0), folder.path().join("g.toml"));
+    let file = poses(folder.path(), 12, -1.0);
+    let out = folder.path().join("g.toml");
     let out = out.to_str().unwrap();
     refused(&[&file, "--out", out], "Poor data: the accelerometer reads opposite");
     assert!(!Path::new(out).exists());

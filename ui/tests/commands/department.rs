@@ -97,7 +97,8 @@ mod engine {
         assert_eq!(files.len(), 1, "{files:?}");
         let replay =
             |path: &str| -> Value { serde_json::from_str(&ran(&teacher, &["replay", path, "--json"])).unwrap() };
-        let (here, there) = (replay(&files[0].display().to_string()), replay(&original));
+        let here = replay(&files[0].display().to_string());
+        let there = replay(&original);
         assert_eq!(
             (&here["identical"], &here["closed"], &here["ticks"]),
             (&true.into(), &true.into(), &there["ticks"])

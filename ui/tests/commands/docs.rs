@@ -95,7 +95,8 @@ fn every_command_and_flag_in_the_pages_exists() {
         };
         helps.entry(words.to_vec()).or_insert_with(run).clone()
     };
-    let (mut wrong, mut seen) = (Vec::new(), 0);
+    let mut wrong = Vec::new();
+    let mut seen = 0;
     for (page, text) in pages() {
         for command in commands(&text) {
             let words: Vec<String> = command.split_whitespace().skip(1).map(str::to_owned).collect();

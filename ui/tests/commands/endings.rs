@@ -166,7 +166,8 @@ fn ended_by(signal: &str) -> Option<Output> {
     }
     run.signal(signal);
     let status = run.ended();
-    let (mut stdout, mut stderr) = (Vec::new(), Vec::new());
+    let mut stdout = Vec::new();
+    let mut stderr = Vec::new();
     run.0.stdout.take().unwrap().read_to_end(&mut stdout).unwrap();
     told.read_to_end(&mut stderr).unwrap();
     Some(Output { status, stdout, stderr })
@@ -178,7 +179,8 @@ fn whatever_signal_ends_a_run_its_figures_are_printed() {
     judged(|| {
         for signal in ["-TERM", "-HUP", "-INT"] {
             let Some(output) = ended_by(signal) else { too_busy() };
-            let (figures, told) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+            let figures = String::from_utf8_lossy(&output.stdout);
+            let told = String::from_utf8_lossy(&output.stderr);
             assert!(output.status.success(), "{signal}: {} {told}", output.status);
             assert!(figures.contains("right arm ended: Engaged") && figures.contains("work us"), "{signal}: {figures}");
             assert!(told.contains("nima: ended as asked: force and drives are off"), "{signal}: {told}");
@@ -277,7 +279,8 @@ fn stand_in(path: &Path, text: &str) {
 #[test]
 fn options_without_a_subcommand_reach_the_console_or_the_run_that_stands_for_it() {
     let folder = tempfile::tempdir().unwrap();
-    let (bin, release) = (folder.path().join("bin"), folder.path().join("target/release"));
+    let bin = folder.path().join("bin");
+    let release = folder.path().join("target/release");
     fs::create_dir_all(&bin).unwrap();
     fs::create_dir_all(&release).unwrap();
     for (name, text) in [("cargo", ""), ("dpkg-query", "echo installed"), ("apt-get", "exit 1"), ("sudo", "exit 1")] {

@@ -128,7 +128,9 @@ fn a_real_recording_is_identified_better_than_held_and_literal_is_shown_as_it_is
             "--json",
         ])
     };
-    let (anchored, literal, dfr) = (with("anchored"), with("literal"), with("dfr"));
+    let anchored = with("anchored");
+    let literal = with("literal");
+    let dfr = with("dfr");
     let mae = |figures: &Value, what: &str| figures[what]["mae"].as_f64().unwrap();
     assert!(mae(&anchored, "error") < mae(&anchored, "hold"));
     assert!((mae(&dfr, "error") - mae(&dfr, "hold")).abs() < 1e-12);
@@ -179,7 +181,8 @@ fn cutting_the_tail_never_changes_earlier_rows() {
             ]);
             std::fs::read_to_string(out).unwrap()
         };
-        let (whole, cut) = (trace(&whole, "a.csv"), trace(&cut, "b.csv"));
+        let whole = trace(&whole, "a.csv");
+        let cut = trace(&cut, "b.csv");
         assert_eq!(cut.lines().count(), 1301);
         assert!(
             whole.starts_with(&cut),
@@ -296,7 +299,8 @@ fn run_on_the_real_clock_counts_every_period() {
     // A loop that a busy machine holds up ends in a fault, and counts its periods all the same.
     let output = nima(&["run", "--seconds", "2", "--json"]);
     let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let (ticks, missed) = (summary["ticks"].as_u64().unwrap(), summary["missed"].as_u64().unwrap());
+    let ticks = summary["ticks"].as_u64().unwrap();
+    let missed = summary["missed"].as_u64().unwrap();
     let periods = summary["seconds"].as_f64().unwrap() * 1000.0;
     assert!((periods - (ticks + missed) as f64).abs() < 1.5, "{summary}");
     assert!(ticks > 100);

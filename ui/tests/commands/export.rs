@@ -80,7 +80,10 @@ fn figures(arguments: &[&str]) -> Value {
 fn a_table_has_the_values_of_the_messages_and_identify_makes_the_same_of_both() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
-    let (session, right, left, part) = (at("s.mcap"), at("right.csv"), at("left.csv"), at("part.csv"));
+    let session = at("s.mcap");
+    let right = at("right.csv");
+    let left = at("left.csv");
+    let part = at("part.csv");
     record(&session, "bimanual", "4");
     let told = done(&["export", &session, "--out", &right, "--arm", "right"]);
     assert!(told.contains("4000 ticks of the right arm"), "{told}");
@@ -95,7 +98,8 @@ fn a_table_has_the_values_of_the_messages_and_identify_makes_the_same_of_both() 
         assert_eq!(ours, figures(&["identify", table, "--delay-ms", "40", "--json"]), "{arm}");
         assert_eq!(ours["samples"], 4000);
     }
-    let (a, b) = (at("a.csv"), at("b.csv"));
+    let a = at("a.csv");
+    let b = at("b.csv");
     done(&["identify", &session, "--arm", "left", "--out", &a]);
     done(&["identify", &left, "--out", &b]);
     assert!(std::fs::read(a).unwrap() == std::fs::read(b).unwrap(), "the traces differ");
@@ -118,11 +122,13 @@ fn a_table_has_the_values_of_the_messages_and_identify_makes_the_same_of_both() 
 fn a_layout_for_viewers_comes_out_of_a_session_and_stays_in_an_anonymous_one() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
-    let (session, shared) = (at("s.mcap"), at("shared.mcap"));
+    let session = at("s.mcap");
+    let shared = at("shared.mcap");
     record(&session, "peg_transfer", "1");
     done(&["export", &session, "--out", &shared, "--anonymous"]);
     for (name, begin) in [("layout.json", "{"), ("layout.xml", "<?xml")] {
-        let (of_session, of_shared) = (at(name), at(&format!("shared-{name}")));
+        let of_session = at(name);
+        let of_shared = at(&format!("shared-{name}"));
         done(&["export", &session, "--out", &of_session]);
         done(&["export", &shared, "--out", &of_shared]);
         let text = std::fs::read_to_string(of_session).unwrap();
@@ -137,7 +143,8 @@ fn a_layout_for_viewers_comes_out_of_a_session_and_stays_in_an_anonymous_one() {
 fn studies_make_the_same_of_a_session_and_of_its_table() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
-    let (session, table) = (at("one.mcap"), at("one.csv"));
+    let session = at("one.mcap");
+    let table = at("one.csv");
     record(&session, "peg_transfer", "5");
     done(&["export", &session, "--out", &table]);
     let study = |file: &str| json(&["study", "baselines", "--recording", file, "--delay-ms", "50", "--json"]);
@@ -158,7 +165,10 @@ fn studies_make_the_same_of_a_session_and_of_its_table() {
 fn a_stretch_is_a_session_with_all_that_was_in_it() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
-    let (session, begin, middle, inner) = (at("s.mcap"), at("begin.mcap"), at("middle.mcap"), at("inner.mcap"));
+    let session = at("s.mcap");
+    let begin = at("begin.mcap");
+    let middle = at("middle.mcap");
+    let inner = at("inner.mcap");
     record(&session, "peg_transfer", "4");
     let told = done(&["export", &session, "--out", &begin, "--to", "2"]);
     assert!(told.contains("with the journal up to the cut"), "{told}");
@@ -194,7 +204,8 @@ fn a_stretch_is_a_session_with_all_that_was_in_it() {
         let about = |(time_ns, topic, _): &(u64, String, Vec<u8>)| (time_ns - begin_ns, topic.clone());
         assert!(differs.is_none(), "{path}: {:?}", differs.map(|at| (at, about(&found[at]), about(&expected[at]))));
         assert!(expected.len() > 1000);
-        let (cut, from) = (open(path), open(&session));
+        let cut = open(path);
+        let from = open(&session);
         assert!(cut.notes().is_empty());
         let files = |reader: &Reader| {
             let file = |one| (reader.attachment(one).unwrap(), one.name.clone(), one.media_type.clone());
@@ -211,7 +222,8 @@ fn a_stretch_is_a_session_with_all_that_was_in_it() {
         assert_eq!(told("session"), "s.mcap");
     }
     // Times in a stretch are those of the session.
-    let (a, b) = (at("a.csv"), at("b.csv"));
+    let a = at("a.csv");
+    let b = at("b.csv");
     done(&["export", &inner, "--out", &a]);
     done(&["export", &session, "--out", &b, "--from", "1.5", "--to", "2"]);
     assert!(std::fs::read(a).unwrap() == std::fs::read(b).unwrap());

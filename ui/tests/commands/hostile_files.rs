@@ -105,7 +105,8 @@ fn recording() -> String {
 fn directions(count: i32) -> impl Iterator<Item = [f64; 3]> {
     (0..count).map(move |i| {
         let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
-        let (r, turn) = ((1.0 - z * z).sqrt(), 2.4 * f64::from(i));
+        let r = (1.0 - z * z).sqrt();
+        let turn = 2.4 * f64::from(i);
         [r * turn.cos(), r * turn.sin(), z]
     })
 }
@@ -133,7 +134,8 @@ fn data_set() -> String {
     let mut text = "fx_n,fz_n,tip_fx_n,tip_fy_n,tip_fz_n\n".to_owned();
     for i in 0..400 {
         let t = f64::from(i) * 0.01;
-        let (x, z) = ((7.0 * t).sin(), (5.0 * t).cos());
+        let x = (7.0 * t).sin();
+        let z = (5.0 * t).cos();
         writeln!(text, "{x},{z},{},{},{}", 0.9 * x, 0.1 * z, 0.8 * z).unwrap();
     }
     text
@@ -245,7 +247,8 @@ fn no_command_overwrites_what_it_reads() {
 #[test]
 fn a_folder_of_results_spares_the_inputs_in_it() {
     let folder = Folder::new();
-    let (data, model) = (folder.write("predictions.csv", &data_set()), folder.text("m.safetensors"));
+    let data = folder.write("predictions.csv", &data_set());
+    let model = folder.text("m.safetensors");
     accepted(&[&TRAIN[..], &[&data, "--out", &model]].concat());
     let line = refused(&["evaluate", "tip-force", &model, &data, "--out", &folder.text(".")]);
     assert!(line.contains("itself"), "{line}");

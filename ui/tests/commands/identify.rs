@@ -77,7 +77,8 @@ fn the_leaders_own_motion_makes_another_force_and_says_so() {
         (figures["error"]["mae"].as_f64().unwrap(), figures["own_motion"].as_str().unwrap().to_owned())
     };
     for mode in ["anchored", "matched", "best"] {
-        let ((alone, follower), (led, handle)) = (error(mode, &[]), error(mode, &leader));
+        let (alone, follower) = error(mode, &[]);
+        let (led, handle) = error(mode, &leader);
         assert!((alone - led).abs() > 1e-6, "{mode}: {alone} and {led}");
         assert_eq!((follower.as_str(), handle.as_str()), ("follower", "handle"));
     }

@@ -57,7 +57,8 @@ fn every_device_that_is_not_there_has_its_cause_and_its_cure() {
 #[test]
 fn a_run_names_the_first_device_and_ends_with_its_cause() {
     let Some(run) = alone(&["run", "--rig", "paper", "--seconds", "1"]) else { return };
-    let (told, refused) = (String::from_utf8(run.stdout).unwrap(), String::from_utf8(run.stderr).unwrap());
+    let told = String::from_utf8(run.stdout).unwrap();
+    let refused = String::from_utf8(run.stderr).unwrap();
     assert!(!run.status.success(), "{told}");
     let last = refused.lines().last().unwrap();
     assert!(last.contains("right handle: the Force Dimension SDK") && last.contains("is not installed"), "{refused}");

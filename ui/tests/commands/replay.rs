@@ -18,7 +18,8 @@ fn refused(arguments: &[&str]) -> String {
 fn a_recorded_run_replays_and_can_be_asked_what_if() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
-    let (session, out) = (at("session.mcap"), at("out"));
+    let session = at("session.mcap");
+    let out = at("out");
     let run = [
         "run",
         "--virtual",

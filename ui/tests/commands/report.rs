@@ -55,7 +55,8 @@ fn the_figures_are_those_of_the_tables_and_the_page_compares_both_sessions() {
 #[test]
 fn what_is_no_session_is_told_in_one_line_and_nothing_is_written() {
     let folder = tempfile::tempdir().unwrap();
-    let (foreign, out) = (folder.path().join("foreign.mcap"), folder.path().join("out"));
+    let foreign = folder.path().join("foreign.mcap");
+    let out = folder.path().join("out");
     std::fs::write(&foreign, "no session").unwrap();
     for session in [foreign.to_str().unwrap(), "/no/such/session.mcap"] {
         let output = nima(&["report", session, "--out", out.to_str().unwrap()]);

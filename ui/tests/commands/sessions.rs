@@ -33,7 +33,8 @@ fn sessions_are_listed_kept_and_deleted_and_nothing_else_is() {
         let path = at(name).display().to_string();
         done(data, &["run", "--virtual", "--seconds", "2", "--scene", "peg_transfer", "--record", &path]);
     }
-    let (whole, part) = (at("b.mcap").display().to_string(), at("part.mcap").display().to_string());
+    let whole = at("b.mcap").display().to_string();
+    let part = at("part.mcap").display().to_string();
     done(data, &["export", &whole, "--out", &part, "--from", "0.5", "--to", "1.5"]);
     std::fs::write(at("empty.mcap"), []).unwrap();
     // As a process that records leaves it when it is killed: not finished.

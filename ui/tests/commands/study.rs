@@ -108,7 +108,8 @@ fn the_methods_of_others_are_compared_on_a_recording() {
         format!("{t},{x},{}\n", if x > 0.0 { -300.0 * x.powf(1.3) } else { 0.0 })
     };
     std::fs::write(&path, format!("t_s,x_m,fx_n\n{}", (0..3000).map(row).collect::<String>())).unwrap();
-    let (path, out) = (path.to_str().unwrap(), folder.path().join("out"));
+    let path = path.to_str().unwrap();
+    let out = folder.path().join("out");
     let arguments = ["study", "baselines", "--recording", path, "--delay-ms", "50", "--delay-ms", "300", "--json"];
     let output = nima(&[&arguments[..], &["--out", out.to_str().unwrap()]].concat());
     assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -47,7 +47,8 @@ fn pair(follower: &Path, console: &Path, address: &str, enter: fn(&str) -> Strin
     let mut here = at(console, &["pair", address, "--wait", "20"]);
     let mut of_there = BufReader::new(there.stdout.take().unwrap()).lines();
     let mut of_here = BufReader::new(here.stdout.take().unwrap()).lines();
-    let (shown_there, shown_here) = (code(&mut of_there), code(&mut of_here));
+    let shown_there = code(&mut of_there);
+    let shown_here = code(&mut of_here);
     assert_ne!(shown_there, shown_here, "nobody can enter the code of his own screen");
     assert_eq!(shown_here.chars().filter(char::is_ascii_digit).count(), 6, "{shown_here}");
     writeln!(here.stdin.take().unwrap(), "{}", enter(&shown_there)).unwrap();
@@ -57,7 +58,8 @@ fn pair(follower: &Path, console: &Path, address: &str, enter: fn(&str) -> Strin
 
 #[test]
 fn a_machine_that_is_not_paired_or_paired_with_a_wrong_code_is_refused() {
-    let (follower, console) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let follower = tempfile::tempdir().unwrap();
+    let console = tempfile::tempdir().unwrap();
     let address = free();
     let [there, here] = pair(follower.path(), console.path(), &address, |_| "000000".to_owned());
     assert!(there.status.success(), "{}", told(&there));
@@ -72,7 +74,8 @@ fn a_machine_that_is_not_paired_or_paired_with_a_wrong_code_is_refused() {
 #[test]
 fn the_handle_is_at_one_machine_and_the_arm_at_the_other() {
     let _alone = alone();
-    let (follower, console) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let follower = tempfile::tempdir().unwrap();
+    let console = tempfile::tempdir().unwrap();
     let address = free();
     for output in pair(follower.path(), console.path(), &address, str::to_owned) {
         assert!(output.status.success(), "{}", told(&output));
@@ -81,7 +84,8 @@ fn the_handle_is_at_one_machine_and_the_arm_at_the_other() {
         let there = at(follower.path(), &["follower", "--listen", &address, "--seconds", "12", "--json"]);
         sleep(Duration::from_millis(300));
         let here = at(console.path(), &["run", "--follower", &address, "--seconds", "6", "--json"]);
-        let (here, there) = (here.wait_with_output().unwrap(), there.wait_with_output().unwrap());
+        let here = here.wait_with_output().unwrap();
+        let there = there.wait_with_output().unwrap();
         let json: Value = serde_json::from_slice(&here.stdout).unwrap_or_default();
         println!("{json:#}\n{}\n{}", told(&here), told(&there));
         // A machine that stood still for 0.1 s stops them both.

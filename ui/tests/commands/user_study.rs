@@ -135,7 +135,8 @@ fn twelve_trials_with_a_killed_program_and_a_stop_lose_nothing_but_these_attempt
     let study = place.to_str().unwrap();
     told(&["user-study", "new", &file, "--out", study]);
     let status = || json(&["user-study", "status", study, "--json"])["participants"][0].clone();
-    let (mut killed, mut stopped) = (0, 0);
+    let mut killed = 0;
+    let mut stopped = 0;
     loop {
         let before = status();
         let trials = before["trials"].as_u64().unwrap();

@@ -184,7 +184,8 @@ fn a_device_that_is_missing_is_pinned_with_its_cause_and_its_cure() {
         .replace("/tmp/nima-emulated", &folder.path().display().to_string());
     let file = folder.path().join("absent.toml");
     std::fs::write(&file, text).unwrap();
-    let (rig, scene) = (RigConfig::load(file.to_str().unwrap()).unwrap(), Scene::load("peg_transfer").unwrap());
+    let rig = RigConfig::load(file.to_str().unwrap()).unwrap();
+    let scene = Scene::load("peg_transfer").unwrap();
     let handle =
         start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false })
             .unwrap();

@@ -52,7 +52,8 @@ pub(crate) fn shown_at(
     prepare: impl FnOnce(ConsoleApp) -> ConsoleApp + 'static,
 ) -> Console {
     let (handle, objects) = start_watched(plan, speed).unwrap();
-    let (rig, scene) = (plan.rig.clone(), plan.scene.clone());
+    let rig = plan.rig.clone();
+    let scene = plan.scene.clone();
     Harness::builder().with_size(size).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
         prepare(ConsoleApp::new(cc, handle, rig, scene).with_objects(objects).with_simulated_time(speed))
     })

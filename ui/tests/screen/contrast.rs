@@ -23,7 +23,8 @@ fn luminance(colour: Color32) -> f64 {
 }
 
 fn contrast(a: Color32, b: Color32) -> f64 {
-    let (a, b) = (luminance(a), luminance(b));
+    let a = luminance(a);
+    let b = luminance(b);
     (a.max(b) + 0.05) / (a.min(b) + 0.05)
 }
 
@@ -60,7 +61,8 @@ fn painted(console: &Console) -> Vec<Painted> {
             _ => {}
         }
     }
-    let (mut grounds, mut texts) = (Vec::new(), Vec::new());
+    let mut grounds = Vec::new();
+    let mut texts = Vec::new();
     for clipped in &console.output().shapes {
         add(&clipped.shape, clipped.clip_rect, &mut grounds, &mut texts);
     }

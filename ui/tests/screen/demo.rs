@@ -68,7 +68,9 @@ fn second_chapter_s(rest: Duration) -> [f64; 2] {
     press(&mut harness, "Demo");
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
     press(&mut harness, "2. Direct reflection");
-    let (mut began_s, mut last_s, mut gap_s) = (None, f64::INFINITY, 0.0_f64);
+    let mut began_s = None;
+    let mut last_s = f64::INFINITY;
+    let mut gap_s = 0.0_f64;
     loop {
         thread::sleep(rest);
         harness.step();
@@ -115,7 +117,8 @@ fn of_silent(speed: f64) -> (Console, Arc<AtomicBool>) {
     let is_silent = Arc::<AtomicBool>::default();
     let Assembly { rig, .. } = plan.simulated().unwrap();
     let rig = Box::new(Silent { rig, is_silent: Arc::clone(&is_silent) });
-    let (clock, scheduling) = (Clock::Simulated { speed }, SchedulingClass::Ordinary);
+    let clock = Clock::Simulated { speed };
+    let scheduling = SchedulingClass::Ordinary;
     let handle = runtime::start(Assembly { rig, clock, scheduling, ..plan.simulated().unwrap() }).unwrap();
     let console = Harness::builder()
         .with_size(SIZE)

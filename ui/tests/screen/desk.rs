@@ -64,7 +64,8 @@ fn beside(node: &Node, panel: Panel) -> Option<Vec<Panel>> {
 fn a_dragged_title_joins_other_tabs_and_stays_there_the_next_day() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = console(folder.path());
-    let (from, to) = (tab(&harness, Panel::Timing), tab(&harness, Panel::Degrees));
+    let from = tab(&harness, Panel::Timing);
+    let to = tab(&harness, Panel::Degrees);
     drag(&mut harness, from.center(), to.center() + vec2(0.6 * to.width(), 0.0));
     let places = layout_of(&mut harness).places.unwrap();
     assert!(beside(&places, Panel::Timing).unwrap().contains(&Panel::Degrees), "{places:?}");
@@ -72,7 +73,8 @@ fn a_dragged_title_joins_other_tabs_and_stays_there_the_next_day() {
     drop(harness);
     let mut again = console(folder.path());
     assert_eq!(layout_of(&mut again).places, Some(places));
-    let (timing, degrees) = (tab(&again, Panel::Timing), tab(&again, Panel::Degrees));
+    let timing = tab(&again, Panel::Timing);
+    let degrees = tab(&again, Panel::Degrees);
     assert!((timing.center().y - degrees.center().y).abs() < 1.0);
 }
 
@@ -142,7 +144,8 @@ fn a_tab_is_brought_to_the_front_by_the_keyboard_and_the_default_still_goes_by_t
     harness.run_steps(4);
     harness.get_by_label_contains("Interlock: ");
     harness.get_by_role_and_label(Role::Button, Panel::Safety.title());
-    let (safety, space) = (tab(&harness, Panel::Safety), tab(&harness, Panel::ForceSpace));
+    let safety = tab(&harness, Panel::Safety);
+    let space = tab(&harness, Panel::ForceSpace);
     assert!((safety.center().y - space.center().y).abs() < 1.0, "no room beside the traces: a tab");
 }
 

@@ -20,7 +20,8 @@ fn free_scene(step_n: f64) -> Scene {
 fn console(store: &Path, step_n: f64) -> Console {
     let record = gravity();
     Store::open(store).save(&record).unwrap();
-    let (rig, scene) = (RigConfig::load("simulated").unwrap(), free_scene(step_n));
+    let rig = RigConfig::load("simulated").unwrap();
+    let scene = free_scene(step_n);
     let calibrations = Calibrations { gravity: Some(record.model), ..Calibrations::default() };
     let calibrations = [calibrations, Calibrations::default()];
     let store = store.to_owned();

@@ -159,7 +159,8 @@ fn the_forces_fade_where_the_check_of_the_camera_was_worse_than_ten_pixels() {
 fn a_camera_whose_place_is_not_known_draws_no_forces_and_says_so() {
     let (_serving, mut endoscope) = camera();
     let camera = endoscope.camera.as_mut().unwrap();
-    (camera.position_m, camera.world_from_camera_deg) = (None, None);
+    camera.position_m = None;
+    camera.world_from_camera_deg = None;
     let mut harness = surgeon(endoscope, [1280.0, 720.0]);
     told(&mut harness, "Endoscope's picture: live");
     assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "the camera's place is not known")));
@@ -261,7 +262,9 @@ fn place(harness: &Console) -> Rect {
 fn wheel(harness: &mut Console, at: Pos2, turned: f32) {
     harness.event(Event::PointerMoved(at));
     harness.step();
-    let (unit, phase, modifiers) = (MouseWheelUnit::Point, TouchPhase::Move, Modifiers::NONE);
+    let unit = MouseWheelUnit::Point;
+    let phase = TouchPhase::Move;
+    let modifiers = Modifiers::NONE;
     harness.event(Event::MouseWheel {
         unit,
         delta: vec2(0.0, turned),

@@ -28,7 +28,8 @@ fn window() -> (Harness<'static, Monitor>, Teller) {
 
 /// What the rig of this plan sends in its first seconds, as it comes over the network; it is stopped after six.
 fn sent(plan: &Plan) -> Vec<Moment> {
-    let (mut writer, mut moments) = (MomentWriter::default(), Vec::new());
+    let mut writer = MomentWriter::default();
+    let mut moments = Vec::new();
     runtime::run_virtual(plan.simulated().unwrap(), 8.0, |tick| {
         let mut ticks = [None; SIDES];
         ticks[tick.side.index()] = Some(*tick);

@@ -48,7 +48,8 @@ pub(crate) fn watched(plan: &Plan) -> (runtime::Handle, Arc<Mutex<Vec<Command>>>
     let commands = Arc::<Mutex<Vec<Command>>>::default();
     let seen = Arc::clone(&commands);
     thread::spawn(move || watch(&end, &seen));
-    let (clock, scheduling) = (Clock::Simulated { speed: 1.0 }, SchedulingClass::Ordinary);
+    let clock = Clock::Simulated { speed: 1.0 };
+    let scheduling = SchedulingClass::Ordinary;
     let assembly = Assembly { clock, scheduling, tap: Some(tap), ..plan.simulated().unwrap() };
     (runtime::start(assembly).unwrap(), commands)
 }

@@ -157,7 +157,8 @@ impl Sheet {
         let height = self.greys.len() / self.width;
         for row in from_centre(bounds.top())..from_centre(bounds.bottom()).min(height) {
             let y = row as f32 + 0.5;
-            let (mut left, mut right) = (bounds.left(), bounds.right());
+            let mut left = bounds.left();
+            let mut right = bounds.right();
             for [at, per_x, per_y] in weights {
                 let rest = at + per_y * y;
                 if per_x > 0.0 {

@@ -14,7 +14,8 @@ fn console(store: &Path) -> Console {
     Store::open(store).save(&record).unwrap();
     let calibrations =
         [Calibrations { gravity: Some(record.model), ..Calibrations::default() }, Calibrations::default()];
-    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("correspondence").unwrap());
+    let rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load("correspondence").unwrap();
     let store = store.to_owned();
     let plan = Plan { rig, scene, calibrations, engage: false };
     shown_at(WIZARD_SPEED, &plan, [1600.0, 1000.0], move |app| app.with_store(&store))

@@ -24,7 +24,8 @@ use nima_simulation::{Plan, World, run_virtual, scene::Scene};
 
 /// Samples of a calibration scene, each under the prompt that `session` wants after the one before; ends with `None`.
 fn calibrate(scene: &Scene, mut session: impl FnMut(&nima_core::frames::WristSample, f64) -> Option<Prompt>) {
-    let (mut world, mut prompt) = (World::new(scene, 1000.0), Prompt::Rest);
+    let mut world = World::new(scene, 1000.0);
+    let mut prompt = Prompt::Rest;
     for tick in 1..200_000 {
         let t_s = f64::from(tick) * 1e-3;
         let Sensed::AtWrist(sample) = world.exchange(t_s, &Outputs { prompt, ..Outputs::SAFE }).unwrap().sensed else {
@@ -76,7 +77,8 @@ pub(crate) struct VirtualRig {
 
 impl VirtualRig {
     pub(crate) fn start(scene: Scene, calibrations: Calibrations) -> Self {
-        let ((orders, ordered), (give, ticks)) = (channel(), channel());
+        let (orders, ordered) = channel();
+        let (give, ticks) = channel();
         let plan = Plan {
             rig: RigConfig::load("simulated").unwrap(),
             scene,
@@ -84,7 +86,8 @@ impl VirtualRig {
             engage: false,
         };
         thread::spawn(move || {
-            let (mut left, mut batch) = (1, Vec::new());
+            let mut left = 1;
+            let mut batch = Vec::new();
             run_virtual(&plan, 1e5, |tick| {
                 batch.push(*tick);
                 left -= 1;

@@ -47,7 +47,8 @@ fn in_each_view(
         for size in SIZES {
             for light in [false, true] {
                 let settings = harness.state_mut().settings_mut();
-                (settings.role, settings.light) = (role, light);
+                settings.role = role;
+                settings.light = light;
                 settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
                 let found = find(harness, role, size);
                 all.extend(
@@ -297,7 +298,8 @@ fn every_view_offers_what_was_agreed() {
         });
         until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
         harness.run_steps(5);
-        let (now, path) = (controls(&harness), folder.join(format!("{name}.txt")));
+        let now = controls(&harness);
+        let path = folder.join(format!("{name}.txt"));
         if env::var_os("UPDATE_SNAPSHOTS").is_some() {
             fs::create_dir_all(&folder).unwrap();
             fs::write(&path, &now).unwrap();

@@ -43,7 +43,9 @@ impl Bench {
     fn new() -> Self {
         let scene = Scene::load("peg_transfer").unwrap();
         let mut settings = usual(&scene);
-        (settings.size_px, settings.focal_px, settings.k1) = (SIZE_PX, FOCAL_PX, -0.25);
+        settings.size_px = SIZE_PX;
+        settings.focal_px = FOCAL_PX;
+        settings.k1 = -0.25;
         settings.centre_px = Some(CENTRE_PX);
         let camera = camera_of(&settings);
         let board = Board::new([9, 6], 0.01).unwrap();
@@ -68,7 +70,8 @@ impl Bench {
         let name = path.display().to_string();
         // Idle: an instrument that does its task would be at a corner only by chance.
         let plan = Plan { rig, engage: false, ..plan("peg_transfer") };
-        let (kept, running) = (folder.to_path_buf(), name.clone());
+        let kept = folder.to_path_buf();
+        let running = name.clone();
         let console = shown(&plan, size, move |app| {
             let options = Options { wizard: Some(Which::Camera), ..Options::default() };
             app.with_settings(toured(&kept)).with_rig_name(running).with_options(options)

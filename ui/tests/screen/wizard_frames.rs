@@ -26,7 +26,8 @@ fn rig_file(folder: &Path, devices: &Settings) -> String {
     let mut file = RigFile::of("emulated").unwrap();
     let mut put = |key: &str, value: &dyn std::fmt::Display| file.set(&format!("devices.{key}"), value.to_string());
     for side in Side::ALL {
-        let (set, word) = (devices.arm(side).unwrap(), side.word());
+        let set = devices.arm(side).unwrap();
+        let word = side.word();
         put(&format!("{word}.handle.emulator"), &set.handle.force_dimension().unwrap().emulator.unwrap());
         put(&format!("{word}.sensor.port"), &set.sensor.bota().unwrap().port);
         put(&format!("{word}.servos.port"), &set.servos.as_ref().unwrap().port);
@@ -62,7 +63,9 @@ pub(crate) fn console(folder: &Path) -> (Console, EmulatedRig, String) {
     let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false };
     let handle = start(&plan).unwrap();
     let technician = emulators.technician();
-    let (store, kept, running) = (folder.join("calibrations"), folder.to_path_buf(), name.clone());
+    let store = folder.join("calibrations");
+    let kept = folder.to_path_buf();
+    let running = name.clone();
     let console = Harness::builder().with_size(SIZE).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
         ConsoleApp::new(cc, handle, rig, scene)
             .with_store(&store)

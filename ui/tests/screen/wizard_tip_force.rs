@@ -166,7 +166,8 @@ fn model_path(folder: &Path) -> PathBuf {
 
 /// The real console on a running loop, with what the wizard has.
 fn real_console(wizards: Wizards, folder: &Path) -> Harness<'static, ConsoleApp> {
-    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("isolation").unwrap());
+    let rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load("isolation").unwrap();
     let calibrations = InForce::load(Some(folder), &rig, &scene).calibrations(&rig);
     let plan = Plan { rig, scene, calibrations, engage: false };
     let folder = folder.to_owned();
@@ -227,7 +228,8 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
 
 /// On the virtual clock the network that was kept answers, and errs less than the wrist force does.
 fn answers_in_the_loop(folder: &Path) {
-    let (rig, mut scene) = (RigConfig::load("simulated").unwrap(), Scene::load("isolation").unwrap());
+    let rig = RigConfig::load("simulated").unwrap();
+    let mut scene = Scene::load("isolation").unwrap();
     scene.seed += 1;
     let calibrations = InForce::load(Some(folder), &rig, &scene).calibrations(&rig);
     let plan = Plan { rig, scene, calibrations, engage: false };
@@ -324,7 +326,8 @@ fn sensors_that_do_not_agree_are_refused_and_an_override_is_written_into_the_fil
     }
     console.press("Save in spite of the verdict");
     let saving = console.window.state_mut().saving.take().unwrap();
-    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("isolation").unwrap());
+    let rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load("isolation").unwrap();
     let mut in_force = InForce::load(Some(folder.path()), &rig, &scene);
     in_force.save(saving).unwrap();
     let lines = in_force.lines();

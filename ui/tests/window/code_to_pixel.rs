@@ -117,7 +117,10 @@ struct Seen {
 
 impl Seen {
     fn watch(screen: &Screen, time: Duration) -> Self {
-        let (mut seen, mut last_us, mut lower, mut at) = (Self::default(), 0, None, None::<Instant>);
+        let mut seen = Self::default();
+        let mut last_us = 0;
+        let mut lower = None;
+        let mut at = None::<Instant>;
         let begin = Instant::now();
         while begin.elapsed() < time {
             thread::sleep(LOOK_EVERY);
@@ -135,7 +138,8 @@ impl Seen {
                 seen.stalls += usize::from(gap > STALL);
                 seen.ages_ms.push((now_us() as f64 - code_us as f64) * 1e-3);
             }
-            (last_us, at) = (code_us, Some(now));
+            last_us = code_us;
+            at = Some(now);
         }
         seen
     }

@@ -102,8 +102,11 @@ impl<'a> Player<'a> {
         let console = Console::begin(x, folder, &options);
         let scene = Scene::load("rings").unwrap();
         let camera = Camera::of(&scene);
-        let (view, at_m, goal) = (views.calm, [Vector3::zeros(); SIDES], [None; SIDES]);
-        let (led, steps) = (Side::Right, Vec::new());
+        let view = views.calm;
+        let at_m = [Vector3::zeros(); SIDES];
+        let goal = [None; SIDES];
+        let led = Side::Right;
+        let steps = Vec::new();
         let mut player = Self { console, scene, camera, views, view, led, at_m, goal, steps };
         player.keys("m", 1);
         player.perform();
@@ -119,7 +122,8 @@ impl<'a> Player<'a> {
 
     fn picture(&self, part: Rect) -> Picture {
         let part = part.intersect(Rect::from_min_size(Pos2::ZERO, WINDOW.into()));
-        let (corner, size) = (part.min.round(), part.size().round());
+        let corner = part.min.round();
+        let size = part.size().round();
         let crop = format!("{}x{}+{}+{}", size.x, size.y, corner.x, corner.y);
         let mut import = self.console.x.command("import");
         // The loop needs the other processors.
@@ -226,7 +230,8 @@ impl<'a> Player<'a> {
     /// Does what was noted and waits until the tip is where it was led, and holds a ring or not as wanted.
     pub(crate) fn settle(&mut self, what: &str, holds: bool) {
         self.perform();
-        let (began, mut looked) = (Instant::now(), Instant::now());
+        let began = Instant::now();
+        let mut looked = Instant::now();
         loop {
             let wanted = self.place(&self.at());
             let seen = self.picture(Rect::from_center_size(wanted, Vec2::splat(80.0))).mark();
@@ -267,7 +272,8 @@ impl<'a> Player<'a> {
     /// Where a tip is not where it was dragged to, the field has moved meanwhile: the tip is dragged once more.
     fn look_again(&mut self) {
         self.find_field();
-        let (mark, goal) = (self.picture(self.view).mark(), self.goal[self.led.index()]);
+        let mark = self.picture(self.view).mark();
+        let goal = self.goal[self.led.index()];
         if let Some(((tip, _), goal)) = mark.zip(goal) {
             self.at_m[self.led.index()] = self.level(tip, self.at().z);
             self.drag(goal);

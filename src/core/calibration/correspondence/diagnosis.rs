@@ -91,8 +91,11 @@ fn joint_fit(
     c_from_offset: impl Fn(&Row, &Rotation3<f64>) -> UnitQuaternion<f64>,
 ) -> Option<JointFit> {
     let freedom = (3 * rows.len()).checked_sub(UNKNOWNS).filter(|&freedom| freedom > 0)?;
-    let (mut rotation, mut gain, mut offset_n) = (*start, 1.0, Vector3::zeros());
-    let (mut covariance, mut sd_n) = (SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros(), 0.0);
+    let mut rotation = *start;
+    let mut gain = 1.0;
+    let mut offset_n = Vector3::zeros();
+    let mut covariance = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros();
+    let mut sd_n = 0.0;
     for _ in 0..6 {
         let mut normal = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros();
         let mut right = SVector::<f64, UNKNOWNS>::zeros();

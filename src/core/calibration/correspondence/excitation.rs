@@ -45,7 +45,8 @@ impl Excitation {
             self.second = self.second.min(axes[1] / axes[0]);
             self.third = self.third.min(axes[2] / axes[0]);
         } else {
-            (self.second, self.third) = (0.0, 0.0);
+            self.second = 0.0;
+            self.third = 0.0;
         }
     }
 }

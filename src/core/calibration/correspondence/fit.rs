@@ -189,7 +189,8 @@ fn judge(
 fn lack_of_motion(report: &CorrespondenceReport, used: usize, limits: &Limits) -> Option<String> {
     let Excitation { second, third, weakest_n, rank } = report.excitation;
     if used < limits.least_pairs {
-        let (needed, least_n) = (limits.least_pairs, limits.least_force_n);
+        let needed = limits.least_pairs;
+        let least_n = limits.least_force_n;
         return Some(format!("{used} pushes of at least {least_n} N, {needed} are needed; push more often and harder"));
     }
     let agree = used - report.outliers.len();
@@ -233,7 +234,8 @@ fn disagreement(report: &CorrespondenceReport, solution: &Solution, used: usize,
         ));
     }
     if agreement.r2_held_out_overall < limits.least_r2 {
-        let (r2, least) = (agreement.r2_held_out_overall, limits.least_r2);
+        let r2 = agreement.r2_held_out_overall;
+        let least = limits.least_r2;
         return Some(format!(
             "the rotation explains only {r2:.2} of the variance of held-out forces ({least} is needed)"
         ));

@@ -214,7 +214,8 @@ impl CorrespondenceSession {
     /// Both sensors must read almost nothing for a while, so that one that was not zeroed is found before the first
     /// push.
     fn rest(&mut self, reading: &Reading, gap_s: f64) -> Phase {
-        let (f1_n, f2_n) = (reading.f1_n.norm(), reading.f2_n.norm());
+        let f1_n = reading.f1_n.norm();
+        let f2_n = reading.f2_n.norm();
         let resting = f1_n.max(f2_n) <= self.settings.end_n;
         // A gap in the samples (or the first sample) does not count as rest.
         self.rested_s = if resting { self.rested_s + if gap_s < 0.1 { gap_s } else { 0.0 } } else { 0.0 };

@@ -24,7 +24,10 @@ impl Bench {
     fn new(seed: u64) -> Self {
         let mut noise = Noise::new(seed);
         let mut turn = || from_roll_pitch_yaw_deg(&Vector3::from_fn(|_, _| 360.0 * noise.uniform()));
-        let (world_from_s1, world_from_m, world_from_c, c_from_s2) = (turn(), turn(), turn(), turn());
+        let world_from_s1 = turn();
+        let world_from_m = turn();
+        let world_from_c = turn();
+        let c_from_s2 = turn();
         let session = CorrespondenceSession::new(SessionSettings::default());
         Self { session, noise, t_s: 0.0, world_from_s1, world_from_m, world_from_c, c_from_s2 }
     }

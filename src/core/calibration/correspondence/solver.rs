@@ -90,7 +90,8 @@ fn first_guess(rows: &[Row], lengths: &mut Vec<f64>) -> Rotation3<f64> {
     let stride = rows.len().div_ceil(JUDGES).max(1);
     let mut best = (f64::INFINITY, wahba(rows));
     let mut judge = |i: usize, j: usize| {
-        let (a, b) = (&rows[i], &rows[j]);
+        let a = &rows[i];
+        let b = &rows[j];
         if a.s2_n.cross(&b.s2_n).norm() < LEAST_SINE * a.s2_n.norm() * b.s2_n.norm() {
             return;
         }

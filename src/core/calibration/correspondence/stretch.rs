@@ -107,7 +107,8 @@ impl Stretch {
     fn note(&mut self) -> bool {
         let ([f1_n, f2_n], deviation_n) = self.sums.statistics(self.window.len() as f64);
         let better = self.best.is_none_or(|best| {
-            let (now_n, best_n) = (f1_n.norm(), best.pair.f1_n.norm());
+            let now_n = f1_n.norm();
+            let best_n = best.pair.f1_n.norm();
             best_n < NEAR_PEAK * now_n || (now_n >= NEAR_PEAK * best_n && deviation_n < best.deviation_n)
         });
         if better {

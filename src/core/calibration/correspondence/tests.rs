@@ -79,8 +79,10 @@ fn twenty_pushes_of_a_hundred_readings_are_found_to_a_fifth_of_a_degree() {
 
 #[test]
 fn the_stated_uncertainty_is_the_error_that_is_made() {
-    let (mut made, mut stated) = (0.0, 0.0);
-    let (trials, pushes) = (300, 20);
+    let mut made = 0.0;
+    let mut stated = 0.0;
+    let trials = 300;
+    let pushes = 20;
     for seed in 0..trials {
         let mut rig = Rig::new(1000 + seed, READING_N, true);
         let report = judged(&rig.pushes(pushes));
@@ -97,7 +99,8 @@ fn random_pushes_along_a_line_or_in_a_plane_are_always_refused() {
     for seed in 0..400 {
         let deviation_n = if seed % 4 < 2 { READING_N } else { READING_N / READINGS.sqrt() };
         let mut rig = Rig::new(2000 + seed, deviation_n, seed % 3 == 0);
-        let (a, b) = (rig.direction(), rig.direction());
+        let a = rig.direction();
+        let b = rig.direction();
         let line = seed % 2 == 0;
         let count = 6 + (seed % 25) as usize;
         let pairs: Vec<_> = (0..count)
@@ -254,7 +257,8 @@ fn a_sensor_that_feels_nothing_or_hangs_is_refused() {
     for seed in 0..50 {
         let mut rig = Rig::new(8000 + seed, 0.02, seed % 2 == 0);
         let good = rig.pushes(20);
-        let (hung, noise_n) = (vector(&mut rig.noise).normalize() * 2.0, 0.02);
+        let hung = vector(&mut rig.noise).normalize() * 2.0;
+        let noise_n = 0.02;
         let edits: [(&str, Edit<'_>); 5] = [
             ("both zero", &|pair, _| (pair.f1_n, pair.f2_n) = (Vector3::zeros(), Vector3::zeros())),
             ("one zero", &|pair, _| pair.f1_n = Vector3::zeros()),

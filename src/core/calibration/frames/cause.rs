@@ -129,7 +129,8 @@ impl Mistake {
     }
 
     fn corrected(self, pose: &Isometry3<f64>) -> Option<Isometry3<f64>> {
-        let (place_m, turn) = (pose.translation.vector, pose.rotation);
+        let place_m = pose.translation.vector;
+        let turn = pose.rotation;
         let (place_m, turn) = match self {
             Self::InversePose => return Some(pose.inverse()),
             Self::InverseRotation => (place_m, turn.inverse()),

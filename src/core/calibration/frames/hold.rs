@@ -110,7 +110,8 @@ impl Hold {
         let follows = t_s > self.last_s && t_s - self.last_s <= GAP_S;
         self.last_s = t_s;
         let Some((first, second)) = self.halves.as_mut().filter(|_| follows) else {
-            (self.halves, self.since_s) = (Some((Sums::of(sample), None)), t_s);
+            self.halves = Some((Sums::of(sample), None));
+            self.since_s = t_s;
             return Held::Share(0.0);
         };
         let mean = first.mean();
@@ -128,7 +129,8 @@ impl Hold {
         if share < 1.0 {
             return Held::Share(share);
         }
-        let (first, second) = (*first, *second);
+        let first = *first;
+        let second = *second;
         self.halves = None;
         let Some(second) = second else { return Held::Share(0.0) };
         let (by_m, by_rad) = apart(&mean, &second.mean(), watched);

@@ -130,7 +130,8 @@ impl<F> FrameReport<F> {
 
     /// Changes the cause, and the verdict with it.
     pub(super) const fn because(mut self, cause: Cause) -> Self {
-        (self.verdict, self.cause) = (cause.verdict(), cause);
+        self.verdict = cause.verdict();
+        self.cause = cause;
         self
     }
 
@@ -149,14 +150,16 @@ impl<F> FrameReport<F> {
         if share > limits.outliers {
             return Cause::Outliers { share, most: limits.outliers };
         }
-        let (error, most) = (&self.held_out, &limits.held_out);
+        let error = &self.held_out;
+        let most = &limits.held_out;
         if let Some((by_m, most_m)) = above(error.place_m, most.place_m) {
             return Cause::PoorPlace { by_m, most_m };
         }
         if let Some((by_deg, most_deg)) = above(error.angle_deg, most.angle_deg) {
             return Cause::PoorAngle { by_deg, most_deg };
         }
-        let (doubt, most) = (&self.uncertainty, &limits.uncertainty);
+        let doubt = &self.uncertainty;
+        let most = &limits.uncertainty;
         if let Some((by_m, most_m)) = above(doubt.place_m, most.place_m) {
             return Cause::UncertainPlace { by_m, most_m };
         }

@@ -200,7 +200,8 @@ impl Calibration for SensorMount {
 
     fn attempt(&self, samples: &[FrameSample]) -> FrameReport<SensorMountFound> {
         let rows = self.rows(samples);
-        let (have, least) = (rows.len(), self.limits.least);
+        let have = rows.len();
+        let least = self.limits.least;
         if have < least {
             return FrameReport::nothing(have, Cause::TooFew { have, least });
         }

@@ -43,7 +43,8 @@ pub(super) const fn below(value: f64, least: f64) -> bool {
 /// `I - R^T R` with the mean `R` of the rotation matrices: the normal matrix of a lever `t` in `R_i t - b = d_i` per pose, after `b`
 /// is eliminated. `None` without poses.
 pub(super) fn lever_matrix<'a>(poses: impl Iterator<Item = &'a Isometry3<f64>>) -> Option<Matrix3<f64>> {
-    let (mut sum, mut count) = (Matrix3::zeros(), 0.0);
+    let mut sum = Matrix3::zeros();
+    let mut count = 0.0;
     for pose in poses {
         sum += pose.rotation.to_rotation_matrix().into_inner();
         count += 1.0;
@@ -88,7 +89,8 @@ pub(super) fn principal(vectors: &[Vector3<f64>]) -> [f64; 3] {
 /// `sum |target - Q source|^2` is least (Markley, J. Astronaut. Sci. 1988).
 pub(super) fn nearest_orthogonal(moment: &Matrix3<f64>, sign: f64) -> Option<Matrix3<f64>> {
     let decomposed = moment.try_svd(true, true, f64::EPSILON, 100)?;
-    let (u, v_t) = (decomposed.u?, decomposed.v_t?);
+    let u = decomposed.u?;
+    let v_t = decomposed.v_t?;
     let last = sign * (u.determinant() * v_t.determinant()).signum();
     let order = decomposed.singular_values.imin();
     let mut signs = Vector3::repeat(1.0);

@@ -87,7 +87,9 @@ impl Problem for Pivoting {
 
     fn solve(&self, rows: &[Isometry3<f64>]) -> Option<Pivot> {
         let share = 1.0 / rows.len() as f64;
-        let (mut turn, mut place_m, mut seen_m) = (Matrix3::zeros(), Vector3::zeros(), Vector3::zeros());
+        let mut turn = Matrix3::zeros();
+        let mut place_m = Vector3::zeros();
+        let mut seen_m = Vector3::zeros();
         for row in rows {
             turn += row.rotation.to_rotation_matrix().into_inner() * share;
             place_m += row.translation.vector * share;
@@ -126,7 +128,8 @@ impl Calibration for Tip {
     fn attempt(&self, samples: &[FrameSample]) -> FrameReport<TipFound> {
         let rows: Vec<Isometry3<f64>> =
             samples.iter().filter_map(|sample| sample.pose(self.carrier)).copied().collect();
-        let (have, least) = (rows.len(), self.limits.least);
+        let have = rows.len();
+        let least = self.limits.least;
         if have < least {
             return FrameReport::nothing(have, Cause::TooFew { have, least });
         }

@@ -198,7 +198,8 @@ impl Calibration for View {
             Some(Row { in_view: asked.in_view(), measured })
         };
         let rows: Vec<Row> = ways.filter_map(row).collect();
-        let (have, least) = (rows.len(), self.limits.least);
+        let have = rows.len();
+        let least = self.limits.least;
         if have < least {
             return FrameReport::nothing(have, Cause::TooFew { have, least });
         }

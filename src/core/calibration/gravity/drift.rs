@@ -98,7 +98,8 @@ impl DriftCheck {
             }
             return self.drift;
         }
-        (self.newest, self.fresh_s) = (sample.copied(), t_s);
+        self.newest = sample.copied();
+        self.fresh_s = t_s;
         let field = sample.filter(|sample| sample.is_finite()).and_then(|sample| self.model.field_m_s2(sample));
         let late = since_s > TIMEOUT_S;
         match (sample, field) {

@@ -264,7 +264,8 @@ fn weightless(report: &GravityReport, limits: &Limits) -> Option<String> {
 fn poor(report: &GravityReport, fit: &ModelFit, limits: &Limits) -> Option<String> {
     let weight_n = report.mass_kg.unwrap_or(0.0) * GRAVITY_M_S2;
     let held_out = &fit.force_n.held_out;
-    let (mae_n, max_n) = (held_out.mean_mae(), held_out.largest());
+    let mae_n = held_out.mean_mae();
+    let max_n = held_out.largest();
     let mae_limit = limits.mae_n.max(limits.mae_share * weight_n);
     let max_limit = limits.max_n.max(limits.max_share * weight_n);
     let share = report.outliers.len() as f64 / report.poses as f64;

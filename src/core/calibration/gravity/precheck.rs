@@ -86,7 +86,8 @@ struct Spread {
 impl Spread {
     fn add(&mut self, value: &Vector3<f64>) {
         if self.count == 0.0 {
-            (self.first, self.last) = (*value, *value);
+            self.first = *value;
+            self.last = *value;
         }
         // Relative to the first value, because a large bias would reduce the precision of a small noise.
         let offset = value - self.first;
@@ -317,7 +318,8 @@ impl Precheck {
 /// Noise of the worst axis. While the tool moves, only the part that motion cannot explain is reported, and only if it
 /// is too large by itself: noise that looks like motion must not be hidden by it.
 fn noise(spread: &Spread, still: bool, limit: f64, unit: &str, cure: &'static str) -> Finding {
-    let (deviation, roughness) = (spread.deviation().max(), spread.roughness().max());
+    let deviation = spread.deviation().max();
+    let roughness = spread.roughness().max();
     let worst = if still { deviation } else { roughness };
     let measured = format!("{worst:.3} {unit}");
     let state = if spread.count < SAMPLES_MIN {

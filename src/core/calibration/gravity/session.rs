@@ -114,7 +114,8 @@ impl GravitySession {
     /// A session without poses.
     pub fn new(settings: SessionSettings) -> Self {
         let still = Still::new(settings.still);
-        let (poses, places) = (Vec::with_capacity(64), Vec::with_capacity(64));
+        let poses = Vec::with_capacity(64);
+        let places = Vec::with_capacity(64);
         Self {
             settings,
             still,

@@ -57,7 +57,8 @@ pub(super) fn scaled_rotation(rows: &[Row]) -> Option<(f64, Rotation3<f64>)> {
         return None;
     }
     let (mean_force, mean_field) = means(rows);
-    let (mut cross, mut power) = (Matrix3::zeros(), 0.0);
+    let mut cross = Matrix3::zeros();
+    let mut power = 0.0;
     for row in rows {
         let field = row.field_m_s2 - mean_field;
         cross += (row.wrench.force_n - mean_force) * field.transpose();
@@ -67,7 +68,8 @@ pub(super) fn scaled_rotation(rows: &[Row]) -> Option<(f64, Rotation3<f64>)> {
         return None;
     }
     let svd = cross.try_svd(true, true, f64::EPSILON, 200)?;
-    let (u, v_t) = (svd.u?, svd.v_t?);
+    let u = svd.u?;
+    let v_t = svd.v_t?;
     // If the best orthogonal matrix is a reflection, invert its weakest axis (singular values are sorted).
     let hand = if (u * v_t).determinant() < 0.0 { -1.0 } else { 1.0 };
     let signs = Vector3::new(1.0, 1.0, hand);

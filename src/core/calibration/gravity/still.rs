@@ -97,7 +97,9 @@ impl Still {
 
     /// Resets the interval.
     pub(super) fn reset(&mut self) {
-        (self.short, self.whole, self.last_s) = (Sums::default(), Sums::default(), None);
+        self.short = Sums::default();
+        self.whole = Sums::default();
+        self.last_s = None;
     }
 
     /// Whether the last short mean was still; `None` before the first.
@@ -124,7 +126,9 @@ impl Still {
     pub(super) fn step(&mut self, sample: &WristSample, field: &Vector3<f64>, t_s: f64) -> Option<f64> {
         if !self.last_s.is_some_and(|last| t_s > last && t_s - last <= self.settings.gap_s) {
             self.reset();
-            (self.short_since_s, self.since_s, self.field_moved_s) = (t_s, t_s, t_s);
+            self.short_since_s = t_s;
+            self.since_s = t_s;
+            self.field_moved_s = t_s;
         }
         self.last_s = Some(t_s);
         self.short.add(sample, field);
@@ -145,10 +149,12 @@ impl Still {
             turned || (wrench.force_n - mean.force_n).norm() > self.settings.force_n
         };
         if far {
-            (self.whole, self.since_s) = (Sums::default(), t_s);
+            self.whole = Sums::default();
+            self.since_s = t_s;
         }
         self.moved = Some(far);
         self.whole.merge(&self.short);
-        (self.short, self.short_since_s) = (Sums::default(), t_s);
+        self.short = Sums::default();
+        self.short_since_s = t_s;
     }
 }

@@ -14,7 +14,8 @@ pub struct PoseTarget {
 impl PoseTarget {
     /// The orientation of the sensor with the smallest rotation from the base's frame.
     pub fn world_from_s1(&self) -> UnitQuaternion<f64> {
-        let (from, to) = (Vector3::from(self.down_s1), -Vector3::z());
+        let from = Vector3::from(self.down_s1);
+        let to = -Vector3::z();
         // For the opposite direction, use a half turn about a horizontal axis.
         UnitQuaternion::rotation_between(&from, &to)
             .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI))

@@ -101,7 +101,10 @@ fn fresh_errors(model: &GravityModel, tool: &mut Tool, count: usize) -> Vec<Vect
 
 #[test]
 fn twelve_poses_at_any_tilt_reach_the_noise_and_the_papers_model_does_not() {
-    let (mut physical, mut paper, mut centres, mut accepted) = (vec![], vec![], vec![], 0);
+    let mut physical = vec![];
+    let mut paper = vec![];
+    let mut centres = vec![];
+    let mut accepted = 0;
     for seed in 0..200 {
         let mut tool = Tool::new(seed, 0.4);
         let report = report(&tool.imu_poses(12));
@@ -111,7 +114,8 @@ fn twelve_poses_at_any_tilt_reach_the_noise_and_the_papers_model_does_not() {
         paper.extend(fresh_errors(&model(ModelKind::Paper), &mut tool, 20));
         centres.push((Vector3::from(report.com_m.unwrap()) - tool.com_m).norm());
     }
-    let (physical, paper) = (AxisStats::of(physical), AxisStats::of(paper));
+    let physical = AxisStats::of(physical);
+    let paper = AxisStats::of(paper);
     centres.sort_by(f64::total_cmp);
     println!("physical {physical:?}\npaper {paper:?}\ncentre p50 {} max {}", centres[100], centres[199]);
     println!("accepted {accepted} of 200");
@@ -274,7 +278,8 @@ fn a_sensor_that_does_not_feel_the_tool_is_refused_with_its_cause() {
 
 #[test]
 fn a_free_gain_is_chosen_where_the_sensor_is_skewed_and_not_otherwise() {
-    let (mut chosen, mut needless) = (0, 0);
+    let mut chosen = 0;
+    let mut needless = 0;
     for seed in 0..50 {
         let mut tool = Tool::new(6000 + seed, 1.2);
         let straight = tool.imu_poses(100);

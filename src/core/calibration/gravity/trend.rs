@@ -31,7 +31,8 @@ pub(super) fn drift_n(rows: &[Row], floor_n: f64) -> Option<f64> {
         let errors_n = &forces_n - design * &found;
         Some((errors_n.row_iter().map(|row| row.norm()).sum::<f64>(), found))
     };
-    let ((without_n, _), (with_n, found)) = (left_n(&steady)?, left_n(&design)?);
+    let (without_n, _) = left_n(&steady)?;
+    let (with_n, found) = left_n(&design)?;
     let drift_n = Matrix5x3::from_iterator(found.iter().copied()).row(4).norm();
     (drift_n > floor_n && with_n < LEFT_SHARE * without_n).then_some(drift_n)
 }

@@ -56,7 +56,8 @@ impl Autoregressive {
 
     /// Foretells another delay ahead; the model of the old one is forgotten.
     pub(super) fn set_delay(&mut self, delay_ticks: usize) {
-        (self.delay_ticks, self.spacing) = (delay_ticks, spacing(delay_ticks));
+        self.delay_ticks = delay_ticks;
+        self.spacing = spacing(delay_ticks);
         self.rls.reset();
         self.coefficients = reflection();
     }

@@ -56,19 +56,25 @@ impl Kalman {
 
 /// The steady-state gain for force and rate (1, 1/s). Computed in periods, so that all numbers are near one.
 fn gain(rate_hz: f64) -> [f64; 2] {
-    let (tau, bandwidth_hz) = (LASTING_S * rate_hz, BANDWIDTH_HZ.min(0.1 * rate_hz));
-    let (way, lasting) = (-tau * libm::expm1(-1.0 / tau), libm::exp(-1.0 / tau));
+    let tau = LASTING_S * rate_hz;
+    let bandwidth_hz = BANDWIDTH_HZ.min(0.1 * rate_hz);
+    let way = -tau * libm::expm1(-1.0 / tau);
+    let lasting = libm::exp(-1.0 / tau);
     let step = std::f64::consts::TAU * bandwidth_hz / rate_hz;
     let q = step * step * (step * step);
     // Covariances of force, of both, of rate; the measurement's is one.
-    let (mut ff, mut fr, mut rr) = (1.0, 0.0, 1.0);
+    let mut ff = 1.0;
+    let mut fr = 0.0;
+    let mut rr = 1.0;
     let mut gain = [1.0, 0.0];
     for _ in 0..20_000 {
         let ahead_ff = ff + way * (2.0 * fr + way * rr) + q / 3.0;
         let ahead_fr = lasting * (fr + way * rr) + q / 2.0;
         let ahead_rr = lasting * lasting * rr + q;
         gain = [ahead_ff / (ahead_ff + 1.0), ahead_fr / (ahead_ff + 1.0)];
-        (ff, fr, rr) = ((1.0 - gain[0]) * ahead_ff, (1.0 - gain[0]) * ahead_fr, ahead_rr - gain[1] * ahead_fr);
+        ff = (1.0 - gain[0]) * ahead_ff;
+        fr = (1.0 - gain[0]) * ahead_fr;
+        rr = ahead_rr - gain[1] * ahead_fr;
     }
     [gain[0], gain[1] * rate_hz]
 }

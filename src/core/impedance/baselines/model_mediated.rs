@@ -79,7 +79,8 @@ impl Contact {
     fn columns(&self, motion: &Motion) -> [Lanes; COLUMNS] {
         let depth = self.depth(motion);
         let power = |side: f64| (depth * side).zip(self.exponent, |depth, n| power(depth.max(0.0), n));
-        let (above, below) = (power(1.0), power(-1.0));
+        let above = power(1.0);
+        let below = power(-1.0);
         [above, above * motion.v, below, below * motion.v, Lanes([1.0, 1.0, 1.0, 0.0]), motion.v, motion.a]
     }
 
@@ -167,7 +168,8 @@ impl ModelMediated {
         }
         let [low, high] = self.range_m;
         let room = (high - low) * ROOM;
-        let (lower, higher) = (motion.x.zip(low, f64::min), motion.x.zip(high, f64::max));
+        let lower = motion.x.zip(low, f64::min);
+        let higher = motion.x.zip(high, f64::max);
         if self.tick > 0 && [lower, higher] == [low, high] {
             return;
         }
@@ -186,7 +188,8 @@ impl ModelMediated {
     /// On each axis the contact that fits best.
     fn best(&self) -> Contact {
         let [first, others @ ..] = &self.candidates;
-        let (mut best, mut least_n) = (first.contact, first.error_n);
+        let mut best = first.contact;
+        let mut least_n = first.error_n;
         for candidate in others {
             for lane in 0..3 {
                 if candidate.error_n[lane] < least_n[lane] {
@@ -201,11 +204,13 @@ impl ModelMediated {
     pub(super) fn reset(&mut self) {
         for (i, candidate) in self.candidates.iter_mut().enumerate() {
             let exponent = Lanes::splat(EXPONENTS[i / PLACES]);
-            (candidate.contact, candidate.error_n) = (Contact { exponent, ..Contact::NONE }, Lanes::ZERO);
+            candidate.contact = Contact { exponent, ..Contact::NONE };
+            candidate.error_n = Lanes::ZERO;
             candidate.rls.reset();
         }
         self.envelope.reset();
-        (self.tick, self.contact) = (0, Contact::NONE);
+        self.tick = 0;
+        self.contact = Contact::NONE;
     }
 }
 
@@ -233,6 +238,7 @@ impl Candidate {
         for parameter in &mut self.contact.parameters[..SIDES] {
             *parameter *= ratio.map(|ratio| if ratio > 1e-12 { 1.0 / ratio } else { 0.0 });
         }
-        (self.contact.surface_m, self.contact.reach_m) = (surface_m, reach_m);
+        self.contact.surface_m = surface_m;
+        self.contact.reach_m = reach_m;
     }
 }

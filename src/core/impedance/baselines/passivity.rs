@@ -66,7 +66,8 @@ impl Controller {
     }
 
     pub(super) fn reset(&mut self) {
-        (self.came_j, self.store_j) = (Lanes::ZERO, Lanes::ZERO);
+        self.came_j = Lanes::ZERO;
+        self.store_j = Lanes::ZERO;
     }
 }
 

@@ -64,7 +64,8 @@ impl<const N: usize> Rls<N> {
     /// The parameters, shrunk towards `prior`; that itself where nothing is known.
     pub(super) fn solve(&self, prior: &[Lanes; N]) -> [Lanes; N] {
         let mut factor = [[Lanes::ZERO; N]; N];
-        let (mut inverse, mut z) = ([Lanes::ZERO; N], [Lanes::ZERO; N]);
+        let mut inverse = [Lanes::ZERO; N];
+        let mut z = [Lanes::ZERO; N];
         for j in 0..N {
             let mut rest = self.right[j];
             for (k, prior) in prior.iter().enumerate() {

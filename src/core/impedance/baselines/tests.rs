@@ -82,7 +82,8 @@ fn a_wave_is_decoded_to_the_force_and_the_change_of_speed() {
         let t = f64::from(k) * 1e-3;
         wave = waves.step(&motion(0.0, 0.1 * (7.0 * t).sin()), Some(force(2.0 * (7.0 * t).sin())));
     }
-    let (v, f) = (0.1 * (7.0 * 0.999_f64).sin(), 2.0 * (7.0 * 0.999_f64).sin());
+    let v = 0.1 * (7.0 * 0.999_f64).sin();
+    let f = 2.0 * (7.0 * 0.999_f64).sin();
     let b = wave.impedance_n_s_m[0];
     assert!(b > 0.1, "{b}");
     assert!((wave.force(&motion(0.0, v))[0] - f).abs() < 1e-9);
@@ -92,7 +93,8 @@ fn a_wave_is_decoded_to_the_force_and_the_change_of_speed() {
 /// A spring of 500 N/m behind a link of `delay` ticks, pressed 8 mm deep twice a second for 4 s: the energy that was given to the hand
 /// (without what the hand gave), and that the tissue returned, J.
 fn cycled(delay: usize, controlled: bool) -> [f64; 2] {
-    let (mut follower, mut controller) = (Returned::new(RATE_HZ), Controller::new(RATE_HZ));
+    let mut follower = Returned::new(RATE_HZ);
+    let mut controller = Controller::new(RATE_HZ);
     let mut sent = Vec::new();
     let mut got_j = 0.0;
     for k in 0..4000 {
@@ -126,7 +128,8 @@ fn the_controller_only_ever_takes() {
     let mut taken = 0;
     for k in 0..5000 {
         let t = f64::from(k) * 1e-3;
-        let (f, v) = ((11.0 * t).sin(), 0.1 * (7.0 * t).cos());
+        let f = (11.0 * t).sin();
+        let v = 0.1 * (7.0 * t).cos();
         let given = controller.step(Lanes::splat(f), Lanes::splat(1e-3 * t), &motion(0.0, v))[0];
         assert!(given.abs() <= f.abs() + 1e-12 && given * f >= -1e-12, "{f} N became {given} N");
         taken += i32::from(given.abs() < 0.9 * f.abs());
@@ -159,7 +162,8 @@ fn only_the_baseline_that_is_asked_for_is_computed() {
 fn the_leader_renders_what_the_follower_predicted() {
     for mode in Mode::BASELINES {
         let settings = settings(mode);
-        let (mut follower, mut leader) = (Identifier::new(&settings).unwrap(), Renderer::new(&settings).unwrap());
+        let mut follower = Identifier::new(&settings).unwrap();
+        let mut leader = Renderer::new(&settings).unwrap();
         let mut link = Vec::new();
         for k in 0..2000 {
             let sample = sample(k);
@@ -212,7 +216,8 @@ fn metres_and_millimetres_agree() {
     for mode in Mode::BASELINES {
         let metres = settings(mode);
         let mut scales = metres.scales;
-        (scales.position_m, scales.velocity_m_s) = (1e3 * scales.position_m, 1e3 * scales.velocity_m_s);
+        scales.position_m *= 1e3;
+        scales.velocity_m_s *= 1e3;
         scales.acceleration_m_s2 *= 1e3;
         let mut a = Identifier::new(&metres).unwrap();
         let mut b = Identifier::new(&Settings { scales, ..metres }).unwrap();
@@ -239,7 +244,8 @@ proptest! {
     ) {
         let mode = Mode::BASELINES[which];
         let settings = settings(mode);
-        let (mut follower, mut leader) = (Identifier::new(&settings).unwrap(), Renderer::new(&settings).unwrap());
+        let mut follower = Identifier::new(&settings).unwrap();
+        let mut leader = Renderer::new(&settings).unwrap();
         for (k, (position, force, delay)) in ticks.into_iter().enumerate() {
             if delay == 0 {
                 follower.set_delay(k as f64 * 1e-3);

@@ -72,6 +72,9 @@ impl Waves {
     }
 
     pub(super) fn reset(&mut self) {
-        (self.seen, self.mean_n, self.sums, self.last_n) = (0.0, Lanes::ZERO, [Lanes::ZERO; 2], Lanes::ZERO);
+        self.seen = 0.0;
+        self.mean_n = Lanes::ZERO;
+        self.sums = [Lanes::ZERO; 2];
+        self.last_n = Lanes::ZERO;
     }
 }

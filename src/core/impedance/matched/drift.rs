@@ -73,7 +73,11 @@ impl Drift {
     pub(super) fn reset(&mut self) {
         self.residuals_n.clear();
         let rest = Lanes::ZERO;
-        (self.products, self.right, self.share, self.mean_n, self.largest_n) = (rest, rest, rest, rest, rest);
+        self.products = rest;
+        self.right = rest;
+        self.share = rest;
+        self.mean_n = rest;
+        self.largest_n = rest;
         self.seen = 0.0;
     }
 }

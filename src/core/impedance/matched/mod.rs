@@ -221,7 +221,8 @@ impl Matched {
 
     fn learn(&mut self, posture: &Posture, force_n: Lanes) {
         if !self.started {
-            (self.started, self.origin) = (true, self.form.position(posture));
+            self.started = true;
+            self.origin = self.form.position(posture);
         }
         let pace = posture.stance.pace;
         let held = if self.form.slips() {
@@ -362,13 +363,19 @@ impl Method for Matched {
         self.sums.iter_mut().for_each(Sums::reset);
         let weight = self.one * (1.0 / self.experts.len() as f64);
         for expert in &mut self.experts {
-            (expert.parameters, expert.error_n, expert.weight) = ([Lanes::ZERO; COLUMNS], Lanes::ZERO, weight);
+            expert.parameters = [Lanes::ZERO; COLUMNS];
+            expert.error_n = Lanes::ZERO;
+            expert.weight = weight;
             expert.past.clear();
         }
         self.envelope.reset();
         self.drift.reset();
-        (self.started, self.origin, self.judged) = (false, Lanes::ZERO, 0.0);
-        (self.stretch, self.usual, self.twin) = (Stretch::default(), Usual::default(), Slip::default());
+        self.started = false;
+        self.origin = Lanes::ZERO;
+        self.judged = 0.0;
+        self.stretch = Stretch::default();
+        self.usual = Usual::default();
+        self.twin = Slip::default();
         self.gives = [0.0; SLIPS];
         self.model = MatchedModel::NONE;
     }

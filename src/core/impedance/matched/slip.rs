@@ -83,7 +83,8 @@ impl Usual {
 /// The length of the force along the two other axes (N).
 fn load(force_n: Lanes) -> Lanes {
     let [x, y, z, _] = force_n.0;
-    let (next, last) = (Lanes([y, z, x, 0.0]), Lanes([z, x, y, 0.0]));
+    let next = Lanes([y, z, x, 0.0]);
+    let last = Lanes([z, x, y, 0.0]);
     (next * next + last * last).sqrt()
 }
 

@@ -67,7 +67,8 @@ impl Sums {
 
     /// Factorises with a ridge (s of typical motion that say "no force"; the constant has none).
     pub(super) fn factorise(&mut self, ridge_s: f64) {
-        let (columns, mut ridge) = (self.columns, self.mean_squares.map(|square| square * (ridge_s * self.rate_hz)));
+        let columns = self.columns;
+        let mut ridge = self.mean_squares.map(|square| square * (ridge_s * self.rate_hz));
         ridge[0] = Lanes::ZERO;
         let elements = column_start(columns);
         self.factor.renew(&mut self.gram[..elements], &mut self.right[..columns], &ridge);

@@ -86,7 +86,8 @@ fn contact_n(at_m: Vector3<f64>) -> Vector3<f64> {
 fn the_force_is_made_of_what_was_known_one_delay_ago_and_of_the_own_motion() {
     for form in FORMS {
         let [mut clean, mut corrupt] = [(); 2].map(|()| Pair::new(form, &settings(0.1)));
-        let (changed, horizon) = (1500_u32, 100);
+        let changed = 1500_u32;
+        let horizon = 100;
         for k in 0..changed + horizon {
             let at_m = hand_m(f64::from(k) * 1e-3);
             let noise = Vector3::new(7.0, -3.0, 11.0) * f64::from((k * 7919) % 101);
@@ -178,7 +179,8 @@ fn metres_and_newtons_give_the_same_force_as_millimetres_and_millinewtons() {
         *scale *= 1e3;
     }
     for form in FORMS {
-        let (mut a, mut b) = (Pair::new(form, &metres), Pair::new(form, &millimetres));
+        let mut a = Pair::new(form, &metres);
+        let mut b = Pair::new(form, &millimetres);
         for k in 0..4000 {
             let at_m = hand_m(f64::from(k) * 1e-3);
             let force_n = contact_n(at_m);

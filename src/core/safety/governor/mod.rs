@@ -181,7 +181,9 @@ impl<const D: usize> Governor<D> {
         self.observer.forget();
         self.evidence = Evidence::default();
         self.grip = Grip::Held;
-        (self.last_s, self.withheld, self.applied_n) = (None, 0.0, SVector::zeros());
+        self.last_s = None;
+        self.withheld = 0.0;
+        self.applied_n = SVector::zeros();
     }
 
     /// The tick is at `t_s` (s), the handle was read there (`None`: unknown, then the grip stays as it is), and all gates before
@@ -195,7 +197,8 @@ impl<const D: usize> Governor<D> {
         if far(&asked_n, PLAUSIBLE_N) || reading_is_far || !t_s.is_finite() {
             self.observer.forget();
             // What was withheld at once returns as to a hand.
-            (self.applied_n, self.withheld) = (SVector::zeros(), 1.0);
+            self.applied_n = SVector::zeros();
+            self.withheld = 1.0;
             return Governed { force_n: SVector::zeros(), withheld: 1.0, reason: Reason::NotFinite };
         }
         let brake_n = if self.watching { self.judge(dt_s, reading) } else { SVector::zeros() };
@@ -275,7 +278,8 @@ impl<const D: usize> Governor<D> {
             if quiet && since.rests_s > RESTED_S {
                 since.pulls_s = PULLS_S;
             }
-            (self.rest_m, since.rests_s) = (past.at_m, 0.0);
+            self.rest_m = past.at_m;
+            since.rests_s = 0.0;
         } else if moved_m > 1.5 * self.handle.step_m {
             since.rests_s = since.rests_s.min(RESTED_S + looked_s);
         } else {

@@ -58,7 +58,8 @@ impl<const D: usize> Observer<D> {
     /// Forgets all samples.
     pub(super) fn forget(&mut self) {
         self.count = 0;
-        (self.impulse_n_s, self.over_s) = (SVector::zeros(), 0.0);
+        self.impulse_n_s = SVector::zeros();
+        self.over_s = 0.0;
     }
 
     /// Adds `dt_s` (s) during which `applied_n` (N) was applied.
@@ -82,7 +83,8 @@ impl<const D: usize> Observer<D> {
         self.newest = (self.newest + 1) % ROOM;
         self.ring[self.newest] = Sample { t_s, at_m, applied_n: SVector::zeros() };
         self.count = (self.count + 1).min(ROOM);
-        (self.impulse_n_s, self.over_s) = (SVector::zeros(), 0.0);
+        self.impulse_n_s = SVector::zeros();
+        self.over_s = 0.0;
     }
 
     /// The samples relative to the newest one.

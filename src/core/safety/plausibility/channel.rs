@@ -76,7 +76,8 @@ impl Extreme {
     /// Takes the next value, for the lower extreme its negative; whether an extreme ended that was hit too often for a number with noise.
     fn look(&mut self, value: f64) -> bool {
         if self.is_at(value) {
-            (self.hits, self.ago) = (self.hits + 1, 0);
+            self.hits += 1;
+            self.ago = 0;
             return false;
         }
         self.ago += 1;
@@ -136,7 +137,8 @@ impl Channel {
     /// Takes the number of a new reading at `t_s`; NaN is no number.
     pub(super) fn look(&mut self, now: f64, t_s: f64, around: &Around) -> Option<Wrong> {
         if now.is_nan() || self.last.is_nan() {
-            let (since_s, since_m) = (t_s, around.way_m);
+            let since_s = t_s;
+            let since_m = around.way_m;
             *self = Self {
                 last: now,
                 since_s,
@@ -170,12 +172,15 @@ impl Channel {
         let kept = (1.0 - LEARNT_S / FORGOTTEN_S).max(0.0);
         self.longest_s = rested_s.max(self.longest_s * kept);
         self.coarse_s = if is_coarse { t_s } else { self.coarse_s };
-        (self.seen, self.learns_s) = ([(0.0, false), newest], t_s);
+        self.seen = [(0.0, false), newest];
+        self.learns_s = t_s;
     }
 
     /// It has rested: from now on it must be lively for a while again.
     fn begin(&mut self, t_s: f64) {
-        (self.lively_since_s, self.longest_s, self.least_step) = (t_s, 0.0, f64::INFINITY);
+        self.lively_since_s = t_s;
+        self.longest_s = 0.0;
+        self.least_step = f64::INFINITY;
         self.seen = [(0.0, false); 2];
     }
 
@@ -220,8 +225,11 @@ impl Channel {
         self.turns = self.turns * kept + f64::from(u8::from(step * self.last_step < 0.0));
         self.changes = self.changes * kept + 1.0;
         self.least_step = self.least_step.min(step.abs());
-        (self.last, self.last_step) = (now, step);
-        (self.since_s, self.since_m, self.repeats) = (t_s, around.way_m, 0);
+        self.last = now;
+        self.last_step = step;
+        self.since_s = t_s;
+        self.since_m = around.way_m;
+        self.repeats = 0;
     }
 
     fn is_saturated(&mut self, now: f64, t_s: f64) -> bool {

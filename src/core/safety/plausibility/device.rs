@@ -32,7 +32,9 @@ impl<const N: usize> Device<N> {
             News::Old => None,
             News::First => {
                 let most = self.repeats.most();
-                (self.channels, self.repeats, self.wrong) = ([Channel::NONE; N], Repeats::new(most), None);
+                self.channels = [Channel::NONE; N];
+                self.repeats = Repeats::new(most);
+                self.wrong = None;
                 Some(Step { t_s: 0.0, moved_s: f64::INFINITY })
             }
             News::New(step) => Some(step),

@@ -61,7 +61,8 @@ impl<const D: usize> Leap<D> {
             return (last, frequent);
         }
         self.moved = now - last;
-        (self.last, self.in_a_row) = (Some(*now), 0);
+        self.last = Some(*now);
+        self.in_a_row = 0;
         (*now, (far && fall != Fall::Over) || frequent)
     }
 

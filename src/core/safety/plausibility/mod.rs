@@ -209,7 +209,9 @@ impl Plausibility {
     /// The force is known from now on, or computed in another way: what it was before says nothing about a jump.
     pub fn force_is_new(&mut self) {
         let moves = &mut self.moves;
-        (moves.force, moves.release, moves.load) = (Leap::default(), Release::default(), Leap::default());
+        moves.force = Leap::default();
+        moves.release = Release::default();
+        moves.load = Leap::default();
         moves.began_s = None;
     }
 
@@ -250,7 +252,8 @@ impl Plausibility {
             return dt_s;
         }
         // After a gap, or a clock that was set, nothing is known of how far anything may have gone. What a device's numbers are like is.
-        (self.moves, self.handle_stuck) = (Moves::default(), HandleStuck::default());
+        self.moves = Moves::default();
+        self.handle_stuck = HandleStuck::default();
         0.0
     }
 
@@ -304,7 +307,8 @@ impl Plausibility {
         self.felt_s = if is_new { seen.t_s } else { self.felt_s };
         let late_s = if raw.is_none() { LATE_MAX_S } else { seen.t_s - self.felt_s };
         self.late_s = (self.late_s - dt_s * FORGETS_LATE).max(late_s);
-        let (release, mut fall) = (&mut moves.release, Fall::No);
+        let release = &mut moves.release;
+        let mut fall = Fall::No;
         let (force_n, jumped) = moves.force.admit_unless(&seen.force_n, most_n, is_new, |believed_n, now_n, far| {
             fall = release.look(believed_n, now_n, far);
             fall
@@ -361,7 +365,8 @@ fn load_of(channels: &[f64; CHANNELS]) -> SVector<f64, LOADS> {
 
 /// Two axes of a frame, which tell it.
 fn axes(turn: &UnitQuaternion<f64>) -> SVector<f64, 6> {
-    let (x, z) = (turn * Vector3::x(), turn * Vector3::z());
+    let x = turn * Vector3::x();
+    let z = turn * Vector3::z();
     SVector::from([x.x, x.y, x.z, z.x, z.y, z.z])
 }
 

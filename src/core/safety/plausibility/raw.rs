@@ -115,7 +115,8 @@ impl Pace {
         }
         self.last = Some(now);
         if arrived_s < 0.0 {
-            (self.interval_s, self.t_s) = (0.0, 0.0);
+            self.interval_s = 0.0;
+            self.t_s = 0.0;
             return News::First;
         }
         let told_s = raw.device_s.zip(device_s).map_or(0.0, |(now_s, before_s)| now_s - before_s);

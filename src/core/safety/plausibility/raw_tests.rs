@@ -120,7 +120,8 @@ fn load(rig: &Rig, noise: &mut Noise, t_s: f64) -> [f64; CHANNELS] {
 
 /// The first doubt after the beginning of the faults of sensor, handle and arm, and its time since then, ms; a doubt before is a false alarm.
 fn told(rig: &Rig, faults: [Fault; 3], seconds: f64) -> Option<(f64, Implausible)> {
-    let (mut looks, mut noise) = (Plausibility::default(), Noise::new(rig.seed));
+    let mut looks = Plausibility::default();
+    let mut noise = Noise::new(rig.seed);
     let mut sensor = Sampled::<CHANNELS>::new(rig.sensor_s);
     let mut handle = Sampled::<HANDLE_CHANNELS>::new(rig.handle_s);
     let mut arm = Sampled::<ARM_CHANNELS>::new(rig.arm_s);
@@ -204,7 +205,8 @@ fn a_sensor_without_noise_that_stops_from_speed_is_frozen_while_the_arm_goes_on(
 #[test]
 fn a_smooth_swing_that_freezes_is_told_at_every_phase() {
     for phase in 0..200 {
-        let (mut device, from) = (Device::<CHANNELS>::new(SENSOR_BLOCK), 6000 + phase * 10);
+        let mut device = Device::<CHANNELS>::new(SENSOR_BLOCK);
+        let from = 6000 + phase * 10;
         let told = (1..from + 200).find(|k| {
             let t_s = f64::from((*k).min(from)) * TICK_S;
             let mut channels = [0.0; CHANNELS];
@@ -263,7 +265,8 @@ fn a_handle_and_an_arm_that_repeat_a_block_or_jump_are_told() {
 #[test]
 fn a_handle_on_the_table_and_an_arm_at_rest_are_no_fault() {
     // After ten lively seconds the handle lies in whole counts, one of which flickers, and the arm holds its angles.
-    let (mut looks, mut noise) = (Plausibility::default(), Noise::new(3));
+    let mut looks = Plausibility::default();
+    let mut noise = Noise::new(3);
     for k in 1..40_000 {
         let t_s = f64::from(k) * TICK_S;
         let lies = k > 20_000;
@@ -297,7 +300,8 @@ fn a_handle_on_the_table_and_an_arm_at_rest_are_no_fault() {
 #[test]
 fn coarse_numbers_are_no_fault() {
     for counts in [0.3, 1.0, 3.0, 10.0, 50.0] {
-        let (mut device, mut noise) = (Device::<CHANNELS>::new(SENSOR_BLOCK), Noise::new(11));
+        let mut device = Device::<CHANNELS>::new(SENSOR_BLOCK);
+        let mut noise = Noise::new(11);
         for k in 1..100_000 {
             let channels = std::array::from_fn(|_| (counts * noise.gaussian()).round());
             let raw = Raw { channels, device_s: None, arrival_s: f64::from(k) * TICK_S };
@@ -313,7 +317,9 @@ fn coarse_numbers_are_no_fault() {
 #[test]
 fn a_late_sensor_is_not_a_link_that_repeats_itself_and_a_link_that_does_is_told() {
     let told = |link_stops: bool| {
-        let (mut looks, mut noise, mut felt) = (Plausibility::default(), Noise::new(2), Vec::new());
+        let mut looks = Plausibility::default();
+        let mut noise = Noise::new(2);
+        let mut felt = Vec::new();
         let mut sensor = Raw::of_sensor([Some([0.0; 3]), None, None], None, 0.0);
         (1..8000).find(|k| {
             let t_s = f64::from(*k) * TICK_S;
@@ -351,7 +357,9 @@ fn a_late_sensor_is_not_a_link_that_repeats_itself_and_a_link_that_does_is_told(
 
 #[test]
 fn a_sensor_that_froze_before_is_told_as_soon_again() {
-    let (mut device, mut noise, mut kept) = (Device::<CHANNELS>::new(SENSOR_BLOCK), Noise::new(4), [0.0; CHANNELS]);
+    let mut device = Device::<CHANNELS>::new(SENSOR_BLOCK);
+    let mut noise = Noise::new(4);
+    let mut kept = [0.0; CHANNELS];
     let mut told = Vec::new();
     for k in 1..12_000 {
         let stands = (5000..5060).contains(&k) || k >= 11_000;

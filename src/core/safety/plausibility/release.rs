@@ -78,7 +78,8 @@ impl Release {
 
 impl Falling {
     fn look(&mut self, now_n: &Vector3<f64>) -> Fall {
-        let (from_n, size_n) = (self.from_n.norm(), now_n.norm());
+        let from_n = self.from_n.norm();
+        let size_n = now_n.norm();
         let falls_n = self.size_n - size_n;
         let is_gone = size_n <= GONE_N;
         // It may not turn aside, nor to the other side, by more than what counts as nothing.

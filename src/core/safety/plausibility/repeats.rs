@@ -52,7 +52,9 @@ impl Repeats {
             self.run += 1;
             self.changes += u32::from(changes);
         } else if let Some(lag) = self.skipped(word, changes) {
-            (self.lag, self.run, self.changes) = (lag, self.run + 1, self.changes + 1);
+            self.lag = lag;
+            self.run += 1;
+            self.changes += 1;
         } else if self.is_fine() && self.lag > 0 && self.missed < MISSED_MAX {
             self.missed += 1;
         } else {
@@ -60,7 +62,8 @@ impl Repeats {
                 self.clean_since_s = t_s;
             }
             self.lag = if changes { self.find(word) } else { 0 };
-            (self.run, self.missed) = (u32::from(self.lag > 0), 0);
+            self.run = u32::from(self.lag > 0);
+            self.missed = 0;
             self.changes = self.run;
         }
         self.words[self.count % KEPT] = word;

@@ -36,7 +36,8 @@ impl Stuck {
     pub(super) fn look(&mut self, still: &Vector3<f64>, moving: &Vector3<f64>, most: f64, t_s: f64) {
         let Some(at) = self.at.as_mut().filter(|at| at.still == *still) else {
             let at = Standing { still: *still, moving: *moving, since_s: t_s, repeats: 0 };
-            (self.at, self.is_stuck) = (Some(at), false);
+            self.at = Some(at);
+            self.is_stuck = false;
             return;
         };
         at.repeats += 1;

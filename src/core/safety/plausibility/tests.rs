@@ -120,7 +120,9 @@ fn a_stiff_contact_is_no_jump() {
     let press = |k: u32, seen: &mut Observed| {
         let depth_m = f64::from(k.saturating_sub(200)) * 6e-5;
         let at_m = Vector3::new(0.0, 0.0, 0.012 - 6e-5 * f64::from(k.min(200)) - depth_m);
-        (seen.tip_m, seen.command_m, seen.hand_m) = (at_m, Some(at_m), at_m);
+        seen.tip_m = at_m;
+        seen.command_m = Some(at_m);
+        seen.hand_m = at_m;
         seen.force_n += Vector3::z() * 5000.0 * depth_m;
     };
     assert_eq!(bench.run(500, press), None);
@@ -177,7 +179,9 @@ fn a_force_along_the_way_into_a_contact_is_told_and_a_puncture_is_not() {
         let mut bench = Bench::new();
         bench.run(600, move |k, seen| {
             let at_m = Vector3::new(0.0, 0.0, 0.010 - 5e-5 * f64::from(k));
-            (seen.tip_m, seen.command_m, seen.hand_m) = (at_m, Some(at_m), at_m);
+            seen.tip_m = at_m;
+            seen.command_m = Some(at_m);
+            seen.hand_m = at_m;
             let force = 400.0 * (-at_m.z).max(0.0);
             seen.force_n += Vector3::z() * sign * if force > gives_way_n { 0.2 * gives_way_n } else { force };
         })
@@ -196,7 +200,9 @@ fn the_sign_is_judged_of_a_touch_that_the_tip_makes_and_not_of_one_that_comes_to
             let t_s = f64::from(k) * 1e-3;
             let tremor_m = 0.00012 * (std::f64::consts::TAU * 8.5 * t_s).sin();
             let at_m = Vector3::new(tremor_m + goes_m_s * t_s, 0.0, 0.05);
-            (seen.tip_m, seen.command_m, seen.hand_m) = (at_m, Some(at_m), at_m);
+            seen.tip_m = at_m;
+            seen.command_m = Some(at_m);
+            seen.hand_m = at_m;
             seen.force_n.x += 1.3 * (f64::from(k.saturating_sub(from)) / 15.0).min(1.0);
         })
     };
@@ -210,7 +216,9 @@ fn the_sign_is_judged_of_a_touch_that_the_tip_makes_and_not_of_one_that_comes_to
     // A wrong sign at a slow touch.
     let told = Bench::new().run(900, |k, seen| {
         let at_m = Vector3::new(0.0, 0.0, 0.004 - 1e-5 * f64::from(k));
-        (seen.tip_m, seen.command_m, seen.hand_m) = (at_m, Some(at_m), at_m);
+        seen.tip_m = at_m;
+        seen.command_m = Some(at_m);
+        seen.hand_m = at_m;
         seen.force_n.z -= 400.0 * (-at_m.z).max(0.0);
     });
     assert!(matches!(told, Some((401..=520, Implausible::ForceAlong))), "{told:?}");
@@ -222,7 +230,9 @@ fn an_error_of_the_force_below_the_least_one_is_no_touch() {
     let told = |least_n: f64| {
         Bench::new().run(600, move |k, seen| {
             let at_m = Vector3::new(0.0, 0.0, 0.010 - 5e-5 * f64::from(k));
-            (seen.tip_m, seen.command_m, seen.hand_m) = (at_m, Some(at_m), at_m);
+            seen.tip_m = at_m;
+            seen.command_m = Some(at_m);
+            seen.hand_m = at_m;
             seen.force_n.z -= if k > 200 { 0.2 } else { 0.0 };
             seen.least_n = least_n;
         })
@@ -255,13 +265,15 @@ fn what_stands_while_its_cause_moves_is_stuck() {
     let mut kept = Vector3::zeros();
     let led = |k: u32, seen: &mut Observed| {
         kept = if k < 5000 { seen.hand_m } else { kept };
-        (seen.hand_m, seen.hand_force_n) = (kept, Vector3::x());
+        seen.hand_m = kept;
+        seen.hand_force_n = Vector3::x();
     };
     assert_eq!(bench.run(6000, led), None);
     let mut kept = None;
     let told = after(|k, seen| {
         seen.hand_m = *kept.get_or_insert(seen.hand_m);
-        (seen.hand_force_n, seen.guided) = (Vector3::x() * 0.05 * f64::from(k), true);
+        seen.hand_force_n = Vector3::x() * 0.05 * f64::from(k);
+        seen.guided = true;
     });
     assert_eq!(told, None, "led from the screen");
     let mut kept = None;
@@ -293,7 +305,8 @@ fn a_link_that_repeats_a_force_is_frozen_and_one_without_any_force_is_not() {
 #[test]
 fn what_went_on_while_the_line_was_silent_has_not_jumped() {
     let told = |is_known: bool, is_tip: bool| {
-        let (mut from_m, mut kept) = (None, None);
+        let mut from_m = None;
+        let mut kept = None;
         after(|k, seen| {
             seen.command_m = None;
             let at_m = *from_m.get_or_insert(seen.tip_m) + Vector3::x() * 0.2e-3 * f64::from(k);
@@ -301,9 +314,11 @@ fn what_went_on_while_the_line_was_silent_has_not_jumped() {
             let at_m = if silent > 0 { *kept.get_or_insert(at_m) } else { at_m };
             let silent_s = if is_known { f64::from(silent) * 1e-3 } else { 0.0 };
             if is_tip {
-                (seen.tip_m, seen.tip_silent_s) = (at_m, silent_s);
+                seen.tip_m = at_m;
+                seen.tip_silent_s = silent_s;
             } else {
-                (seen.hand_m, seen.hand_silent_s) = (at_m, silent_s);
+                seen.hand_m = at_m;
+                seen.hand_silent_s = silent_s;
             }
         })
     };

@@ -37,7 +37,8 @@ impl<T: Bytes> Driver<T> {
                     let mut copy = [0; LONGEST];
                     let body = &mut copy[..packet.body.len()];
                     body.copy_from_slice(packet.body);
-                    let (id, instruction) = (packet.id, packet.instruction);
+                    let id = packet.id;
+                    let instruction = packet.instruction;
                     if instruction == STATUS {
                         newest = self.take(id, body, now_s)?.or(newest);
                     } else {
@@ -50,7 +51,8 @@ impl<T: Bytes> Driver<T> {
             }
         }
         let refused = self.incoming.refused();
-        (self.health.damaged, self.health.skipped_bytes) = (refused.damaged + self.wrong, refused.skipped);
+        self.health.damaged = refused.damaged + self.wrong;
+        self.health.skipped_bytes = refused.skipped;
         Ok(newest)
     }
 
@@ -208,7 +210,8 @@ impl<T: Bytes> Driver<T> {
             read.encode(ids[index], &mut self.outgoing);
             (Question::Condition { index }, CONDITION_BYTES + OVERHEAD + 1)
         } else {
-            let (address, count) = (table::TICK.address, MOTION_BYTES as u16);
+            let address = table::TICK.address;
+            let count = MOTION_BYTES as u16;
             Instruction::SyncRead { address, count, ids: &ids, fast: self.fast }.encode(BROADCAST, &mut self.outgoing);
             (Question::Motion { next: 0 }, SERVOS * (MOTION_BYTES + OVERHEAD + 1))
         };
@@ -240,7 +243,8 @@ impl<T: Bytes> Driver<T> {
             }
             Torque::Ending => {
                 self.put_torque_off();
-                (self.torque, self.goals) = (Torque::Off, None);
+                self.torque = Torque::Off;
+                self.goals = None;
             }
             Torque::Off | Torque::Wanted => {}
         }
@@ -282,6 +286,7 @@ impl Quiet {
 
     const fn end(&mut self, health: &Health) {
         self.length_s = 0.0;
-        (self.damaged_before, self.refused_before) = (health.damaged, health.refused);
+        self.damaged_before = health.damaged;
+        self.refused_before = health.refused;
     }
 }

@@ -41,7 +41,8 @@ fn stuffing_goes_in_and_comes_out() {
 #[test]
 fn any_parameters_survive_the_wire() {
     let mut random = fastrand::Rng::with_seed(1);
-    let (mut out, mut incoming) = (Outgoing::new(256), Incoming::new(256));
+    let mut out = Outgoing::new(256);
+    let mut incoming = Incoming::new(256);
     for _ in 0..100_000 {
         // Few byte values, so that marks are frequent, also across two calls of `put`.
         let data: Vec<u8> = (0..random.usize(0..40)).map(|_| *random.choice(&[0xFF, 0xFD, 0x00]).unwrap()).collect();
@@ -85,8 +86,11 @@ fn a_fast_answer_carries_a_running_checksum_in_every_block() {
 /// Random bytes, mutated packets, and packets cut and joined anywhere.
 fn fuzz(rounds: u64, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed);
-    let (mut incoming, mut out) = (Incoming::new(200), Outgoing::new(512));
-    let (mut given, mut found, mut whole) = (0_u64, 0_u64, 0_u64);
+    let mut incoming = Incoming::new(200);
+    let mut out = Outgoing::new(512);
+    let mut given = 0_u64;
+    let mut found = 0_u64;
+    let mut whole = 0_u64;
     for _ in 0..rounds {
         out.clear();
         let data: Vec<u8> = (0..random.usize(0..24)).map(|_| random.u8(..)).collect();

@@ -37,7 +37,8 @@ fn a_combined_report_says_the_same_as_the_two_halves() {
     let mut buffer = [0; cap_codec::LENGTH_MAX];
     assert_eq!(CapReport::Motion(counts).encode(&mut buffer), 13);
     assert_eq!(buffer, [1, 0x64, 0, 0x38, 0xff, 0x5e, 0x01, 0xa2, 0xfe, 0x32, 0, 0xe7, 0xff]);
-    let (mut one, mut two) = (CapState::default(), CapState::default());
+    let mut one = CapState::default();
+    let mut two = CapState::default();
     one.take(&CapReport::decode(&buffer).unwrap(), 0.0);
     two.take(&CapReport::Translation([100, -200, 350]), 0.0);
     two.take(&CapReport::Rotation([-350, 50, -25]), 0.0);
@@ -201,7 +202,8 @@ fn fuzz(rounds: u64, seed: u64) {
             buffer[0] = random.u8(..5);
             length
         };
-        let (bytes, now_s) = (&buffer[..length], round as f64 * 1e-3);
+        let bytes = &buffer[..length];
+        let now_s = round as f64 * 1e-3;
         if let Ok(report) = CapReport::decode(bytes) {
             taken += u64::from(state.take(&report, now_s));
         }

@@ -173,7 +173,8 @@ impl Driver {
             return Ok(());
         }
         self.twist.twist = twist.limited(self.settings.twist_m_s, self.settings.twist_rad_s);
-        (self.twist.active, self.twist.renewed_s) = (true, self.now_s);
+        self.twist.active = true;
+        self.twist.renewed_s = self.now_s;
         Ok(())
     }
 

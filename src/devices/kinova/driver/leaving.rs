@@ -29,7 +29,8 @@ impl Driver {
             self.release_twist();
         }
         self.leave_low_level();
-        let (begin, begin_s) = (Instant::now(), self.now_s);
+        let begin = Instant::now();
+        let begin_s = self.now_s;
         while self.mode != Mode::Single && !self.is_lost() && begin.elapsed() < LEAVE {
             sleep(TICK);
             self.poll(begin_s + begin.elapsed().as_secs_f64());

@@ -95,8 +95,10 @@ impl Driver {
             }
             return false;
         }
-        (self.impossible_in_row, self.unanswered_s) = (0, None);
-        (self.feedback, self.joint_rad) = (*feedback, joint_rad);
+        self.impossible_in_row = 0;
+        self.unanswered_s = None;
+        self.feedback = *feedback;
+        self.joint_rad = joint_rad;
         self.health.accept(now_s);
         true
     }

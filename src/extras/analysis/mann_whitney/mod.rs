@@ -41,7 +41,9 @@ pub fn test(first: &[f64], second: &[f64], distribution: Distribution) -> Result
     check::values("values of the second group", second, 1)?;
     let exact = distribution.is_exact("values of a group for an exact test", first.len().max(second.len()))?;
     let ranks = Ranks::of(&[first, second].concat());
-    let (m, n, all) = (first.len() as f64, second.len() as f64, (first.len() + second.len()) as f64);
+    let m = first.len() as f64;
+    let n = second.len() as f64;
+    let all = (first.len() + second.len()) as f64;
     let variance = m * n / 12.0 * (all + 1.0 - ranks.ties / (all * (all - 1.0)));
     if ranks.doubled.iter().all(|rank| *rank == ranks.doubled[0]) {
         return Err(AnalysisError::NoVariation { what: "the values of both groups" });
@@ -65,11 +67,13 @@ pub fn shift(first: &[f64], second: &[f64], confidence: f64) -> Result<Location>
     check::not_too_many("differences between the groups", first.len().saturating_mul(second.len()), MOST_DIFFERENCES)?;
     let differences = first.iter().flat_map(|a| second.iter().map(move |b| a - b));
     let differences = summary::sorted(&differences.collect::<Vec<_>>());
-    let (m, n) = (first.len(), second.len());
+    let m = first.len();
+    let n = second.len();
     let interval = if m.max(n) <= MOST_EXACT {
         interval::exact(&differences, &distribution::masses(m, n), confidence)
     } else {
-        let (m, n) = (m as f64, n as f64);
+        let m = m as f64;
+        let n = n as f64;
         interval::approximate(&differences, m * n / 2.0, (m * n * (m + n + 1.0) / 12.0).sqrt(), confidence)
     };
     Ok(Location { estimate: summary::median_of_sorted(&differences), interval })

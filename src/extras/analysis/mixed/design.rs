@@ -125,7 +125,8 @@ impl Degrees {
         let centred =
             DMatrix::from_fn(x.nrows(), x.ncols(), |row, column| centred[(row, column)] / r[(column, column)].abs());
         let explained = rank(centred);
-        let (trials, participants) = (x.nrows(), sizes.len());
+        let trials = x.nrows();
+        let participants = sizes.len();
         let within = trials.saturating_sub(participants + explained);
         Self { within, between: participants.saturating_sub(x.ncols() - explained) }
     }

@@ -139,7 +139,8 @@ impl Solution {
     fn effect(&self, name: String, weights: &DVector<f64>) -> Effect {
         let estimate = weights.dot(&self.beta);
         let standard_error = self.precision.variance(weights).sqrt();
-        let (t, df) = (estimate / standard_error, self.precision.df(weights));
+        let t = estimate / standard_error;
+        let df = self.precision.df(weights);
         let interval = Interval::around(estimate, t_critical(self.confidence, df) * standard_error, self.confidence);
         Effect { name, estimate, standard_error, t, df, p: t_two_sided(t, df), interval }
     }
@@ -149,18 +150,22 @@ impl Solution {
         if effects.is_empty() {
             return Ok(None);
         }
-        let (first, count) = (effects.start, effects.len());
+        let first = effects.start;
+        let count = effects.len();
         let covariance: DMatrix<f64> = self.precision.covariance.view((first, first), (count, count)).into_owned();
         let turned = SymmetricEigen::try_new(covariance, f64::EPSILON, 1000)
             .ok_or(AnalysisError::NotEstimable { why: "the covariance of the conditions cannot be taken apart" })?;
-        let (mut squares, mut dfs) = (0.0, Vec::with_capacity(count));
+        let mut squares = 0.0;
+        let mut dfs = Vec::with_capacity(count);
         for (variance, direction) in turned.eigenvalues.iter().zip(turned.eigenvectors.column_iter()) {
             let mut weights = DVector::zeros(self.beta.len());
             weights.rows_mut(first, count).copy_from(&direction);
             squares += weights.dot(&self.beta).powi(2) / variance;
             dfs.push(self.precision.df(&weights));
         }
-        let (f, df, denominator_df) = (squares / count as f64, count as f64, together(&dfs));
+        let f = squares / count as f64;
+        let df = count as f64;
+        let denominator_df = together(&dfs);
         Ok(Some(JointTest { f, df, denominator_df, p: f_above(f, df, denominator_df) }))
     }
 }

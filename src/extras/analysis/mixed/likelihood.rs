@@ -47,7 +47,8 @@ impl<'a> Profile<'a> {
             design.q[(row, column)] - mean(q_sums[(design.of_row[row], column)], row)
         });
         let y_within = DVector::from_fn(design.rows(), |row, _| design.y[row] - mean(y_sums[design.of_row[row]], row));
-        let (within, within_y) = (q_within.tr_mul(&q_within), q_within.tr_mul(&y_within));
+        let within = q_within.tr_mul(&q_within);
+        let within_y = q_within.tr_mul(&y_within);
         Self { design, criterion, q_within, y_within, within, within_y, q_sums, y_sums }
     }
 
@@ -55,7 +56,8 @@ impl<'a> Profile<'a> {
     pub(super) fn at(&self, ratio: f64) -> Option<Point> {
         let inflation =
             DVector::from_iterator(self.design.sizes.len(), self.design.sizes.iter().map(|n| 1.0 + n * ratio));
-        let (mut information, mut right) = (self.within.clone(), self.within_y.clone());
+        let mut information = self.within.clone();
+        let mut right = self.within_y.clone();
         for (participant, n) in self.design.sizes.iter().enumerate() {
             let weight = 1.0 / (n * inflation[participant]);
             let row = self.q_sums.row(participant).transpose();

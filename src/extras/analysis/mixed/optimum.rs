@@ -22,7 +22,8 @@ pub(super) fn ratio(design: &Design, criterion: Criterion) -> Result<f64> {
     if best == 0 && profile.slope(&points[0]) >= 0.0 {
         return Ok(0.0);
     }
-    let (low, high) = (points[best.saturating_sub(1)].ratio, points[best + 1].ratio);
+    let low = points[best.saturating_sub(1)].ratio;
+    let high = points[best + 1].ratio;
     zero(low, high, |ratio| profile.at(ratio).map(|point| profile.slope(&point)))
 }
 

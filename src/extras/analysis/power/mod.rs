@@ -62,7 +62,8 @@ impl Simulation {
         check::not_too_many("simulated studies", self.runs, 1_000_000)?;
         check::share("the level of significance", self.level)?;
         let mut rng = fastrand::Rng::with_seed(self.seed);
-        let (mut significant, mut refused) = (0, 0);
+        let mut significant = 0;
+        let mut refused = 0;
         for _ in 0..self.runs {
             match study(&mut rng) {
                 // Rounding must not turn a p-value that is just at the level away.

@@ -21,7 +21,8 @@ pub struct MixedStudy {
 impl MixedStudy {
     /// With the variances of a pilot and the given effects, which are best the least ones that matter and not those that the pilot happened to show.
     pub fn from_pilot(pilot: &Fit, effects: &[f64], trials: usize) -> Self {
-        let (participant_variance, residual_variance) = (pilot.participant_variance, pilot.residual_variance);
+        let participant_variance = pilot.participant_variance;
+        let residual_variance = pilot.residual_variance;
         Self { effects: effects.to_vec(), trials, participant_variance, residual_variance }
     }
 
@@ -30,7 +31,8 @@ impl MixedStudy {
         check::enough("trials under each condition", self.trials, 1)?;
         check::finite("the variance of the participants", &[self.participant_variance])?;
         if self.participant_variance < 0.0 {
-            let (range, value) = ("zero or a positive number", self.participant_variance);
+            let range = "zero or a positive number";
+            let value = self.participant_variance;
             return Err(AnalysisError::OutOfRange { what: "the variance of the participants", range, value });
         }
         check::positive("the residual variance", self.residual_variance)
@@ -51,7 +53,8 @@ impl Simulation {
         let condition: Vec<String> = (0..all).map(|row| (row % conditions).to_string()).collect();
         let means: Vec<f64> =
             (0..all).map(|row| if row % conditions == 0 { 0.0 } else { study.effects[row % conditions - 1] }).collect();
-        let (between, within) = (study.participant_variance.sqrt(), study.residual_variance.sqrt());
+        let between = study.participant_variance.sqrt();
+        let within = study.residual_variance.sqrt();
         self.run(|rng| {
             let mut intercept = 0.0;
             let mut response = vec![0.0; all];

@@ -99,7 +99,8 @@ pub fn of_differences(differences: &[f64], options: &Options) -> Result<SignedRa
     let sd = (ranks.iter().map(|rank| (*rank as f64).powi(2)).sum::<f64>() / 16.0).sqrt();
     let z = above.signum() * (above.abs() - 0.5).max(0.0) / sd;
     let p = if exact { distribution::two_sided(&ranks, plus.min(total - plus)) } else { normal_two_sided(z) };
-    let (w_plus, w_minus) = (plus as f64 / 2.0, (total - plus) as f64 / 2.0);
+    let w_plus = plus as f64 / 2.0;
+    let w_minus = (total - plus) as f64 / 2.0;
     Ok(SignedRank { n: ranks.len(), zeros: differences.len() - ranks.len(), w_plus, w_minus, z, p, exact })
 }
 

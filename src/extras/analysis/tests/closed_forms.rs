@@ -54,7 +54,8 @@ fn a_balanced_mixed_model_is_the_analysis_of_variance() {
 fn a_mixed_model_of_two_conditions_is_the_paired_t_test() {
     let fit = balanced(2, Criterion::Reml);
     let differences = TABLE.map(|row| row[1] - row[0]);
-    let (t, effect) = (t_test::of_differences(&differences, 0.95).unwrap(), fit.effect("1").unwrap());
+    let t = t_test::of_differences(&differences, 0.95).unwrap();
+    let effect = fit.effect("1").unwrap();
     near(effect.t, t.t, 1e-11);
     near(effect.p, t.p, 1e-10);
     near(effect.interval.lower, t.interval.lower, 1e-10);
@@ -64,7 +65,8 @@ fn a_mixed_model_of_two_conditions_is_the_paired_t_test() {
 #[test]
 fn likelihood_takes_balanced_variances_by_the_share_of_participants() {
     // Of a balanced design, ML divides both sums of squares by one participant more.
-    let (reml, ml) = (balanced(3, Criterion::Reml), balanced(3, Criterion::Ml));
+    let reml = balanced(3, Criterion::Reml);
+    let ml = balanced(3, Criterion::Ml);
     near(ml.residual_variance, reml.residual_variance * 5.0 / 6.0, 1e-11);
     let whole = |fit: &Fit| 3.0 * fit.participant_variance + fit.residual_variance;
     near(whole(&ml), whole(&reml) * 5.0 / 6.0, 1e-11);
@@ -73,7 +75,8 @@ fn likelihood_takes_balanced_variances_by_the_share_of_participants() {
 #[test]
 fn participants_that_are_no_more_alike_than_others_have_no_variance() {
     // Both participants have the same mean, so the variance between them would be negative: ordinary least squares.
-    let (participant, condition) = (["a", "a", "a", "a", "b", "b", "b", "b"], ["x", "y", "x", "y", "x", "y", "x", "y"]);
+    let participant = ["a", "a", "a", "a", "b", "b", "b", "b"];
+    let condition = ["x", "y", "x", "y", "x", "y", "x", "y"];
     let fit = Model::new(&participant, &condition, "x", &[1.0, 4.0, 3.0, 2.0, 2.0, 3.0, 2.0, 3.0])
         .unwrap()
         .fit(Criterion::Reml, 0.95)
@@ -101,7 +104,8 @@ fn a_covariate_with_a_large_mean_costs_no_digits() {
             .fit(Criterion::Reml, 0.95)
             .unwrap()
     };
-    let (near_zero, far) = (fit(0.0), fit(1e6));
+    let near_zero = fit(0.0);
+    let far = fit(1e6);
     near(far.effects[3].estimate, near_zero.effects[3].estimate, 1e-8);
     near(far.effects[3].p, near_zero.effects[3].p, 1e-8);
     near(far.effects[2].df, near_zero.effects[2].df, 1e-8);

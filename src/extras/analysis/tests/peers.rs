@@ -56,9 +56,12 @@ fn words(value: &Value) -> Vec<&str> {
 
 #[test]
 fn the_signed_rank_test_gives_the_numbers_of_r_and_scipy() {
-    let (peers, mut worst) = (peers(), Worst::default());
+    let peers = peers();
+    let mut worst = Worst::default();
     for set in sets(&peers, "signed_rank") {
-        let (r, python, d) = (&set["r"], &set["python"], numbers(&set["differences"]));
+        let r = &set["r"];
+        let python = &set["python"];
+        let d = numbers(&set["differences"]);
         let test = |zeros, distribution| signed_rank::of_differences(&d, &Options { zeros, distribution }).unwrap();
         worst.compare("W+, R", test(Zeros::Wilcoxon, Distribution::Normal).w_plus, &r["v"]);
         worst.compare("normal p, R", test(Zeros::Wilcoxon, Distribution::Normal).p, &r["normal"]);
@@ -102,10 +105,13 @@ fn the_signed_rank_test_gives_the_numbers_of_r_and_scipy() {
 
 #[test]
 fn the_mann_whitney_test_gives_the_numbers_of_r_and_scipy() {
-    let (peers, mut worst) = (peers(), Worst::default());
+    let peers = peers();
+    let mut worst = Worst::default();
     for set in sets(&peers, "mann_whitney") {
-        let (r, python) = (&set["r"], &set["python"]);
-        let (first, second) = (numbers(&set["first"]), numbers(&set["second"]));
+        let r = &set["r"];
+        let python = &set["python"];
+        let first = numbers(&set["first"]);
+        let second = numbers(&set["second"]);
         let test = |distribution| mann_whitney::test(&first, &second, distribution).unwrap();
         worst.compare("U, R", test(Distribution::Normal).u, &r["w"]);
         worst.compare("normal p, R", test(Distribution::Normal).p, &r["normal"]);
@@ -128,10 +134,12 @@ fn the_mann_whitney_test_gives_the_numbers_of_r_and_scipy() {
 
 #[test]
 fn friedmans_test_gives_the_numbers_of_r_and_scipy() {
-    let (peers, mut worst) = (peers(), Worst::default());
+    let peers = peers();
+    let mut worst = Worst::default();
     for set in sets(&peers, "friedman") {
         let rows: Vec<Vec<f64>> = set["rows"].as_array().unwrap().iter().map(numbers).collect();
-        let (test, python) = (friedman::test(&rows).unwrap(), &set["python"]);
+        let test = friedman::test(&rows).unwrap();
+        let python = &set["python"];
         worst.compare("chi-square, R", test.chi_square, &set["r"]["chi_square"]);
         worst.compare("p, R", test.p, &set["r"]["p"]);
         worst.compare("p, SciPy", test.p, &python["p"]);
@@ -143,7 +151,8 @@ fn friedmans_test_gives_the_numbers_of_r_and_scipy() {
 }
 
 fn fit(set: &Value, criterion: Criterion) -> Fit {
-    let (participant, condition) = (words(&set["participant"]), words(&set["condition"]));
+    let participant = words(&set["participant"]);
+    let condition = words(&set["condition"]);
     let response = numbers(&set["response"]);
     let mut model = Model::new(&participant, &condition, set["reference"].as_str().unwrap(), &response).unwrap();
     // The script's order; a JSON map is read in alphabetical order.
@@ -157,11 +166,13 @@ fn fit(set: &Value, criterion: Criterion) -> Fit {
 
 #[test]
 fn the_mixed_model_gives_the_numbers_of_lmertest() {
-    let (peers, mut worst) = (peers(), Worst::default());
+    let peers = peers();
+    let mut worst = Worst::default();
     for (set, criterion, name) in
         sets(&peers, "mixed").flat_map(|set| [(set, Criterion::Reml, "reml"), (set, Criterion::Ml, "ml")])
     {
-        let (fit, r) = (fit(set, criterion), &set["r"][name]);
+        let fit = fit(set, criterion);
+        let r = &set["r"][name];
         let each = |of: fn(&crate::mixed::Effect) -> f64| fit.effects.iter().map(of).collect::<Vec<_>>();
         worst.compare_all("estimates", each(|effect| effect.estimate), &r["estimate"]);
         worst.compare_all("standard errors", each(|effect| effect.standard_error), &r["error"]);
@@ -182,9 +193,11 @@ fn the_mixed_model_gives_the_numbers_of_lmertest() {
 /// Not the standard errors, which it takes from another information matrix: the same for balanced trials only.
 #[test]
 fn the_mixed_model_gives_the_estimates_of_statsmodels() {
-    let (peers, mut worst) = (peers(), Worst::default());
+    let peers = peers();
+    let mut worst = Worst::default();
     for set in sets(&peers, "mixed") {
-        let (fit, python) = (fit(set, Criterion::Reml), &set["python"]);
+        let fit = fit(set, Criterion::Reml);
+        let python = &set["python"];
         worst.compare_all(
             "estimates, statsmodels",
             fit.effects.iter().map(|effect| effect.estimate),
@@ -202,7 +215,8 @@ fn the_mixed_model_gives_the_estimates_of_statsmodels() {
 
 #[test]
 fn the_bootstrap_gives_the_intervals_of_scipy_for_the_same_draws() {
-    let (peers, mut worst) = (peers(), Worst::default());
+    let peers = peers();
+    let mut worst = Worst::default();
     for set in sets(&peers, "bootstrap") {
         let sample = numbers(&set["sample"]);
         for (method, name) in [(bootstrap::Method::Percentile, "percentile"), (bootstrap::Method::BiasCorrected, "BCa")]
@@ -224,10 +238,14 @@ fn the_bootstrap_gives_the_intervals_of_scipy_for_the_same_draws() {
 
 #[test]
 fn effect_sizes_are_those_of_their_definitions() {
-    let (peers, mut worst) = (peers(), Worst::default());
+    let peers = peers();
+    let mut worst = Worst::default();
     for set in sets(&peers, "effect") {
-        let (first, second, python) = (numbers(&set["first"]), numbers(&set["second"]), &set["python"]);
-        let (d, dz) = (effect::cohens_d(&first, &second).unwrap(), effect::cohens_dz(&first).unwrap());
+        let first = numbers(&set["first"]);
+        let second = numbers(&set["second"]);
+        let python = &set["python"];
+        let d = effect::cohens_d(&first, &second).unwrap();
+        let dz = effect::cohens_dz(&first).unwrap();
         for (found, name) in [(d.d, "d"), (d.g, "g"), (dz.d, "dz"), (dz.g, "gz")] {
             worst.compare("d, NumPy", found, &python[name]);
         }
@@ -239,7 +257,8 @@ fn effect_sizes_are_those_of_their_definitions() {
 
 #[test]
 fn tails_and_quantiles_are_those_of_scipy() {
-    let (peers, mut worst) = (peers(), Worst::default());
+    let peers = peers();
+    let mut worst = Worst::default();
     let rows = |name: &str| peers["distributions"][name].as_array().unwrap().clone();
     let at = |row: &Value, column: usize| row[column].as_f64().unwrap();
     // Of tails the ratio is compared: a small p-value keeps its digits.
@@ -273,7 +292,8 @@ fn tails_and_quantiles_are_those_of_scipy() {
 
 #[test]
 fn corrections_quantiles_and_wilsons_interval_are_those_of_scipy_and_statsmodels() {
-    let (peers, mut worst) = (peers(), Worst::default());
+    let peers = peers();
+    let mut worst = Worst::default();
     let p = numbers(&peers["corrections"]["p"]);
     worst.compare_all("Holm, statsmodels", correction::holm(&p).unwrap(), &peers["corrections"]["holm"]);
     worst.compare_all(

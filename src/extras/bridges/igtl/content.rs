@@ -345,12 +345,15 @@ impl Content {
                 Self::Sensor(Sensor { status, unit, values })
             }
             Kind::Status => {
-                let (code, subcode) = (StatusCode(from.u16()?), from.u64()?.cast_signed());
-                let (name, rest) = (from.name(NAME)?, from.0.len());
+                let code = StatusCode(from.u16()?);
+                let subcode = from.u64()?.cast_signed();
+                let name = from.name(NAME)?;
+                let rest = from.0.len();
                 Self::Status(Status { code, subcode, name, text: from.name(rest)? })
             }
             Kind::Text => {
-                let (encoding, length) = (from.u16()?, from.u16()?);
+                let encoding = from.u16()?;
+                let length = from.u16()?;
                 fits(bytes == 4 + usize::from(length))?;
                 Self::Text(Text { encoding, bytes: from.0.to_vec() })
             }

@@ -49,7 +49,8 @@ impl Header {
         let kind = from.bytes(TYPE)?.iter().take_while(|byte| **byte != 0);
         let kind = kind.map(|byte| if byte.is_ascii_graphic() { char::from(*byte) } else { '?' }).collect();
         let device = from.name(DEVICE)?;
-        let (seconds, fraction) = (u64::from(from.u32()?), u64::from(from.u32()?));
+        let seconds = u64::from(from.u32()?);
+        let fraction = u64::from(from.u32()?);
         let time_ns = seconds * 1_000_000_000 + ((fraction * 1_000_000_000 + (1 << 31)) >> 32);
         Ok(Self { version, kind, device, time_ns, body_bytes: from.u64()?, crc: from.u64()? })
     }
@@ -89,7 +90,8 @@ impl Message {
         bytes.extend([0; 16]);
         let body = begin + Header::BYTES;
         self.content.put(bytes);
-        let (length, crc) = ((bytes.len() - body) as u64, CRC.checksum(&bytes[body..]));
+        let length = (bytes.len() - body) as u64;
+        let crc = CRC.checksum(&bytes[body..]);
         bytes[body - 16..body - 8].copy_from_slice(&length.to_be_bytes());
         bytes[body - 8..body].copy_from_slice(&crc.to_be_bytes());
     }
@@ -114,7 +116,8 @@ impl Message {
 /// The content in a body of version 3: behind the extended header, before the metadata.
 fn within(body: &[u8]) -> Result<&[u8], Wrong> {
     let mut from = Cursor(body);
-    let (extended, index) = (usize::from(from.u16()?), usize::from(from.u16()?));
+    let extended = usize::from(from.u16()?);
+    let index = usize::from(from.u16()?);
     let values = from.u32()? as usize;
     let end = body.len().checked_sub(index).and_then(|rest| rest.checked_sub(values)).ok_or(Wrong::Short)?;
     if extended < EXTENDED {
@@ -134,7 +137,9 @@ fn metadata(region: &[u8], index: usize, values: usize) -> Result<(), Wrong> {
     let count = usize::from(from.u16()?);
     let mut told = 0_u64;
     for _ in 0..count {
-        let (key, _, value) = (from.u16()?, from.u16()?, from.u32()?);
+        let key = from.u16()?;
+        let _ = from.u16()?;
+        let value = from.u32()?;
         told += u64::from(key) + u64::from(value);
     }
     if index == 2 + 8 * count && told == values as u64 { Ok(()) } else { Err(Wrong::Short) }
@@ -142,6 +147,7 @@ fn metadata(region: &[u8], index: usize, values: usize) -> Result<(), Wrong> {
 
 /// Seconds in the upper half, their fraction in the lower.
 fn stamp(time_ns: u64) -> u64 {
-    let (seconds, rest_ns) = (time_ns / 1_000_000_000, time_ns % 1_000_000_000);
+    let seconds = time_ns / 1_000_000_000;
+    let rest_ns = time_ns % 1_000_000_000;
     (seconds << 32) | ((rest_ns << 32) / 1_000_000_000)
 }

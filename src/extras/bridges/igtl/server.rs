@@ -247,7 +247,8 @@ fn take_in(stream: TcpStream, shared: &Arc<Shared>, threads: &mut Vec<JoinHandle
     drop(clients);
     let begin = |name: &str, run: Box<dyn FnOnce() + Send>| Builder::new().name(name.to_owned()).spawn(run);
     let writer = Arc::clone(&client);
-    let (reader, hurried) = (Arc::clone(&client), Arc::clone(shared));
+    let reader = Arc::clone(&client);
+    let hurried = Arc::clone(shared);
     let writes = begin("igtl-writer", Box::new(move || writer.write()));
     let reads = begin("igtl-reader", Box::new(move || reader.read(|| hurried.hurry(), &hurried.pictures)));
     if writes.is_err() || reads.is_err() {

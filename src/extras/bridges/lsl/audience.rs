@@ -50,7 +50,9 @@ pub(super) struct Marking {
 impl Marking {
     pub(super) fn new(shared: Arc<Shared>, about: About) -> Self {
         let About { contact_n, trial, words } = about;
-        let (clock, channels, early) = (LoopClock::default(), Vec::new(), Vec::new());
+        let clock = LoopClock::default();
+        let channels = Vec::new();
+        let early = Vec::new();
         let follower = Follower::new(contact_n, words);
         Self { shared, trial, follower, clock, channels, started_ns: 0, last_s: None, early }
     }

@@ -26,7 +26,8 @@ impl LoopClock {
 
     /// The same, once the estimate can be relied on.
     pub(super) fn settled(&self, t_s: f64) -> Option<f64> {
-        let (since_s, (_, now_s)) = (self.since_s?, self.offset_s?);
+        let since_s = self.since_s?;
+        let (_, now_s) = self.offset_s?;
         self.at(t_s).filter(|_| now_s - since_s >= SETTLES_S)
     }
 

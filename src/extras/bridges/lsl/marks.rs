@@ -32,7 +32,8 @@ impl Follower {
     /// What has happened with these ticks.
     pub(super) fn tick(&mut self, ticks: &[Option<Tick>; SIDES], mut mark: impl FnMut(String)) {
         for tick in ticks.iter().flatten() {
-            let (side, place) = (tick.side, tick.side.index());
+            let side = tick.side;
+            let place = tick.side.index();
             let before = self.states[place].replace(tick.state);
             if before != Some(tick.state) {
                 self.change(side, before, tick.state, &mut mark);

@@ -48,7 +48,8 @@ fn at(number: u32, like: &Tick) -> Tick {
 
 #[test]
 fn a_session_gives_each_mark_once_at_its_tick() {
-    let (mut follower, mut marks) = (Follower::new(CONTACT_N, WORDS), Vec::new());
+    let mut follower = Follower::new(CONTACT_N, WORDS);
+    let mut marks = Vec::new();
     for (tick, shown) in ticks().iter().enumerate() {
         follower.tick(shown, |what| marks.push((tick, what)));
     }
@@ -62,7 +63,8 @@ fn a_session_gives_each_mark_once_at_its_tick() {
 fn marks_tell_no_condition() {
     // The same session with every number of the rendering changed gives the same marks.
     let told = |change: &dyn Fn(&mut Tick)| {
-        let (mut follower, mut marks) = (Follower::new(CONTACT_N, WORDS), Vec::new());
+        let mut follower = Follower::new(CONTACT_N, WORDS);
+        let mut marks = Vec::new();
         for (tick, shown) in ticks().iter_mut().enumerate() {
             shown.iter_mut().flatten().for_each(change);
             follower.tick(shown, |what| marks.push((tick, what)));

@@ -12,7 +12,8 @@ fn cause(views: &[Sight]) -> Cause {
 #[test]
 fn every_degenerate_set_is_refused_with_its_cause() {
     let mut rng = Rng::with_seed(21);
-    let (lens, board) = (lens(-0.25), board());
+    let lens = lens(-0.25);
+    let board = board();
     for _ in 0..3 {
         let good = usual(&mut rng, &lens, &board, 12);
         let few = cause(&noisy(&mut rng, &lens, &good[..5], 0.1));
@@ -78,7 +79,8 @@ fn a_view_that_was_misread_is_left_out() {
 #[test]
 fn who_follows_the_session_has_a_good_set() {
     let mut rng = Rng::with_seed(23);
-    let (lens, board) = (lens(-0.3), board());
+    let lens = lens(-0.3);
+    let board = board();
     let mut session = Session::new(board, SIZE_PX);
     let mut asked = Vec::new();
     for _ in 0..60 {

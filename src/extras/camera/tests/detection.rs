@@ -40,7 +40,8 @@ fn corners_are_found_through_any_lens_blur_noise_and_light() {
 
 #[test]
 fn a_board_is_the_right_way_up_however_it_is_turned() {
-    let (lens, board) = (lens(-0.2), board());
+    let lens = lens(-0.2);
+    let board = board();
     let portrait = Portrait::new(&lens);
     let mut rng = Rng::with_seed(2);
     for turn in [0.0, 90.0, 180.0, 270.0, 45.0, 200.0] {
@@ -53,7 +54,8 @@ fn a_board_is_the_right_way_up_however_it_is_turned() {
 
 #[test]
 fn what_is_not_the_whole_board_is_refused_and_told() {
-    let (lens, board) = (lens(0.0), board());
+    let lens = lens(0.0);
+    let board = board();
     let portrait = Portrait::new(&lens);
     let mut rng = Rng::with_seed(3);
     let whole = pose(&lens, &board, [0.0, 0.0], 0.1, [12.0, 8.0, 5.0]);

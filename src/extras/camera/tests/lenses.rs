@@ -46,7 +46,8 @@ fn terms_are_found_where_the_lens_has_them_and_left_out_where_not() {
 fn the_standard_deviations_are_those_of_many_calibrations() {
     let mut rng = Rng::with_seed(13);
     let real = lens(-0.3);
-    let (mut scaled, mut count) = (0.0, 0.0);
+    let mut scaled = 0.0;
+    let mut count = 0.0;
     for _ in 0..16 {
         let poses = usual(&mut rng, &real, &board(), 12);
         let found = calibrate(&board(), SIZE_PX, &noisy(&mut rng, &real, &poses, 0.1)).lens.unwrap();
@@ -68,7 +69,10 @@ fn the_standard_deviations_are_those_of_many_calibrations() {
 #[ignore = "figures of docs/endoscope.md: some minutes; `./dev figures` runs it"]
 fn figures_of_calibrations_from_rendered_boards() {
     let mut rng = Rng::with_seed(14);
-    let (mut errors, mut held_out, mut refused, mut seen) = (Vec::new(), Vec::new(), 0, 0);
+    let mut errors = Vec::new();
+    let mut held_out = Vec::new();
+    let mut refused = 0;
+    let mut seen = 0;
     for set in 0..20 {
         let bend = Bend { k1: 0.6 * rng.f64() - 0.3, ..Bend::default() };
         let centre_px = Vector2::new(640.0 + 30.0 * normal(&mut rng), 360.0 + 20.0 * normal(&mut rng));

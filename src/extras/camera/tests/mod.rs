@@ -52,7 +52,8 @@ fn usual(rng: &mut Rng, lens: &Lens, board: &Board, count: usize) -> Vec<Isometr
             [-0.6, 0.0],
         ];
         let tilts = [[0.0, 0.0], [28.0, 0.0], [-28.0, 0.0], [0.0, 28.0], [0.0, -28.0], [20.0, 20.0]];
-        let (share, tilt) = (shares[k % shares.len()], tilts[k % tilts.len()]);
+        let share = shares[k % shares.len()];
+        let tilt = tilts[k % tilts.len()];
         let mut vary = |by: f64| by * (2.0 * rng.f64() - 1.0);
         let share = share.map(|share| share + vary(0.12));
         let far_m = 0.085 + vary(0.02);
@@ -115,7 +116,8 @@ impl Sensor {
 
 /// Views found in rendered pictures.
 fn rendered(rng: &mut Rng, lens: &Lens, poses: &[Isometry3<f64>], sensor: Sensor) -> Vec<Sight> {
-    let (board, portrait) = (board(), Portrait::new(lens));
+    let board = board();
+    let portrait = Portrait::new(lens);
     let views = poses.iter().map(|pose| find(&sensor.picture(rng, &portrait, &board, pose), &board));
     views.enumerate().map(|(at, view)| view.unwrap_or_else(|why| panic!("view {at}: {why:?}"))).collect()
 }

@@ -47,7 +47,8 @@ impl Endpoint {
         let Some(session) = self.sessions[at].as_mut() else { return };
         let is_new = !session.is_confirmed;
         session.is_confirmed = true;
-        let (peer, said) = (session.peer, session.from_console);
+        let peer = session.peer;
+        let said = session.from_console;
         if !said.asks {
             session.is_denied = false;
         }
@@ -82,7 +83,9 @@ impl Endpoint {
     fn give_to(&mut self, at: usize) {
         self.active = Some(at);
         self.holding.question = None;
-        (self.is_closed, self.jumped, self.heard_s) = (false, None, Some(self.now_s));
+        self.is_closed = false;
+        self.jumped = None;
+        self.heard_s = Some(self.now_s);
         if let Some(session) = self.sessions[at].as_mut() {
             session.stream.begin();
         }

@@ -24,7 +24,8 @@ impl Endpoint {
 
     /// A session of a handshake that has ended. A console uses it from now on, a follower when it is confirmed.
     fn opened(&mut self, mut session: Box<Session>) {
-        (session.opened_s, session.heard_s) = (self.now_s, self.now_s);
+        session.opened_s = self.now_s;
+        session.heard_s = self.now_s;
         if !self.is_follower {
             if self.session().is_some_and(|old| self.now_s - old.heard_s < SEEK_AFTER_S) {
                 // The old one has come back meanwhile, and goes on where it was.
@@ -34,7 +35,9 @@ impl Endpoint {
             if let Some(old) = self.active {
                 self.end(old);
             }
-            (self.refused, self.is_closed, self.answer) = (None, false, None);
+            self.refused = None;
+            self.is_closed = false;
+            self.answer = None;
             if self.wish == Wish::AsksAgain {
                 self.wish = Wish::Asks;
             }

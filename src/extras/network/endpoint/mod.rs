@@ -142,7 +142,8 @@ impl Endpoint {
 
     /// Takes what has arrived and sends what keeps the session alive; once per tick. Gives the payloads that are due at `now_s`.
     pub fn poll(&mut self, now_s: f64) -> Received<'_> {
-        (self.now_s, self.looked) = (now_s, system_time());
+        self.now_s = now_s;
+        self.looked = system_time();
         self.take_news();
         self.hear();
         self.look_after_sessions();
@@ -209,7 +210,8 @@ impl Endpoint {
 
     /// Datagrams that were dropped since the endpoint was opened.
     pub fn dropped(&self) -> Dropped {
-        let (shared, own) = (&self.clerk.shared, self.dropped);
+        let shared = &self.clerk.shared;
+        let own = self.dropped;
         Dropped {
             malformed: own.malformed + shared.malformed.load(Relaxed),
             foreign_version: own.foreign_version + shared.foreign_version.load(Relaxed),

@@ -104,7 +104,8 @@ fn keys() -> Keys {
 
 /// A follower and its console, open.
 fn pair() -> (Time, End, End, Keys, Keys) {
-    let (theirs, ours) = (keys(), keys());
+    let theirs = keys();
+    let ours = keys();
     let mut far = End::new(follower(&theirs, &[&ours], HOME.into()));
     let address = far.endpoint.address().unwrap();
     let mut near = End::new(console(&ours, theirs.public(), address));
@@ -118,7 +119,8 @@ fn pair() -> (Time, End, End, Keys, Keys) {
 fn two_loops_exchange_payloads_at_a_thousand_per_second() {
     let _alone = alone();
     judged(|| {
-        let (theirs, ours) = (keys(), keys());
+        let theirs = keys();
+        let ours = keys();
         let far = follower(&theirs, &[&ours], HOME.into());
         let near = console(&ours, theirs.public(), far.address().unwrap());
         let begin = Instant::now();
@@ -208,7 +210,9 @@ fn a_side_that_was_started_anew_is_back_within_a_second() {
 fn one_console_holds_and_another_gets_control_only_by_consent() {
     let _alone = alone();
     judged(|| {
-        let (theirs, first, second) = (keys(), keys(), keys());
+        let theirs = keys();
+        let first = keys();
+        let second = keys();
         let mut far = End::new(follower(&theirs, &[&first, &second], HOME.into()));
         let address = far.endpoint.address().unwrap();
         let mut holder = End::new(console(&first, theirs.public(), address));
@@ -335,7 +339,8 @@ fn a_flood_of_handshakes_and_noise_does_not_stop_the_stream() {
         });
         time.run(&mut [&mut far, &mut near], 0.2);
         assert!(are_open(&[&mut far, &mut near]));
-        let (dropped, figures) = (far.endpoint.dropped(), far.endpoint.figures());
+        let dropped = far.endpoint.dropped();
+        let figures = far.endpoint.figures();
         assert!(
             dropped.flooded + dropped.refused > sent / 4 && dropped.unknown_session > sent / 8,
             "{dropped:?} of {sent}"
@@ -351,7 +356,8 @@ fn a_flood_of_handshakes_and_noise_does_not_stop_the_stream() {
 fn a_relay_makes_the_line_bad_and_repeated_datagrams_are_dropped() {
     let _alone = alone();
     judged(|| {
-        let (theirs, ours) = (keys(), keys());
+        let theirs = keys();
+        let ours = keys();
         let mut far = End::new(follower(&theirs, &[&ours], HOME.into()));
         let to = far.endpoint.address().unwrap();
         let line =

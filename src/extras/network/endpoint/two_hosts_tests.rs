@@ -76,14 +76,17 @@ impl Drop for Hosts {
 #[ignore = "a part of the test with two hosts"]
 fn one_host() {
     let Some(folder) = std::env::var_os(FOLDER).map(PathBuf::from) else { return };
-    let (keys, peers) = (Keys::open(&folder).unwrap(), Peers::open(&folder).unwrap());
+    let keys = Keys::open(&folder).unwrap();
+    let peers = Peers::open(&folder).unwrap();
     let follower: SocketAddr = (Ipv4Addr::new(10, 77, 0, 1), PORT).into();
     let role = match peers.list() {
         [peer] if peer.name == "follower" => Role::Console { follower, key: peer.key },
         _ => Role::Follower { at: Some(follower), consoles: peers },
     };
     let mut end = Endpoint::open(Config::new(role, keys)).unwrap();
-    let (begin, mut wake, mut told) = (Instant::now(), Instant::now(), String::new());
+    let begin = Instant::now();
+    let mut wake = Instant::now();
+    let mut told = String::new();
     let mut ages_s = Vec::new();
     while begin.elapsed().as_secs_f64() < LENGTH_S {
         let now_s = begin.elapsed().as_secs_f64();
@@ -105,7 +108,8 @@ fn one_host() {
         wake = (wake + TICK).max(Instant::now());
         sleep(wake.saturating_duration_since(Instant::now()));
     }
-    let (figures, dropped) = (end.figures(), end.dropped());
+    let figures = end.figures();
+    let dropped = end.dropped();
     ages_s.sort_by(f64::total_cmp);
     let share = |share: f64| ages_s.get((ages_s.len() as f64 * share) as usize).map_or(f64::NAN, |age_s| age_s * 1e3);
     let playout_ms = figures.playout_s.unwrap_or_default() * 1e3;

@@ -252,7 +252,8 @@ impl Approach {
     fn begin_again(&mut self) -> Result<(), KeyError> {
         let mut token = [0; 8];
         getrandom::fill(&mut token).map_err(|_| KeyError::Random)?;
-        (self.token, self.waits) = (u64::from_le_bytes(token), Waits::Cookie);
+        self.token = u64::from_le_bytes(token);
+        self.waits = Waits::Cookie;
         Ok(())
     }
 
@@ -285,7 +286,8 @@ impl Approach {
         match (wire::kind(datagram), &mut self.waits) {
             (Ok(Kind::Cookie), Waits::Cookie) => match self.initiate(content, out) {
                 Some(answer) => {
-                    (self.next_s, self.pause_s) = (now_s + AGAIN_S, AGAIN_S);
+                    self.next_s = now_s + AGAIN_S;
+                    self.pause_s = AGAIN_S;
                     Heard { answer, trouble: None, agreed: None }
                 }
                 None => Heard::trouble(Trouble::Malformed),
@@ -293,14 +295,16 @@ impl Approach {
             (Ok(Kind::Response), Waits::Response { .. }) => match self.finish(content) {
                 Some(agreed) => {
                     // Time for the session to be taken over, before another is asked for.
-                    (self.next_s, self.pause_s) = (now_s + AGAIN_MAX_S, AGAIN_S);
+                    self.next_s = now_s + AGAIN_MAX_S;
+                    self.pause_s = AGAIN_S;
                     Heard { answer: 0, trouble: None, agreed: Some(Box::new(agreed)) }
                 }
                 None => Heard::trouble(Trouble::Refused),
             },
             (Ok(Kind::Refusal), _) => {
                 let refusal = content.first_chunk().and_then(|&bytes| Refusal::from_bytes(bytes));
-                (self.next_s, self.pause_s) = (now_s + AGAIN_MAX_S, AGAIN_MAX_S);
+                self.next_s = now_s + AGAIN_MAX_S;
+                self.pause_s = AGAIN_MAX_S;
                 Heard::trouble(refusal.map_or(Trouble::Malformed, Trouble::TheyRefuse))
             }
             _ => Heard::trouble(Trouble::Malformed),
@@ -326,7 +330,8 @@ impl Approach {
 
     fn finish(&mut self, message: &[u8]) -> Option<Agreed> {
         let Waits::Response { noise, ours, .. } = &mut self.waits else { return None };
-        let (mut theirs, ours) = ([0; HANDSHAKE_MAX], *ours);
+        let mut theirs = [0; HANDSHAKE_MAX];
+        let ours = *ours;
         // A message that fails leaves the state as it was: the true one may still come.
         let len = noise.read_message(message, &mut theirs).ok()?;
         let theirs: [u8; NUMBER_LEN] = theirs[..len].try_into().ok()?;

@@ -23,13 +23,15 @@ use crate::{
 
 /// Both ends of a session between two machines that were made up, without a network.
 pub(crate) fn both_ends() -> Result<[Agreed; 2], KeyError> {
-    let (console, follower) = (Keys::random()?, Keys::random()?);
+    let console = Keys::random()?;
+    let follower = Keys::random()?;
     let mut consoles = Peers::default();
     consoles.add("console", console.public())?;
     let from = (Ipv4Addr::LOCALHOST, 1).into();
     let mut reception = Reception::new(follower.clone(), consoles, 0.0)?;
     let mut approach = Approach::new(console, follower.public())?;
-    let (mut there, mut back) = ([0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX]);
+    let mut there = [0; HANDSHAKE_MAX];
+    let mut back = [0; HANDSHAKE_MAX];
     let mut len = approach.due(0.0, &mut there);
     // Two round trips.
     for _ in 0..2 {

@@ -11,7 +11,9 @@ type Datagram = [u8; HANDSHAKE_MAX];
 
 /// A follower that knows one console, that console, and one that it does not know.
 fn machines() -> (Reception, Approach, Approach) {
-    let (follower, console, stranger) = (Keys::random().unwrap(), Keys::random().unwrap(), Keys::random().unwrap());
+    let follower = Keys::random().unwrap();
+    let console = Keys::random().unwrap();
+    let stranger = Keys::random().unwrap();
     let mut peers = Peers::default();
     peers.add("console", console.public()).unwrap();
     let key = follower.public();
@@ -30,7 +32,8 @@ fn talk(
     from: SocketAddr,
     now_s: f64,
 ) -> (usize, bool, Option<Trouble>) {
-    let (mut there, mut back): (Datagram, Datagram) = ([0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX]);
+    let mut there: Datagram = [0; HANDSHAKE_MAX];
+    let mut back: Datagram = [0; HANDSHAKE_MAX];
     let mut len = console.due(now_s, &mut there);
     let mut sent = 0;
     while len > 0 {
@@ -43,7 +46,8 @@ fn talk(
         sent += 1;
         let told = console.hear(&back[..heard.answer], now_s, &mut there);
         if heard.is_agreed() && told.is_agreed() {
-            let (ours, theirs) = (heard.agreed.unwrap(), told.agreed.unwrap());
+            let ours = heard.agreed.unwrap();
+            let theirs = told.agreed.unwrap();
             assert_eq!((ours.ours, ours.theirs), (theirs.theirs, theirs.ours));
             return (sent, true, None);
         }
@@ -75,7 +79,8 @@ fn a_stranger_is_told_so_and_leaves_nothing() {
 #[test]
 fn another_version_is_told_so() {
     let (mut reception, mut console, _) = machines();
-    let (mut there, mut back) = ([0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX]);
+    let mut there = [0; HANDSHAKE_MAX];
+    let mut back = [0; HANDSHAKE_MAX];
     let len = console.due(0.0, &mut there);
     there[0] = VERSION + 1;
     let heard = reception.hear(&there[..len], from(1), 0.0, &mut back);
@@ -96,7 +101,8 @@ fn who_is_full_says_so() {
 fn lost_datagrams_are_asked_for_again() {
     let (mut reception, mut console, _) = machines();
     let mut rng = fastrand::Rng::with_seed(2);
-    let (mut there, mut back) = ([0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX]);
+    let mut there = [0; HANDSHAKE_MAX];
+    let mut back = [0; HANDSHAKE_MAX];
     let mut now_s = 0.0;
     let agreed = (0..200).any(|_| {
         now_s += 0.1;
@@ -121,7 +127,8 @@ fn lost_datagrams_are_asked_for_again() {
 fn a_flood_of_half_open_handshakes_costs_no_memory_and_few_key_agreements() {
     let (mut reception, mut console, mut stranger) = machines();
     let mut out = [0; HANDSHAKE_MAX];
-    let (mut answers, mut flooded) = (0, 0);
+    let mut answers = 0;
+    let mut flooded = 0;
     for i in 0..50_000_u32 {
         let mut hello = [0; HELLO_LEN];
         hello[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(Kind::Hello, u64::from(i)));
@@ -152,7 +159,9 @@ fn a_flood_of_half_open_handshakes_costs_no_memory_and_few_key_agreements() {
 fn random_and_mutated_datagrams_lead_to_nothing() {
     let (mut reception, mut console, _) = machines();
     let mut rng = fastrand::Rng::with_seed(11);
-    let (mut there, mut back, mut waste) = ([0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX]);
+    let mut there = [0; HANDSHAKE_MAX];
+    let mut back = [0; HANDSHAKE_MAX];
+    let mut waste = [0; HANDSHAKE_MAX];
     let hello = console.due(0.0, &mut there);
     let cookie = reception.hear(&there[..hello], from(1), 0.0, &mut back).answer;
     let initiation = console.hear(&back[..cookie], 0.0, &mut there).answer;

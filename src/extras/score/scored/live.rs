@@ -105,7 +105,8 @@ mod tests {
     /// Both sides for some ticks from `from` (ms) on; the right hand is engaged and moves by a tenth of a millimetre in each.
     fn ticks(live: &mut LiveTrial, millis: std::ops::Range<u32>) {
         for millis in millis {
-            let (t_s, tip_m) = (f64::from(millis) * 1e-3, Vector3::new(f64::from(millis) * 1e-4, 0.0, 0.0));
+            let t_s = f64::from(millis) * 1e-3;
+            let tip_m = Vector3::new(f64::from(millis) * 1e-4, 0.0, 0.0);
             live.hand(Side::Left, t_s, hand_of(Vector3::zeros(), Vector3::zeros(), Vector3::zeros(), false));
             live.hand(Side::Right, t_s, hand_of(tip_m, Vector3::x(), Vector3::zeros(), true));
         }

@@ -40,7 +40,8 @@ fn continued(points: &[Vector3<f64>], place: isize) -> Option<Vector3<f64>> {
 
 /// Mean over time (trapezoid) of stretches at even steps; `None` if they have no duration.
 pub(crate) fn mean<'a>(stretches: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
-    let (mut sum, mut steps) = (0.0, 0.0);
+    let mut sum = 0.0;
+    let mut steps = 0.0;
     for values in stretches.filter(|values| values.len() > 1) {
         sum += values.windows(2).map(|two| f64::midpoint(two[0], two[1])).sum::<f64>();
         steps += (values.len() - 1) as f64;

@@ -73,7 +73,9 @@ fn a_reach_that_is_sampled_unevenly_or_slowly_is_the_same() {
 #[test]
 fn a_circle_has_the_known_speed_acceleration_and_jerk() {
     // 5 cm, once in 4 s, three times, upright.
-    let (radius, turn, end_s) = (0.05, PI / 2.0, 12.0);
+    let radius = 0.05;
+    let turn = PI / 2.0;
+    let end_s = 12.0;
     let way = |t_s: f64| right(Vector3::new((turn * t_s).cos(), 0.3, (turn * t_s).sin()) * radius);
     let score = trial(&task(""), end_s, way, &[]);
     near("circle: path_length_m", of(&score, "path_length_m"), radius * turn * end_s, 1e-4);

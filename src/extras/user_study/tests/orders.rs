@@ -8,7 +8,8 @@ fn a_design_is_balanced_for_place_and_for_carry_over() {
     for n in 2..=10 {
         let rows = williams(n);
         assert_eq!(rows.len(), if n % 2 == 0 { n } else { 2 * n });
-        let (mut places, mut pairs) = (BTreeMap::new(), BTreeMap::new());
+        let mut places = BTreeMap::new();
+        let mut pairs = BTreeMap::new();
         for row in &rows {
             let mut sorted = row.clone();
             sorted.sort_unstable();

@@ -146,7 +146,8 @@ fn long_texts_are_sealed_in_pieces_that_cannot_be_changed_exchanged_or_cut_off()
             assert!(open(&key, "session", &sealed[..cut]).is_err(), "cut at {cut} of {}", sealed.len());
         }
         if length >= 200_000 {
-            let (head, piece) = (24, 65_536 + 16);
+            let head = 24;
+            let piece = 65_536 + 16;
             assert!(open(&key, "session", &sealed[..head + 2 * piece]).is_err(), "whole pieces are missing");
             let mut exchanged = sealed.clone();
             exchanged[head..head + 2 * piece].rotate_left(piece);

@@ -124,7 +124,8 @@ impl Clocked {
         self.servoing = outputs.drives;
         self.applied.force_n = if outputs.drives { outputs.hand_force_n } else { nalgebra::Vector3::zeros() };
         let Some(joints) = measured.joints_rad().map(Joints::from).filter(|_| outputs.drives) else {
-            (self.inverse, self.asked) = (None, Asked::Rest);
+            self.inverse = None;
+            self.asked = Asked::Rest;
             return;
         };
         let Some(target_m) = outputs.tip_command_m else {

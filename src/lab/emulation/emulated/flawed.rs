@@ -102,7 +102,8 @@ mod tests {
     fn a_late_tracker_tells_what_was_and_hidden_markers_are_missing() {
         let flaws = Flaws { tracker_late_s: 0.05, tracker_missing: 0.3, ..Flaws::default() };
         let mut flawed = Flawed::new(flaws, [0.0; ARM_JOINTS]);
-        let (mut missing, mut late_s) = (0, 0.0_f64);
+        let mut missing = 0;
+        let mut late_s = 0.0_f64;
         for frame in 0..6000 {
             let t_s = f64::from(frame) / 60.0;
             match flawed.tracked(t_s, seen(1e-3 * t_s)) {

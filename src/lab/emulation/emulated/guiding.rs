@@ -98,9 +98,11 @@ impl Guide {
             step_rad = solve(&rows, &miss, &(relaxed * comfort), free);
             let mut stopped = false;
             for joint in 0..JOINTS {
-                let (now, next) = (joint_rad[joint].abs(), (joint_rad[joint] + step_rad[joint]).abs());
+                let now = joint_rad[joint].abs();
+                let next = (joint_rad[joint] + step_rad[joint]).abs();
                 if free[joint] && next > LIMIT_RAD[joint] - KEEP_OFF_RAD && next > now {
-                    (free[joint], stopped) = (false, true);
+                    free[joint] = false;
+                    stopped = true;
                 }
             }
             if !stopped {
@@ -114,8 +116,10 @@ impl Guide {
 /// What a step of each joint changes, and what is missing: rotations times [`LENGTH_M`], m.
 fn missing(pose: &Pose, hold: &Hold) -> (Rows, Miss) {
     let jacobian = pose.chain.jacobian(&pose.tip_m);
-    let (place, turn) = (jacobian.fixed_rows::<3>(0), jacobian.fixed_rows::<3>(3) * LENGTH_M);
-    let (mut rows, mut miss) = (Rows::zeros(), Miss::zeros());
+    let place = jacobian.fixed_rows::<3>(0);
+    let turn = jacobian.fixed_rows::<3>(3) * LENGTH_M;
+    let mut rows = Rows::zeros();
+    let mut miss = Miss::zeros();
     match hold {
         Hold::Tilt(down_s1) => {
             // A rotation about the vertical changes no tilt.
@@ -159,7 +163,8 @@ fn solve(rows: &Rows, miss: &Miss, relaxed: &Joints, free: [bool; JOINTS]) -> Jo
 
 /// Rotation vector, rad, that turns one unit vector into another; for opposite ones, half a turn about a level axis.
 fn rotation(from: &Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
-    let (axis, cos) = (from.cross(to), from.dot(to));
+    let axis = from.cross(to);
+    let cos = from.dot(to);
     let sin = axis.norm();
     if sin > 1e-9 {
         return axis * (sin.atan2(cos) / sin);
@@ -170,7 +175,8 @@ fn rotation(from: &Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
 /// The same pose with the joints that turn without end in the turn nearest to `from_rad`.
 pub(super) fn nearest_turn(from_rad: &Joints, joint_rad: &Joints) -> Joints {
     Joints::from_fn(|joint, _| {
-        let (from, to) = (from_rad[joint], joint_rad[joint]);
+        let from = from_rad[joint];
+        let to = joint_rad[joint];
         if LIMIT_RAD[joint].is_finite() { to } else { to - TAU * ((to - from) / TAU).round() }
     })
 }

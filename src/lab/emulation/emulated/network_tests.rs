@@ -28,7 +28,8 @@ fn recorded(
     rows: usize,
     is_free: impl Fn(usize) -> bool,
 ) -> DataSet {
-    let (mut recorder, mut gravity) = (Recorder::new(*known), live(fitted.gravity));
+    let mut recorder = Recorder::new(*known);
+    let mut gravity = live(fitted.gravity);
     let mut prompt = Prompt::Rest;
     for _ in 0..TICKS_MAX {
         let (sample, wrench) = bench.felt(&mut gravity, Task::TipForce, prompt);

@@ -20,7 +20,10 @@ pub(super) fn of_side(scene: &Scene, side: Side, set: &ArmSet) -> Result<Scene, 
     scene.trocar_m = set.rcm.trocar_m;
     match set.sensor_at {
         SensorPlace::Tip => {
-            (scene.wrist, scene.trocar, scene.tissue_sensor, scene.person) = (None, None, None, None);
+            scene.wrist = None;
+            scene.trocar = None;
+            scene.tissue_sensor = None;
+            scene.person = None;
         }
         SensorPlace::Wrist => at_wrist(&mut scene, side, set)?,
     }
@@ -30,7 +33,8 @@ pub(super) fn of_side(scene: &Scene, side: Side, set: &ArmSet) -> Result<Scene, 
 fn at_wrist(scene: &mut Scene, side: Side, set: &ArmSet) -> Result<(), EmulatedRigError> {
     let paper = Scene::load(PAPER)?;
     if scene.wrist.is_none() {
-        (scene.wrist, scene.trocar) = (paper.wrist, paper.trocar);
+        scene.wrist = paper.wrist;
+        scene.trocar = paper.trocar;
     }
     scene.tissue_sensor = scene.tissue_sensor.or(paper.tissue_sensor);
     if let Some(wrist) = &mut scene.wrist {

@@ -51,7 +51,8 @@ pub(super) fn all(
         let (Some(set), Some(shared)) = (settings.arm(side), shared) else { continue };
         devices.push(handle(side, set, shared)?);
         devices.push(arm(side, set, shared)?);
-        let (world, name) = (shared.clone(), format!("{} sensor", side.word()));
+        let world = shared.clone();
+        let name = format!("{} sensor", side.word());
         devices.push(sensor(name, &set.sensor, 901 + side.index(), Box::new(move |_| world.with(SideWorld::feel)))?);
         if let Some(chosen) = &set.servos {
             devices.push(servos(side, chosen)?);

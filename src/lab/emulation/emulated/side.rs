@@ -235,11 +235,13 @@ impl SideWorld {
         let orientation = pose.orientation();
         self.turn_rad_s = (self.world_from_s1.inverse() * orientation).scaled_axis() / STEP_S;
         let bent_m = self.flawed.bent_m(&self.world.true_tip_n(), &pose.direction);
-        (self.world_from_s1, self.tip_m) = (orientation, pose.tip_m + bent_m);
+        self.world_from_s1 = orientation;
+        self.tip_m = pose.tip_m + bent_m;
         self.world.carry(orientation);
         // He takes his hands off an arm whose drives are on.
         let hands_on = asked == Asked::Rest && !self.technician.is_away();
-        let (touch, aside) = (self.technician.touch(), self.technician.sets_aside());
+        let touch = self.technician.touch();
+        let aside = self.technician.sets_aside();
         let (touch, aside) = if hands_on { (touch, aside) } else { (Touch::default(), false) };
         self.world.touched(&touch, aside);
         if hands_on {
@@ -252,7 +254,8 @@ impl SideWorld {
         let outputs = Outputs { tip_command_m: Some(self.tip_m), hand_force_n: force_n, ..Outputs::SAFE };
         self.made += 1;
         let inputs = self.world.advance_to(self.made as f64 * STEP_S, &outputs);
-        (self.hand_m, self.sensed) = (inputs.hand.position_m, inputs.sensed);
+        self.hand_m = inputs.hand.position_m;
+        self.sensed = inputs.sensed;
         self.load_joints(&pose.chain.jacobian(&pose.tip_m));
     }
 
@@ -272,14 +275,16 @@ impl SideWorld {
             }
             Asked::Twist { .. } => {
                 let moved = StandIn::at(self.body.joint_rad).step(STEP_S, asked);
-                (self.body.joint_rad, self.body.joint_rad_s) = (moved.joint_rad, moved.joint_rad_s);
+                self.body.joint_rad = moved.joint_rad;
+                self.body.joint_rad_s = moved.joint_rad_s;
             }
         }
     }
 
     /// Critically damped second order, exact over the step for a constant goal: as the simulated follower, joint by joint.
     fn follow(&mut self, joint: usize, goal_rad: f64) {
-        let (angle_rad, speed_rad_s) = (&mut self.body.joint_rad[joint], &mut self.body.joint_rad_s[joint]);
+        let angle_rad = &mut self.body.joint_rad[joint];
+        let speed_rad_s = &mut self.body.joint_rad_s[joint];
         let Some(omega) = self.omega else {
             *speed_rad_s = (goal_rad - *angle_rad) / STEP_S;
             *angle_rad = goal_rad;

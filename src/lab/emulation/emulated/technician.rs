@@ -183,7 +183,8 @@ impl Technician {
     }
 
     fn is_in_trocar(&self, joint_rad: &Joints) -> bool {
-        let (pose, trocar_m) = (self.arm.pose(joint_rad), &self.scene.trocar_m);
+        let pose = self.arm.pose(joint_rad);
+        let trocar_m = &self.scene.trocar_m;
         pose.insertion_m(trocar_m) > 0.0 && pose.axis_miss_m(trocar_m).norm() < IN_TROCAR_M
     }
 

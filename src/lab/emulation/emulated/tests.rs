@@ -88,7 +88,8 @@ impl Bench {
     }
 
     fn gravity(&mut self, seconds: f64) -> (GravitySession, Vec<Phase>) {
-        let (mut session, mut seen) = (GravitySession::new(SessionSettings::default()), Vec::new());
+        let mut session = GravitySession::new(SessionSettings::default());
+        let mut seen = Vec::new();
         for _ in 0..(seconds * 1e3) as u32 {
             let Some(target) = session.target() else { break };
             let sample = self.sample(Task::Gravity, Prompt::Hold { world_from_s1: target.world_from_s1() });
@@ -159,7 +160,8 @@ fn all_calibrations(side: Side) {
 
     let known = Correspondence { target: solution.target, rotation: solution.rotation(), flip_s2: false };
     let mut recorder = Recorder::new(known);
-    let (mut prompt, mut beside_m) = (Prompt::Rest, 0.0_f64);
+    let mut prompt = Prompt::Rest;
+    let mut beside_m = 0.0_f64;
     for _ in 0..60_000 {
         let (sample, wrench) = bench.felt(&mut gravity, Task::TipForce, prompt);
         recorder.step(bench.t_s, Some(&wrench), &sample);
@@ -247,7 +249,8 @@ fn he_never_guides_an_arm_whose_drives_are_on() {
 
 #[test]
 fn the_rig_decides_where_its_sensor_sits_and_not_the_scene() {
-    let (bare, wrist) = (Scene::load("peg_transfer").unwrap(), Scene::load("palpation").unwrap());
+    let bare = Scene::load("peg_transfer").unwrap();
+    let wrist = Scene::load("palpation").unwrap();
     let reads_n = |place, scene: &Scene| {
         let mut set = RigConfig::load("emulated").unwrap().devices.unwrap().right.unwrap();
         set.sensor_at = place;
@@ -255,7 +258,8 @@ fn the_rig_decides_where_its_sensor_sits_and_not_the_scene() {
         (0..100).map(|_| bench.sample(Task::Surgery, Prompt::Rest).raw.force_n.norm()).sum::<f64>() / 100.0
     };
     for scene in [&bare, &wrist] {
-        let (tip_n, wrist_n) = (reads_n(SensorPlace::Tip, scene), reads_n(SensorPlace::Wrist, scene));
+        let tip_n = reads_n(SensorPlace::Tip, scene);
+        let wrist_n = reads_n(SensorPlace::Wrist, scene);
         assert!(tip_n < 0.2 && wrist_n > 2.0, "{}: {tip_n} N at the tip, {wrist_n} N at the wrist", scene.name);
     }
 }
@@ -313,7 +317,8 @@ pub(super) fn fitted(flaws: Flaws) -> Option<(Bench, Fitted)> {
     let mut bench = Bench::with_flaws(Side::Right, &Scene::load("peg_transfer").unwrap(), set, flaws);
     let (session, _) = bench.gravity(120.0);
     let report = session.report().unwrap();
-    let (gravity, reason) = (report.verdict, report.reason.clone());
+    let gravity = report.verdict;
+    let reason = report.reason.clone();
     let model = report.chosen_fit()?.model;
     let mut pass = CheckPass::new(live(model), 0.25);
     for _ in 0..8000 {
@@ -329,7 +334,8 @@ pub(super) fn fitted(flaws: Flaws) -> Option<(Bench, Fitted)> {
     let accepted = solution.filter(|_| report.as_ref().is_some_and(|report| report.verdict == Verdict::Accepted));
     let correspondence =
         accepted.map(|found| Correspondence { target: found.target, rotation: found.rotation(), flip_s2: false });
-    let (left_n, passes) = (pass.result().p95_n, pass.result().passed);
+    let left_n = pass.result().p95_n;
+    let passes = pass.result().passed;
     let told = Told { gravity, reason, left_n, passes, correspondence: report.map(|report| report.verdict), off_deg };
     Some((bench, Fitted { gravity: model, correspondence, told }))
 }
@@ -337,7 +343,9 @@ pub(super) fn fitted(flaws: Flaws) -> Option<(Bench, Fitted)> {
 /// Prints the table of docs/devices.md.
 #[test]
 fn flaws_of_real_devices_break_the_verdicts_that_the_pages_say() {
-    let (good, bad, few) = (Verdict::Accepted, Verdict::PoorData, Verdict::InsufficientMotion);
+    let good = Verdict::Accepted;
+    let bad = Verdict::PoorData;
+    let few = Verdict::InsufficientMotion;
     // Gravity with its free motion, then the correspondence.
     let wanted: [[Verdict; 2]; 10] = [
         [good, good],

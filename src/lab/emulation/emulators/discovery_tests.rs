@@ -145,7 +145,9 @@ fn twelve_causes_come_out_each_with_a_cure_of_its_own() {
         let begin = Instant::now();
         let found = diagnose(probes, TIMEOUT);
         assert!(begin.elapsed() < Duration::from_secs(2), "they are tried at the same time");
-        let (mut kinds, mut causes, mut cures) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
+        let mut kinds = BTreeSet::new();
+        let mut causes = BTreeSet::new();
+        let mut cures = BTreeSet::new();
         for diagnosis in &found {
             let text = serde_json::to_value(diagnosis).unwrap();
             assert_eq!(text["state"], "trouble", "{text}");
@@ -326,7 +328,8 @@ fn rules_name_every_device_of_the_project_and_the_kernels_keys() {
         assert_eq!(line.contains("MODE="), line.contains(r#"TAG+="uaccess""#), "{line}");
     }
     for model in nima_devices::hid::MODELS.iter().filter(|model| model.vendor == 0x046d) {
-        let (family, last) = (model.product >> 4, model.product & 15);
+        let family = model.product >> 4;
+        let last = model.product & 15;
         assert!(family == 0xc62 && ((5..=9).contains(&last) || last == 0xb), "{} is not in the rules", model.name);
     }
     assert!(rules::install_command("/a b/nima").starts_with("'/a b/nima' devices --udev-rules | sudo tee"));

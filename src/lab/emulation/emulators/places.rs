@@ -184,7 +184,8 @@ mod terminal {
         #[test]
         fn a_real_device_or_a_file_is_left_alone() {
             let folder = tempfile::tempdir().unwrap();
-            let (file, device) = (folder.path().join("file"), folder.path().join("by-id"));
+            let file = folder.path().join("file");
+            let device = folder.path().join("by-id");
             fs::write(&file, "kept").unwrap();
             symlink("/dev/null", &device).unwrap();
             for path in [&file, &device] {

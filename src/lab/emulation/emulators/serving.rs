@@ -61,8 +61,10 @@ impl dyn Emulator {
         let mut ends = self.wires()?;
         ends.iter_mut().try_for_each(|end| end.open())?;
         let endpoint = self.endpoint(&ends.iter().map(|end| end.endpoint()).collect::<Vec<_>>());
-        let (faults, stop) = (FaultSwitch::default(), Arc::new(AtomicBool::new(false)));
-        let (switch, flag) = (faults.clone(), Arc::clone(&stop));
+        let faults = FaultSwitch::default();
+        let stop = Arc::new(AtomicBool::new(false));
+        let switch = faults.clone();
+        let flag = Arc::clone(&stop);
         let thread =
             Builder::new().name("emulator".to_owned()).spawn(move || Host::new(self, ends, switch).run(&flag))?;
         Ok(Serving { endpoint, faults, stop, thread: Some(thread) })

@@ -87,7 +87,8 @@ pub(super) fn wait(ends: &[Box<dyn End>], longest: Duration, admits: bool) {
     }
     let of = |fd| libc::pollfd { fd, events: libc::POLLIN, revents: 0 };
     let mut watched: Vec<libc::pollfd> = watched.into_iter().map(of).collect();
-    let (first, count) = (watched.as_mut_ptr(), watched.len() as libc::nfds_t);
+    let first = watched.as_mut_ptr();
+    let count = watched.len() as libc::nfds_t;
     // SAFETY: the pointers are valid for the call, and the count is that of the vector.
     #[cfg(target_os = "linux")]
     unsafe {

@@ -115,7 +115,8 @@ impl Handle {
             _ => COMMUNICATION,
         };
         self.socket.send(&request.encode()).map_err(gone)?;
-        let (begin, mut damaged) = (Instant::now(), false);
+        let begin = Instant::now();
+        let mut damaged = false;
         let mut buffer = [0; 512];
         loop {
             let count = match self.socket.recv(&mut buffer) {

@@ -88,7 +88,9 @@ impl Request {
     /// From bytes.
     pub fn decode(bytes: &[u8]) -> Option<Self> {
         let mut of = In::opened(bytes, REQUEST_BYTES, REQUEST_KIND)?;
-        let (client, sequence, order) = (u64::from_le_bytes(of.take()?), of.word()?, of.word()?);
+        let client = u64::from_le_bytes(of.take()?);
+        let sequence = of.word()?;
+        let order = of.word()?;
         let order = Order::ALL.into_iter().find(|known| *known as u32 == order)?;
         Some(Self { client, sequence, order, argument: of.word()?, values: of.numbers()? })
     }
@@ -155,14 +157,22 @@ impl Reply {
     pub fn decode(bytes: &[u8]) -> Option<Self> {
         let mut of = In::opened(bytes, REPLY_BYTES, REPLY_KIND)?;
         let client = u64::from_le_bytes(of.take()?);
-        let (sequence, error, flags, serial) = (of.word()?, of.word()?, of.word()?, of.word()?);
-        let (kind, buttons, velocity_threshold, watchdog) = (of.word()?, of.word()?, of.word()?, of.word()?);
+        let sequence = of.word()?;
+        let error = of.word()?;
+        let flags = of.word()?;
+        let serial = of.word()?;
+        let kind = of.word()?;
+        let buttons = of.word()?;
+        let velocity_threshold = of.word()?;
+        let watchdog = of.word()?;
         let mut status = [0; STATUS_ENTRIES];
         for entry in &mut status {
             *entry = of.word()?;
         }
         let [firmware] = of.numbers()?;
-        let (position_m, frame, [gripper_rad]) = (of.numbers()?, of.numbers()?, of.numbers()?);
+        let position_m = of.numbers()?;
+        let frame = of.numbers()?;
+        let [gripper_rad] = of.numbers()?;
         Some(Self {
             client,
             sequence,

@@ -13,7 +13,8 @@ pub(super) fn measure(
     delay_s: f64,
     cross_talk: bool,
 ) -> Result<Vec<Row>, BaselinesError> {
-    let (rate_hz, samples) = (source.recording.rate_hz, &source.recording.samples);
+    let rate_hz = source.recording.rate_hz;
+    let samples = &source.recording.samples;
     let delay = (delay_s * rate_hz).round() as usize;
     let delay_ms = delay as f64 / rate_hz * 1e3;
     let name = || source.name.clone();

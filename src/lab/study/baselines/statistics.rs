@@ -38,7 +38,8 @@ fn t_975(freedom: usize) -> f64 {
     if let Some(t) = freedom.checked_sub(1).and_then(|index| TABLE.get(index)) {
         return *t;
     }
-    let (z, n) = (1.959_964_f64, freedom.max(1) as f64);
+    let z = 1.959_964_f64;
+    let n = freedom.max(1) as f64;
     let first = (z.powi(3) + z) / 4.0;
     let second = (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / 96.0;
     let third = (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / 384.0;

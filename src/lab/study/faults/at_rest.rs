@@ -92,7 +92,9 @@ fn let_go() -> Result<Special, FaultsError> {
     let tissue = Scene::load("peg_transfer")?.tissue;
     let wrong = |reason: String| FaultsError::Calibration(ValidationError::Calibration(reason));
     let tissue = tissue.ok_or_else(|| wrong("peg_transfer has no tissue".to_owned()))?;
-    let (situation, governor, mode) = (Situation::Held, true, MODES[0]);
+    let situation = Situation::Held;
+    let governor = true;
+    let mode = MODES[0];
     let way = Way { clock: VirtualClock::PERFECT, situation, governor, mode, delay_ms: 50.0, contact_n: 5.0 };
     let row = release::let_go(&way, tissue).map_err(|error| wrong(error.to_string()))?;
     Ok(Special {

@@ -171,7 +171,8 @@ impl Bench {
         let wanted = self.outputs[FAULTY];
         self.rig.write(&self.outputs);
         let inputs = self.rig.read(now_s);
-        let (truth, applied) = (self.rig.truth, self.rig.applied);
+        let truth = self.rig.truth;
+        let applied = self.rig.applied;
         let mut device_lost = false;
         self.machine.clear_events();
         while let Some(event) = self.rig.event() {
@@ -191,7 +192,8 @@ impl Bench {
             Event::FaultRaised { fault, .. } => Some(*fault),
             _ => None,
         });
-        let (given, truth) = (inputs[FAULTY], truth[FAULTY]);
+        let given = inputs[FAULTY];
+        let truth = truth[FAULTY];
         Some(Step {
             machine: ticks[FAULTY]?,
             twin: twins[FAULTY]?,

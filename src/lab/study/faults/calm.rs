@@ -41,7 +41,9 @@ pub(super) fn runs(seconds: f64) -> Result<Calm, FaultsError> {
         for mode in MODES {
             for delay_s in DELAYS_S {
                 let mut rig = RigConfig::load("simulated")?;
-                (rig.mode, rig.delay_s, rig.gates.static_hold) = (mode, delay_s, calm.runs % 2 == 0);
+                rig.mode = mode;
+                rig.delay_s = delay_s;
+                rig.gates.static_hold = calm.runs % 2 == 0;
                 let known = Calibrations { gravity: Some(gravity), ..Calibrations::default() };
                 let scene = Scene::load(scene)?;
                 // Every run has another seed: other tremor, noise and start.

@@ -149,7 +149,8 @@ impl Watch {
                 self.told = Some((state(), tick));
             }
         }
-        let (applied_n, wanted_n) = (step.applied.hand_force_n, step.wanted.hand_force_n);
+        let applied_n = step.applied.hand_force_n;
+        let wanted_n = step.wanted.hand_force_n;
         self.felt |= applied_n.norm() > 0.0;
         self.moved |= step.wanted.tip_command_m.is_some();
         let gone = applied_n.norm() == 0.0;
@@ -232,7 +233,8 @@ impl Watch {
 
 /// What the machine reports in this tick and its twin does not.
 fn told(step: &Step) -> Option<String> {
-    let (machine, twin) = (&step.machine, &step.twin);
+    let machine = &step.machine;
+    let twin = &step.twin;
     if let Some(fault) = step.raised {
         return Some(fault_word(fault));
     }

@@ -43,7 +43,8 @@ impl ImpairedLink {
 
     /// Impairs the link from now on.
     pub(super) const fn impair(&mut self, impairment: Impairment) {
-        (self.impairment, self.offered) = (impairment, 0);
+        self.impairment = impairment;
+        self.offered = 0;
     }
 }
 

@@ -80,7 +80,10 @@ impl Faulty {
 
     /// Applies this fault from the next tick on, also to the outputs already written.
     pub(super) fn begin(&mut self, fault: Kind) {
-        (self.fault, self.age, self.first, self.before) = (Some(fault), 0, None, None);
+        self.fault = Some(fault);
+        self.age = 0;
+        self.first = None;
+        self.before = None;
         self.late.clear();
         self.block.clear();
         self.rig.begin();
@@ -176,7 +179,8 @@ impl Faulty {
             }
             Kind::OrientationMissing | Kind::OrientationJump => turn_arm(fault, &mut inputs.sensed),
             _ => {
-                let (now, then) = (force_of(&inputs.sensed), force_of(&first.sensed));
+                let now = force_of(&inputs.sensed);
+                let then = force_of(&first.sensed);
                 let bad_n = self.bad_force(fault, now, &then, since_s);
                 set_force(&mut inputs.sensed, bad_n);
             }

@@ -87,7 +87,8 @@ impl Rig for Hanging {
 
     fn levers(&self) -> Vec<Lever> {
         let lever = Lever::default();
-        let (pulled, clock) = (Arc::clone(&self.pulled), self.clock);
+        let pulled = Arc::clone(&self.pulled);
+        let clock = self.clock;
         lever.attach(move || pulled.store(nanoseconds(clock), Ordering::Relaxed));
         vec![lever]
     }
@@ -100,7 +101,9 @@ fn nanoseconds(clock: Instant) -> u64 {
 
 fn plan(rate_hz: f64) -> Result<Plan, LiveError> {
     let mut rig = RigConfig::load("simulated")?;
-    (rig.mode, rig.rate_hz, rig.gates.static_hold) = (Mode::Dfr, rate_hz, true);
+    rig.mode = Mode::Dfr;
+    rig.rate_hz = rate_hz;
+    rig.gates.static_hold = true;
     Ok(Plan { rig, scene: Scene::load("peg_transfer")?, calibrations: Default::default(), engage: true })
 }
 
@@ -145,7 +148,8 @@ pub(super) fn all() -> Result<Vec<Special>, LiveError> {
 
 fn hang(what: &str, length: Duration) -> Result<Special, LiveError> {
     let plan = plan(1000.0)?;
-    let (began, pulled) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
+    let began = Arc::new(AtomicU64::new(0));
+    let pulled = Arc::new(AtomicU64::new(0));
     let rig = Hanging {
         rig: Worlds::new(&plan.scene, plan.rig.rate_hz),
         at_s: 1.3,

@@ -41,7 +41,8 @@ impl Findings for Report {
     }
 
     fn judge(&self) -> Result<(), String> {
-        let (silent, false_alarms) = (self.sums.silent, self.calm.false_alarms.len());
+        let silent = self.sums.silent;
+        let false_alarms = self.calm.false_alarms.len();
         if silent > 0 {
             return Err(format!("{silent} faults were not detected: see the table"));
         }
@@ -121,7 +122,8 @@ fn cell(cases: &[&Outcome]) -> String {
         Verdict::Bounded => format!("**b** {peak_n:.2}"),
         Verdict::Silent => format!("**SILENT** {peak_n:.2}"),
         Verdict::Detected => {
-            let (told, zero) = (most(|outcome| outcome.detection_ms), most(|outcome| outcome.zero_ms));
+            let told = most(|outcome| outcome.detection_ms);
+            let zero = most(|outcome| outcome.zero_ms);
             format!("d {} / {} / {peak_n:.2}", number(told), number(zero))
         }
     }

@@ -143,9 +143,12 @@ impl ArmRig {
         self.newest = self.devices.read(now_s);
         let ArmReadings { handle, arm, sensor } = self.newest;
         let known = &mut self.known;
-        (known.handle, known.arm, known.sensor) = (handle.or(known.handle), arm.or(known.arm), sensor.or(known.sensor));
+        known.handle = handle.or(known.handle);
+        known.arm = arm.or(known.arm);
+        known.sensor = sensor.or(known.sensor);
         take(&mut self.truth, &self.newest, outputs.drives);
-        let (handle, force) = (self.known.handle?, self.known.sensor?);
+        let handle = self.known.handle?;
+        let force = self.known.sensor?;
         let sample =
             WristSample { acceleration_m_s2: force.value.acceleration_m_s2, ..WristSample::of(force.value.wrench) };
         Some(Inputs {
@@ -160,7 +163,8 @@ impl ArmRig {
         told.sensor = told.sensor.zip(altered).and_then(|(sensor, altered)| {
             let Sensed::AtWrist(sample) = &altered.sensed else { return None };
             let mut value = sensor.value;
-            (value.wrench, value.acceleration_m_s2) = (sample.raw, sample.acceleration_m_s2);
+            value.wrench = sample.raw;
+            value.acceleration_m_s2 = sample.acceleration_m_s2;
             is_possible(&sample.raw.force_n).then_some(Stamped { value, ..sensor })
         });
         if let (Some(handle), Some(altered)) = (&mut told.handle, altered) {

@@ -31,7 +31,8 @@ fn what_cannot_be_true_is_told_within_20_ms_in_contact_and_the_force_is_gone() {
 #[test]
 fn a_spike_is_not_felt_and_a_creeping_bias_is_called_bounded() {
     let outcomes = tried(SensorAt::Tip, Place::Contact, &[Kind::ForceSpike, Kind::ForceDrift]);
-    let (spike, drift) = (&outcomes[0], &outcomes[1]);
+    let spike = &outcomes[0];
+    let drift = &outcomes[1];
     assert_eq!(spike.verdict, Verdict::Harmless, "{spike:?}");
     assert!(drift.verdict == Verdict::Bounded && drift.peak_error_n > 0.5, "{drift:?}");
 }

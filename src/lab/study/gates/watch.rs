@@ -99,7 +99,9 @@ impl<const D: usize> Watch<D> {
         breaches.gain_range += u64::from(!chosen_well || !GAIN_ABOVE_ONE.contains(report.gain));
         breaches.uncalled += u64::from(let_go && now_n.norm() != 0.0);
         breaches.energy += u64::from(!within(report.stored_j.abs(), MOST_J));
-        (self.last_n, self.gain, self.let_go) = (*now_n, report.gain, lets_go);
+        self.last_n = *now_n;
+        self.gain = report.gain;
+        self.let_go = lets_go;
     }
 }
 

@@ -192,7 +192,8 @@ fn sides<const D: usize, G: Gate<D>>(kind: &Kind, noise: &mut Noise, gate: impl 
     if let [one, other] = persons.as_mut_slice() {
         // Each hand feels the motion of both: half of the stiffness leaves the loop as stable as that of one hand.
         let n_m = 0.5 * one.tissue.n_m.min(other.tissue.n_m);
-        (one.tissue.n_m, other.tissue.n_m) = (n_m, n_m);
+        one.tissue.n_m = n_m;
+        other.tissue.n_m = n_m;
         other.tissue.delay_s = one.tissue.delay_s;
     }
     let side = |person: Person<D>| Side {

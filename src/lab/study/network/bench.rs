@@ -93,7 +93,8 @@ struct Machine<R> {
 impl<R: Rig> Machine<R> {
     fn new(rig: &RigConfig, place: R, clock: VirtualClock) -> Result<Self, NetworkError> {
         let control = Loop::new(rig, &[Some(Calibrations::default()), None])?;
-        let (pace, supervisor) = (Pace::new(clock), VirtualSupervisor::default());
+        let pace = Pace::new(clock);
+        let supervisor = VirtualSupervisor::default();
         Ok(Self { control, rig: place, pace, supervisor, tick: None, faults: BTreeMap::new() })
     }
 
@@ -169,7 +170,8 @@ impl Bench {
         known_s: f64,
     ) -> Result<Self, NetworkError> {
         let mut rig = RigConfig::load("simulated")?;
-        (rig.mode, rig.delay_s) = (mode, 0.0);
+        rig.mode = mode;
+        rig.delay_s = 0.0;
         rig.identification.own_motion = own_motion;
         let scene = Scene::load("peg_transfer")?;
         let (one, other) = Stream::pair(&StreamSettings::of_arms(1))?;
@@ -225,7 +227,8 @@ impl Bench {
     pub(super) fn step(&mut self, command: Option<Command>) -> Option<Seen> {
         let period = self.ticks();
         self.command = command.or(self.command.take());
-        let (console, follower) = (self.console.pace.tick_in(period), self.follower.pace.tick_in(period));
+        let console = self.console.pace.tick_in(period);
+        let follower = self.follower.pace.tick_in(period);
         // In the order in which they wake.
         let follower_first =
             console.zip(follower).is_some_and(|((_, console_s), (_, follower_s))| follower_s < console_s);
@@ -239,7 +242,8 @@ impl Bench {
             self.step_follower(time, late_s);
         }
         let ticked = [follower.is_some(), console.is_some()];
-        let (console, follower) = (self.console.rig.wire(), self.follower.rig.wire());
+        let console = self.console.rig.wire();
+        let follower = self.follower.rig.wire();
         let newest = follower.taken.last().and_then(|number| console.sent.get(*number as usize).copied());
         self.newest = newest.and_then(|tick| tick.checked_sub(self.begun)).or(self.newest);
         let under_way = [
@@ -274,7 +278,8 @@ impl Bench {
 
     /// The same of the follower, whose clock differs.
     fn step_follower(&mut self, time: TickTime, late_s: f64) {
-        let (now_s, ahead_s) = (self.now_s() + late_s, self.ahead_s());
+        let now_s = self.now_s() + late_s;
+        let ahead_s = self.ahead_s();
         let [there, back] = &mut self.lines;
         self.follower.rig.local_mut().ahead_s = ahead_s;
         let end = self.follower.rig.wire_mut();

@@ -114,9 +114,11 @@ pub(super) fn measured(clock: VirtualClock, condition: Condition, mode: Mode, ru
     let judged_from = ((settle_s + learn_s) * RATE_HZ) as u32;
     let mut trace = Trace::new(judged_from as usize);
     let mut before = [Counts::default(); 2];
-    let (mut clock_set, mut round_trip_s) = (None, 0.0);
+    let mut clock_set = None;
+    let mut round_trip_s = 0.0;
     while bench.ticks() < ticks {
-        let (tick, ahead_s) = (bench.ticks(), bench.ahead_s());
+        let tick = bench.ticks();
+        let ahead_s = bench.ahead_s();
         if tick == judged_from {
             before = counts(&bench);
         }
@@ -197,7 +199,8 @@ fn copies(bench: &Bench) -> [[usize; 2]; 2] {
 /// Shares of the payloads that were late, lost and recovered, %.
 fn shares(before: &[Counts; 2], after: &[Counts; 2]) -> [[f64; 3]; 2] {
     std::array::from_fn(|way| {
-        let (before, after) = (&before[way], &after[way]);
+        let before = &before[way];
+        let after = &after[way];
         let [delivered, late, lost, recovered] = [
             after.delivered - before.delivered,
             after.late - before.late,

@@ -147,7 +147,8 @@ pub struct Report {
 /// # Errors
 /// [`NetworkError`] if rig or scene cannot be used.
 pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, NetworkError> {
-    let (plan, runs) = (plan(options), runs(options));
+    let plan = plan(options);
+    let runs = runs(options);
     let mut rows = Vec::with_capacity(plan.len());
     for cells in plan.chunks(available_parallelism().map_or(1, NonZero::get)) {
         progress(rows.len(), plan.len(), cells[0].mode.name());

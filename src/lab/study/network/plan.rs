@@ -148,7 +148,8 @@ mod tests {
     use super::*;
 
     fn planned(extent: Extent, modes: &[Mode]) -> Vec<(Condition, Mode)> {
-        let (own_motion, clocks) = (OwnMotion::default(), vec![VirtualClock::PERFECT]);
+        let own_motion = OwnMotion::default();
+        let clocks = vec![VirtualClock::PERFECT];
         let cells = plan(&Options { extent, clocks, modes: modes.to_vec(), own_motion });
         cells.into_iter().map(|Cell { condition, mode, .. }| (condition, mode)).collect()
     }
@@ -169,7 +170,9 @@ mod tests {
 
     #[test]
     fn the_whole_is_every_combination() {
-        let (delays, jitters, losses) = (DELAYS_MS.len(), JITTERS.len(), 1 + 5 * (1 + BURSTS_MS.len()));
+        let delays = DELAYS_MS.len();
+        let jitters = JITTERS.len();
+        let losses = 1 + 5 * (1 + BURSTS_MS.len());
         assert_eq!(planned(Extent::Full, &[]).len(), delays * jitters * losses * Happening::ALL.len() * 12);
     }
 }

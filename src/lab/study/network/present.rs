@@ -31,7 +31,8 @@ impl Condition {
 
     /// How many factors besides the delay are not at rest.
     fn factors(&self) -> usize {
-        let (jitters, loses) = (self.jitter != Jitter::None, self.loss_percent > 0.0);
+        let jitters = self.jitter != Jitter::None;
+        let loses = self.loss_percent > 0.0;
         usize::from(jitters) + usize::from(loses) + usize::from(self.happening != Happening::Nothing)
     }
 

@@ -116,7 +116,8 @@ fn every_file_is_whole() {
     assert!(report.svg().starts_with("<svg"));
     report.aims.iter_mut().for_each(|aim| aim.missed = 0);
     assert_eq!(report.judge(), Ok(()));
-    (report.aims[0].missed, report.aims[0].worst) = (1, 3.0);
+    report.aims[0].missed = 1;
+    report.aims[0].worst = 3.0;
     assert!(report.judge().unwrap_err().contains("ceiling: 3.000, at most 0"), "{:?}", report.judge());
     assert!(report.markdown().contains("MISSED in 1"));
 }

@@ -94,12 +94,18 @@ impl Trace {
     pub(super) fn felt(&self) -> Felt {
         let due_n = self.due_n();
         let mut felt = Felt::default();
-        let (mut band, mut tissue_band) = (Band::default(), Band::default());
-        let (mut energy_j, mut tissue_j) = (0.0, 0.0);
-        let (mut judged, mut engaged, mut without, mut was_engaged) = (0.0, 0.0_f64, 0_u32, false);
+        let mut band = Band::default();
+        let mut tissue_band = Band::default();
+        let mut energy_j = 0.0;
+        let mut tissue_j = 0.0;
+        let mut judged = 0.0;
+        let mut engaged = 0.0_f64;
+        let mut without = 0_u32;
+        let mut was_engaged = false;
         for (tick, (pair, due_n)) in self.samples.windows(2).zip(&due_n).enumerate() {
             let [sample, next] = [pair[0], pair[1]];
-            let (swings_n, tissue_swings_n) = (band.step(&sample.rendered_n), tissue_band.step(due_n));
+            let swings_n = band.step(&sample.rendered_n);
+            let tissue_swings_n = tissue_band.step(due_n);
             was_engaged |= sample.is_engaged;
             without = if was_engaged && due_n.norm() > CONTACT_N && sample.rendered_n.norm() < NOTHING_N {
                 without + 1
@@ -111,7 +117,8 @@ impl Trace {
             energy_j += sample.rendered_n.dot(&way_m);
             tissue_j += due_n.dot(&way_m);
             if !sample.is_engaged {
-                (energy_j, tissue_j) = (0.0, 0.0);
+                energy_j = 0.0;
+                tissue_j = 0.0;
             }
             felt.injected_j = felt.injected_j.max(energy_j);
             felt.tissue_injected_j = felt.tissue_injected_j.max(tissue_j);

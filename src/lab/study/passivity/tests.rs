@@ -107,7 +107,8 @@ fn over_tissue_that_changes_the_best_of_two_is_hardly_worse_than_anchored_in_the
 fn hardly_worse(tissues: &[Tissue], begins: &[f64]) {
     let mut worse = Vec::new();
     for delay_ms in DELAYS_MS {
-        let (mut logs, mut cases) = (0.0, 0.0);
+        let mut logs = 0.0;
+        let mut cases = 0.0;
         for &begin in begins {
             for (plain, task) in tissues.iter().flat_map(|plain| Task::ALL.map(|task| (plain, task))) {
                 let other = changing(*plain, begin);
@@ -119,7 +120,8 @@ fn hardly_worse(tissues: &[Tissue], begins: &[f64]) {
                 let ratio = error_n(Mode::Best) / error_n(Mode::Anchored);
                 let limit = if delay_ms > 200.0 { 1.11 } else { 1.04 };
                 assert!(ratio <= limit, "{ratio} times anchored: {task:?} at {delay_ms} ms, sequence {begin}");
-                (logs, cases) = (logs + ratio.ln(), cases + 1.0);
+                logs += ratio.ln();
+                cases += 1.0;
                 if ratio > 1.02 {
                     worse.push((ratio, task, delay_ms, begin));
                 }

@@ -79,7 +79,8 @@ impl Report {
                         })
                     };
                     let worst = |of: fn(&Row) -> f64| all().map(of).fold(0.0, f64::max);
-                    let (met, of) = (all().filter(|row| row.meets_the_aims()).count(), all().count());
+                    let met = all().filter(|row| row.meets_the_aims()).count();
+                    let of = all().count();
                     let on = on_or_off(governor);
                     writeln!(
                         text,
@@ -153,7 +154,8 @@ const fn on_or_off(governor: bool) -> &'static str {
 fn line(text: &mut String, row: &Row) {
     let Row { mode, delay_ms, governor, before_n, closed_before, .. } = *row;
     let Row { travel_mm, peak_m_s, energy_mj, force_after_100_ms_n, .. } = *row;
-    let (on, mark) = (on_or_off(governor), if closed_before { ", withholding" } else { "" });
+    let on = on_or_off(governor);
+    let mark = if closed_before { ", withholding" } else { "" };
     writeln!(
         text,
         "| {mode} | {delay_ms:.0} | {on} | {before_n:.2}{mark} | {travel_mm:.2} | {peak_m_s:.3} | {energy_mj:.2} | {force_after_100_ms_n:.2} |"

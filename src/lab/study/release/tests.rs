@@ -34,7 +34,8 @@ fn a_handle_that_is_not_the_one_it_is_told_of_is_caught_too() {
 
 #[test]
 fn the_methods_of_others_are_let_go_of_too() {
-    let (clock, situation) = (VirtualClock::PERFECT, Situation::Pressing);
+    let clock = VirtualClock::PERFECT;
+    let situation = Situation::Pressing;
     let way = |mode| Way { clock, situation, governor: true, mode, delay_ms: 50.0, contact_n: 5.0 };
     let rows: Vec<Row> = methods().map(|mode| let_go(&way(mode), tissue()).unwrap()).collect();
     for baseline in Baseline::ALL {

@@ -48,7 +48,8 @@ fn a_leader_that_makes_the_followers_motion_renders_what_the_follower_foretells(
     for hole in [None, Some(700)] {
         let same = |i: usize| sample(i, hole).position_m;
         for mode in [Mode::Dfr, Mode::Anchored, Mode::Literal, Mode::Linear, Mode::Baseline(Baseline::Kalman)] {
-            let ((alone, figures), (led, of_led)) = (rows(mode, hole, None), rows(mode, hole, Some(&same)));
+            let (alone, figures) = rows(mode, hole, None);
+            let (led, of_led) = rows(mode, hole, Some(&same));
             for (alone, led) in alone.iter().zip(&led) {
                 assert_eq!((alone.rendered, alone.held), (led.rendered, led.held), "{mode} at {} s", alone.t_s);
             }
@@ -71,7 +72,8 @@ fn a_leader_elsewhere_changes_what_is_made_of_motion_and_nothing_else() {
 #[test]
 fn several_recordings_are_one_in_proportion_to_their_samples() {
     let named = |name: &str, mode| (name.to_owned(), rows(mode, None, None).1);
-    let (anchored, dfr) = (named("a.csv", Mode::Anchored), named("b.csv", Mode::Dfr));
+    let anchored = named("a.csv", Mode::Anchored);
+    let dfr = named("b.csv", Mode::Dfr);
     let both = Summary::of(&[anchored.clone(), dfr.clone()]);
     assert_eq!((both.recordings, both.samples, both.compared), (2, 3000, 2 * anchored.1.compared));
     assert!((both.error_mae - 0.5 * (anchored.1.error.mae + dfr.1.error.mae)).abs() < 1e-12);

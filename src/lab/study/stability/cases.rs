@@ -47,7 +47,8 @@ fn hand(amplitude: f64, t: f64) -> [f64; 3] {
     // The frequencies have no common period: over a common one the paper's `u` would be zero.
     let waves = [(0.75, 0.713, 0.3), (0.2, 2.331, 1.1), (0.05, 6.127, 2.0)];
     waves.iter().fold([0.0; 3], |[x, v, a], (share, hz, phase)| {
-        let (size, w) = (amplitude * share, TAU * hz);
+        let size = amplitude * share;
+        let w = TAU * hz;
         let (sin, cos) = (w * t + phase).sin_cos();
         [x + size * sin, v + size * w * cos, a - size * w * w * sin]
     })

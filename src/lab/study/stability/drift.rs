@@ -79,7 +79,8 @@ impl RunningSums {
 /// Runs at most `ticks` ticks.
 pub(super) fn run(ticks: u64) -> Drift {
     let ticks = ticks - (ticks - EARLY) % TABLE as u64;
-    let (scales, ridge) = (Scales::default(), Settings::default().ridge);
+    let scales = Scales::default();
+    let ridge = Settings::default().ridge;
     let rows = table();
     let columns: Vec<[f64; MAX_COLUMNS + 1]> = rows
         .iter()

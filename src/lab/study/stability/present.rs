@@ -36,7 +36,8 @@ impl Report {
     }
 
     fn in_words(&self) -> String {
-        let (verdict, drift) = (&self.verdict, &self.drift);
+        let verdict = &self.verdict;
+        let drift = &self.drift;
         let mut out = String::from(
             "\nWorst relative error of the predicted force, degrees 1 to 5, against an exact solution of the same problem;\n\
              k/30: k of 30 predictions were finite; *: the rows do not determine the solution;\n\

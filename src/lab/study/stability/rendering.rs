@@ -110,8 +110,10 @@ fn long_run(ticks: u64, mode: Mode) -> Result<Endurance, SettingsError> {
     let mut old = Identifier::new(&settings(1.0, mode))?;
     let mut fresh = old.clone();
     let fresh_from = ticks.checked_sub(Endurance::FRESH).map(|from| from - from % Endurance::ALIKE);
-    let (mut endurance, mut started) = (Endurance { mode, ticks, not_finite: 0, difference: None }, false);
-    let (mut off_n, mut squares_n2) = (None, 0.0);
+    let mut endurance = Endurance { mode, ticks, not_finite: 0, difference: None };
+    let mut started = false;
+    let mut off_n = None;
+    let mut squares_n2 = 0.0;
     for tick in 0..ticks {
         let [x, force_n] = palpation(tick);
         let now = sample(tick as f64 * 1e-3, x, force_n);

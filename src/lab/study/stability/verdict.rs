@@ -49,13 +49,17 @@ pub struct RenderingVerdict {
 
 impl RenderingVerdict {
     fn of(extremes: &[Extreme], run: &Endurance) -> Self {
-        let (mut asked, mut finite) = (run.ticks, run.ticks - run.not_finite);
-        let (mut unit_difference, mut worst_case) = (0.0, String::new());
+        let mut asked = run.ticks;
+        let mut finite = run.ticks - run.not_finite;
+        let mut unit_difference = 0.0;
+        let mut worst_case = String::new();
         for extreme in extremes {
             for rendering in extreme.renderings.iter().filter(|rendering| rendering.mode == run.mode) {
-                (asked, finite) = (asked + rendering.asked as u64, finite + rendering.finite as u64);
+                asked += rendering.asked as u64;
+                finite += rendering.finite as u64;
                 if let Some(difference) = rendering.unit_difference.filter(|difference| *difference > unit_difference) {
-                    (unit_difference, worst_case) = (difference, extreme.name.clone());
+                    unit_difference = difference;
+                    worst_case.clone_from(&extreme.name);
                 }
             }
         }

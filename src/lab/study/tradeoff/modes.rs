@@ -114,7 +114,8 @@ pub(super) fn measure(
 
 fn judge(identifier: &Identifier, mode: Mode, sample: &Sample, errors: &mut Errors) {
     let report = identifier.report();
-    let (rendered, held) = (report.prediction(mode), report.prediction(Mode::Dfr));
+    let rendered = report.prediction(mode);
+    let held = report.prediction(Mode::Dfr);
     // Without a rendered force the error is the whole force.
     let error = (rendered.unwrap_or_default() - sample.force_n).norm();
     let dfr_error = (held.unwrap_or_default() - sample.force_n).norm();

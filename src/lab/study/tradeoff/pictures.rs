@@ -92,7 +92,8 @@ fn chart(
     x_logarithmic: bool,
 ) -> Chart {
     let all = |axis: usize| series.iter().flat_map(|(_, points)| points).map(move |point| point[axis]);
-    let (x, y) = (Axis::around(x, all(0), x_logarithmic), Axis::around(y, all(1), true));
+    let x = Axis::around(x, all(0), x_logarithmic);
+    let y = Axis::around(y, all(1), true);
     let numbered = series.into_iter().enumerate();
     Chart {
         title,

@@ -152,7 +152,8 @@ fn measure_source(
     let axes = recording.axes.len();
     let longest_s = LONGEST_SHARE * source.seconds();
     let settle_s = longest_usable(choices, longest_s);
-    let (mut points, mut skipped) = (Vec::new(), Vec::new());
+    let mut points = Vec::new();
+    let mut skipped = Vec::new();
     let mut places = vec![None; choices.len()];
     for (place, choice) in places.iter_mut().zip(choices) {
         look(cancel)?;
@@ -255,7 +256,8 @@ pub(super) fn mark_front(points: &mut [Point], on_grid: &[usize]) {
 
 /// Whether `a` is at least as good in both and better in one.
 fn beats(a: &Point, b: &Point) -> bool {
-    let (cost, error) = (a.cost_us.p50, a.error);
+    let cost = a.cost_us.p50;
+    let error = a.error;
     cost <= b.cost_us.p50 && error <= b.error && (cost < b.cost_us.p50 || error < b.error)
 }
 

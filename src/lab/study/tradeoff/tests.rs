@@ -89,7 +89,8 @@ fn the_error_is_that_of_the_causal_replay() {
     for mode in Mode::ALL {
         let literal = Recipe::default();
         let options = Options { mode, window_s: 0.2, delay_s: 0.05, max_degree: 2, cross_talk: false, literal };
-        let (mut sum, mut count) = (0.0, 0);
+        let mut sum = 0.0;
+        let mut count = 0;
         replay(&source.recording, &options, |row| {
             if row.t_s >= figures.judged_from_s + 0.05 {
                 sum += (row.rendered.unwrap_or_default() - row.measured).norm();

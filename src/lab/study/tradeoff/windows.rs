@@ -113,7 +113,9 @@ fn fit_afresh(solver: Solver, rows: &Rows, known: usize, settings: &Settings) ->
 }
 
 fn judge(fits: &[Fit], rows: &Rows, (known, now): (usize, usize), degree: usize, errors: &mut Errors) {
-    let (mut squares, mut dfr_squares, mut rendered) = (0.0, 0.0, true);
+    let mut squares = 0.0;
+    let mut dfr_squares = 0.0;
+    let mut rendered = true;
     for (fit, rows) in fits.iter().zip(&rows.axes) {
         let force = fit.predict(&rows[now])[degree.clamp(1, MAX_DEGREE) - 1];
         rendered &= force.is_some();

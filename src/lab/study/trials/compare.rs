@@ -166,7 +166,8 @@ fn within(
 }
 
 fn between(means: &Means<'_>, first: &str, second: &str, confidence: f64) -> Result<Pair, AnalysisError> {
-    let (one, other) = (values(means, first), values(means, second));
+    let one = values(means, first);
+    let other = values(means, second);
     let test = mann_whitney::test(&one, &other, Distribution::Automatic)?;
     Ok(Pair {
         first: first.to_owned(),

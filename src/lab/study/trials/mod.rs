@@ -176,7 +176,8 @@ impl Experiment for Trials {
         let first = conditions.first().cloned().unwrap_or_default();
         let reference = self.reference.clone().unwrap_or(first);
         if !conditions.contains(&reference) {
-            let (path, known) = (self.path.display().to_string(), conditions.join(", "));
+            let path = self.path.display().to_string();
+            let known = conditions.join(", ");
             return Err(TrialsError::Reference { path, name: reference, known });
         }
         let total = table.measures.len();

@@ -60,12 +60,16 @@ impl OfMeasure {
         for OfCondition { condition, participants, trials, median, interval, mean, sd } in conditions {
             let interval = interval.as_ref().map_or_else(|| "-".to_owned(), interval_words);
             let sd = sd.map_or_else(|| "-".to_owned(), digits);
-            let (median, mean) = (digits(*median), digits(*mean));
+            let median = digits(*median);
+            let mean = digits(*mean);
             writeln!(text, "| {condition} | {participants} | {trials} | {median} | {interval} | {mean} | {sd} |").ok();
         }
         if let Some(test) = friedman {
-            let (chi_square, df, w) = (digits(test.chi_square), test.df, digits(test.w));
-            let (p, f_p) = (p_words(test.p), p_words(test.f_p));
+            let chi_square = digits(test.chi_square);
+            let df = test.df;
+            let w = digits(test.w);
+            let p = p_words(test.p);
+            let f_p = p_words(test.f_p);
             writeln!(text, "\nFriedman, {complete} participants under all conditions: chi-square({df}) = {chi_square}, p {p} (Iman-Davenport p {f_p}), Kendall's W {w}").ok();
         }
         if !pairs.is_empty() {
@@ -138,8 +142,10 @@ impl Pair {
         let participants = if one == other { one.to_string() } else { format!("{one}, {other}") };
         let exact = if *exact { "" } else { " (normal)" };
         let g = g.map_or_else(|| "-".to_owned(), digits);
-        let (estimate, interval) = (digits(difference.estimate), interval_words(&difference.interval));
-        let (p, p_holm) = (p_words(*p), p_words(*p_holm));
+        let estimate = digits(difference.estimate);
+        let interval = interval_words(&difference.interval);
+        let p = p_words(*p);
+        let p_holm = p_words(*p_holm);
         write!(
             text,
             "| {first} - {second} | {participants} | {estimate} | {interval} | {p}{exact} | {p_holm} | {rank_effect:.2} | {g} |"

@@ -70,7 +70,9 @@ impl Table {
         }
         let column = |name: &str| names.iter().position(|known| known == name);
         let needed = |name: &str| column(name).ok_or_else(|| format!("there is no column \"{name}\""));
-        let (participant, condition, trial) = (needed(PARTICIPANT)?, needed(CONDITION)?, column(TRIAL));
+        let participant = needed(PARTICIPANT)?;
+        let condition = needed(CONDITION)?;
+        let trial = column(TRIAL);
         for name in wanted {
             column(name).ok_or_else(|| format!("there is no column \"{}\"", quoted(name)))?;
         }

@@ -254,7 +254,8 @@ impl Sessions {
             "another seal, three times the friction, while it slides",
             &|scene| {
                 scene.trocar.iter_mut().for_each(|trocar| {
-                    (trocar.coulomb_n, trocar.static_n) = (3.0 * trocar.coulomb_n, 3.0 * trocar.static_n);
+                    trocar.coulomb_n *= 3.0;
+                    trocar.static_n *= 3.0;
                 });
             },
             &|data, row, _| data.input(row)[TRAVEL].abs() > 0.5e-3,

@@ -78,9 +78,11 @@ pub fn study(clock: VirtualClock, seed: u64, delay_s: f64) -> Result<Rendering, 
     let mut rig = RigConfig { delay_s, ..RigConfig::load("simulated")? };
     rig.identification.compare = true;
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
-    let (mut nonlinear, mut linear) = (Axes::default(), Axes::default());
+    let mut nonlinear = Axes::default();
+    let mut linear = Axes::default();
     let mut at_horizon: [Axes; MODES] = std::array::from_fn(|_| Axes::default());
-    let (mut windows, mut above_one) = (0_u32, 0_u32);
+    let mut windows = 0_u32;
+    let mut above_one = 0_u32;
     run_virtual_on(&plan, clock, SECONDS, |tick| {
         if tick.t_s < FILL_S + delay_s {
             return None;

@@ -59,7 +59,8 @@ fn axes(part: &Part, method: usize, of: impl Fn(&nima_training::Stats) -> f64) -
 fn isolation(two: &Isolation) -> Vec<Row> {
     const CANNOT: &str = "force and orientation do not show the direction of friction; the paper's sessions may have favoured one direction";
     const MEMORY: &str = "the inputs include the state of the seal";
-    let (theirs, ours) = (&two.paper_inputs, &two.our_inputs);
+    let theirs = &two.paper_inputs;
+    let ours = &two.our_inputs;
     let free = |reached: &super::isolation::Reached, of: &dyn Fn(&nima_training::NoContact) -> f64| {
         reached.no_contact.iter().map(of).collect::<Vec<_>>()
     };

@@ -216,7 +216,9 @@ impl Bench {
                 gauge.channels[channel].add(mean + 1e-3 * self.noise.gaussian());
             }
         }
-        (gauge.ages[0], gauge.readings, gauge.damaged) = (100, self.readings, (self.flaws.damaged)(now_s));
+        gauge.ages[0] = 100;
+        gauge.readings = self.readings;
+        gauge.damaged = (self.flaws.damaged)(now_s);
         let mut gauges = Gauges { from_s: now_s - 0.1, to_s: now_s, devices: [Gauge::NONE; DEVICES_MAX] };
         gauges.devices[0] = gauge;
         self.session.gauges(&gauges);

@@ -77,7 +77,8 @@ fn an_arm_or_a_marker_that_moves_in_place_of_its_own_is_named() {
     let moved = Shows { arm_m: 0.1, marker_m: 0.09, ..REST };
     assert!(matches!(own([moved, REST]), Progress::Passed(_)));
     assert_eq!(exchanged(own([REST, moved])), Some(Exchange::Arms));
-    let (arm, marker) = (Shows { marker_m: 0.0, ..moved }, Shows { arm_m: 0.0, ..moved });
+    let arm = Shows { marker_m: 0.0, ..moved };
+    let marker = Shows { arm_m: 0.0, ..moved };
     assert_eq!(exchanged(own([arm, marker])), Some(Exchange::Markers));
     for undecided in [[moved, moved], [arm, REST], [moved, marker], [REST, REST]] {
         assert!(matches!(own(undecided), Progress::Asking(_)), "{undecided:?}");

@@ -143,7 +143,8 @@ impl Measured {
 
     /// The measurements of arm and sensor.
     fn follower_inputs(&self, now_s: f64, jaws: Option<(&JawsControl, bool)>, shared: &Shared) -> Option<Inputs> {
-        let (joints, force) = (self.joints?, self.force?);
+        let joints = self.joints?;
+        let force = self.force?;
         let pose = self.pose.as_ref()?;
         let age_s = [joints.arrival_s, force.arrival_s].map(|at_s| now_s - at_s).into_iter().fold(0.0, f64::max);
         if age_s > OLDEST_S {

@@ -26,14 +26,16 @@ fn on_a_perfect_clock_every_tick_is_at_its_deadline_to_the_last_bit() {
 fn time_advances_and_every_period_is_a_tick_or_missed() {
     for profile in ClockProfile::ALL {
         let mut clock = TickTimes::new(profile, 5, RATE_HZ);
-        let (mut last_s, mut deadline_s) = (f64::NEG_INFINITY, 0.0);
+        let mut last_s = f64::NEG_INFINITY;
+        let mut deadline_s = 0.0;
         for _ in 0..50_000 {
             let time = clock.advance();
             assert!(time.now_s > last_s, "{profile}: {last_s} s, then {time:?}");
             let rest_s = time.now_s - deadline_s - time.missed as f64 / RATE_HZ;
             assert!((-1e-9..1.0 / RATE_HZ).contains(&rest_s), "{profile}: {rest_s} s");
             assert!((time.wake_s - rest_s - time.missed as f64 / RATE_HZ).abs() < 1e-6, "{profile}: {time:?}");
-            (last_s, deadline_s) = (time.now_s, clock.periods() as f64 / RATE_HZ);
+            last_s = time.now_s;
+            deadline_s = clock.periods() as f64 / RATE_HZ;
         }
     }
 }

@@ -115,7 +115,8 @@ fn add_google(set: &mut FileSet, name: &str) -> String {
 
 fn add_file(set: &mut FileSet, name: String, package: &str, dependency: Vec<String>, message: Description) {
     if set.file.iter().all(|file| file.name != name) {
-        let (package, syntax) = (package.to_owned(), "proto3".to_owned());
+        let package = package.to_owned();
+        let syntax = "proto3".to_owned();
         set.file.push(File { name, package, dependency, message_type: vec![message], syntax });
     }
 }

@@ -97,7 +97,9 @@ impl Contents {
         Ok(match place.kind {
             kind::SCHEMA | kind::CHANNEL => self.take_definition(place.kind, content),
             kind::CHUNK_INDEX => parse::chunk_index(content).map(|index| {
-                let (at, length, times_ns) = (index.at, index.length, index.times_ns);
+                let at = index.at;
+                let length = index.length;
+                let times_ns = index.times_ns;
                 self.messages.push(Messages { is_chunk: true, at, length, times_ns, channels: index.channels });
             }),
             kind::ATTACHMENT_INDEX => parse::attachment_index(content).map(|index| self.attachments.push(index)),
@@ -174,7 +176,9 @@ impl Contents {
                 _ => {}
             }
         }
-        let (at, length, times_ns) = (place.at, place.length, chunk.times_ns);
+        let at = place.at;
+        let length = place.length;
+        let times_ns = chunk.times_ns;
         for (&channel, count) in &channels {
             *self.statistics.by_channel.entry(channel).or_default() += count;
         }
@@ -194,7 +198,9 @@ impl Contents {
                 row.times_ns = (row.times_ns.0.min(time), row.times_ns.1.max(time));
             }
             _ => {
-                let (at, length, times_ns) = (place.at, place.length, (time, time));
+                let at = place.at;
+                let length = place.length;
+                let times_ns = (time, time);
                 self.messages.push(Messages { is_chunk: false, at, length, times_ns, channels: Vec::new() });
             }
         }

@@ -93,8 +93,10 @@ pub(super) struct RawChannel {
 
 pub(super) fn channel(content: &[u8]) -> Option<RawChannel> {
     let mut fields = Fields(content);
-    let (id, schema) = (fields.u16()?, fields.u16()?);
-    let (topic, encoding) = (fields.text()?, fields.text()?);
+    let id = fields.u16()?;
+    let schema = fields.u16()?;
+    let topic = fields.text()?;
+    let encoding = fields.text()?;
     fields.texts()?;
     Some(RawChannel { id, schema, topic, encoding })
 }
@@ -113,7 +115,8 @@ pub(super) const MESSAGE_HEAD: usize = 2 + 4 + 8 + 8;
 
 pub(super) fn message(content: &[u8]) -> Option<MessageHead> {
     let mut fields = Fields(content);
-    let (channel, sequence) = (fields.u16()?, fields.u32()?);
+    let channel = fields.u16()?;
+    let sequence = fields.u32()?;
     Some(MessageHead { channel, sequence, log_time_ns: fields.u64()?, publish_time_ns: fields.u64()? })
 }
 
@@ -146,7 +149,8 @@ pub(super) struct ChunkIndex {
 pub(super) fn chunk_index(content: &[u8]) -> Option<ChunkIndex> {
     let mut fields = Fields(content);
     let times_ns = (fields.u64()?, fields.u64()?);
-    let (at, length) = (fields.u64()?, fields.u64()?);
+    let at = fields.u64()?;
+    let length = fields.u64()?;
     let channels = fields.map(|inside| {
         let channel = inside.u16()?;
         inside.u64().map(|_| channel)

@@ -99,7 +99,8 @@ fn every_flipped_bit_of_a_chunk_is_found_and_the_rest_is_read() {
     let reader = Reader::of_bytes("whole", whole.clone()).unwrap();
     let all = ours(&reader);
     let places: Vec<(u64, u64)> = reader.chunk_places().collect();
-    let (mut named, mut seen) = (0, 0);
+    let mut named = 0;
+    let mut seen = 0;
     for (at, length) in places {
         for byte in at..at + length {
             let mut bytes = whole.clone();
@@ -158,7 +159,8 @@ fn what_claims_to_be_huge_takes_no_memory() {
 fn a_chunk_that_is_named_twice_is_read_once() {
     let whole = small();
     // The index of the first chunk in the place of the second one.
-    let (mut indexes, mut at) = (Vec::new(), 8);
+    let mut indexes = Vec::new();
+    let mut at = 8;
     while let Some((head, _)) = whole[at..].split_first_chunk::<9>() {
         let length = 9 + u64::from_le_bytes(head[1..].try_into().unwrap()) as usize;
         if head[0] == format::kind::CHUNK_INDEX {

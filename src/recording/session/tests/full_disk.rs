@@ -90,7 +90,8 @@ fn a_file_on_a_full_disk_stays_readable() {
     let kept = folder.path().join("kept.mcap");
     for kib in [9_000, 17_001, 30_000, 30_002] {
         // A file system of this size that nobody else sees, for as long as the shell runs.
-        let (disk, copy) = (path.parent().unwrap(), kept.display());
+        let disk = path.parent().unwrap();
+        let copy = kept.display();
         fs::create_dir_all(disk).unwrap();
         let script = format!(
             "mount -t tmpfs -o size={kib}k none {disk} || exit 99; \"$0\" \"$@\" && cp {disk}/session.mcap {copy}",

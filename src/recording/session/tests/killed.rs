@@ -118,7 +118,8 @@ fn kill(count: usize, seed: u64) {
     let mut left: Vec<Left> = (0..count).map(|_| kill_one(&mut random)).collect();
     left.sort_by_key(|one| one.lost_ns);
     let early = left.iter().filter(|one| one.early_end).count();
-    let (middle, most) = (left[count / 2].lost_ns / 1_000_000, left[count - 1].lost_ns / 1_000_000);
+    let middle = left[count / 2].lost_ns / 1_000_000;
+    let most = left[count - 1].lost_ns / 1_000_000;
     let grown = left.iter().filter(|one| one.bytes > 17 << 20).count();
     let longest_s = left.iter().map(|one| one.recorded_ns).max().unwrap_or_default() / 1_000_000_000;
     println!("{count} processes killed, all files open; lost: median {middle} ms, most {most} ms");

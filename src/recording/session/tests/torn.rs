@@ -115,7 +115,8 @@ fn without_power(log: &[(u64, Vec<u8>)], synced: usize, end: usize, random: &mut
     let mut last_version = std::collections::BTreeMap::new();
     let mut versions = disk;
     for (number, (at, bytes)) in log[synced..end].iter().enumerate() {
-        let (mut at, mut bytes) = (*at, &bytes[..]);
+        let mut at = *at;
+        let mut bytes = &bytes[..];
         while !bytes.is_empty() {
             let (part, rest) = bytes.split_at(bytes.len().min(PAGE - at as usize % PAGE));
             // Up to which write this page reached the disk.
@@ -124,7 +125,8 @@ fn without_power(log: &[(u64, Vec<u8>)], synced: usize, end: usize, random: &mut
                 versions.write(at, part);
             }
             sizes.push(sizes[sizes.len() - 1].max(at as usize + part.len()));
-            (at, bytes) = (at + part.len() as u64, rest);
+            at += part.len() as u64;
+            bytes = rest;
         }
     }
     let size = sizes[random.usize(..sizes.len())];
@@ -137,7 +139,9 @@ fn after_a_power_failure_what_was_waited_for_is_read() {
     let log = script();
     let begin = log.iter().position(|(_, bytes)| bytes.ends_with(b"\x89MCAP0\r\n")).unwrap() + 1;
     let mut random = fastrand::Rng::with_seed(9);
-    let (mut sound, mut scanned, mut missing) = (0, 0, 0);
+    let mut sound = 0;
+    let mut scanned = 0;
+    let mut missing = 0;
     for _ in 0..600 {
         // A second has two chunks, which are eight writes and now and then some more.
         let synced = random.usize(begin..log.len() - 20);

@@ -35,7 +35,8 @@ impl Objects {
     }
 
     fn tools_on_ring(&mut self, i: usize, step_s: f64) {
-        let (ring, note) = (&mut self.rings[i], &mut self.notes[i]);
+        let ring = &mut self.rings[i];
+        let note = &mut self.notes[i];
         note.fingers_n = Default::default();
         for side in Side::LEFT_TO_RIGHT.map(Side::index) {
             let pairs = &mut self.memories.ring_tools[i][side];
@@ -56,7 +57,8 @@ impl Objects {
     }
 
     fn board_under_ring(&mut self, i: usize, step_s: f64) {
-        let (ring, memories) = (&mut self.rings[i], &mut self.memories.ring_board[i]);
+        let ring = &mut self.rings[i];
+        let memories = &mut self.memories.ring_board[i];
         let board = &self.setting.board;
         if ring.centre_m.z > board.z_m + ring.reach_m() {
             return;
@@ -101,7 +103,8 @@ impl Objects {
     fn ring_on_ring(&mut self, i: usize, other: usize, step_s: f64) {
         let pair = &mut self.memories.ring_rings[i * self.notes.len() + other];
         let (before, after) = self.rings.split_at_mut(other);
-        let (a, b) = (&mut before[i], &mut after[0]);
+        let a = &mut before[i];
+        let b = &mut after[0];
         let still = !a.moves() && !b.moves();
         let far_m = a.reach_m() + b.reach_m();
         if still || b.lost {
@@ -110,7 +113,8 @@ impl Objects {
         let touching = (a.centre_m - b.centre_m).norm_squared() < far_m * far_m
             && places_on_ring(a, b, pair, &self.laws.ring_ring, step_s);
         if touching {
-            (self.notes[i].supported, self.notes[other].supported) = (true, true);
+            self.notes[i].supported = true;
+            self.notes[other].supported = true;
             let fast = (a.velocity_m_s - b.velocity_m_s).norm() > WAKES_M_S;
             let led = |i: usize| self.notes[i].touched_by.contains(&true);
             if fast || led(i) || led(other) {
@@ -179,7 +183,8 @@ fn tool_on_ring(
     law: &Law,
     step_s: f64,
 ) -> Option<Vector3<f64>> {
-    let (segment, radius_m) = (tool.parts[part], tool.radii_m[part]);
+    let segment = tool.parts[part];
+    let radius_m = tool.radii_m[part];
     let mut pressed_n = Vector3::zeros();
     let touched = capsule_on_ring(ring, &segment, radius_m, pair, |ring, memory, contact| {
         let Contact { at_m, touch } = contact;

@@ -89,7 +89,8 @@ impl Objects {
         for i in 0..self.rings.len() {
             let around = self.peg_in(&self.rings[i]);
             let view = *self.view();
-            let (ring, note) = (&mut self.rings[i], &mut self.notes[i]);
+            let ring = &mut self.rings[i];
+            let note = &mut self.notes[i];
             let by = note.held_by();
             let held = by.contains(&true);
             if !ring.lost {

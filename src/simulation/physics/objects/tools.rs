@@ -54,7 +54,8 @@ impl Objects {
                 let push = law.push(memory, &Touch { velocity_m_s, ..touch }, step_s);
                 left.push(ours, &at_m, &push);
                 right.push(theirs, &at_m, &push.reverse());
-                (left.touching.other_instrument, right.touching.other_instrument) = (true, true);
+                left.touching.other_instrument = true;
+                right.touching.other_instrument = true;
             }
         }
     }
@@ -85,7 +86,8 @@ fn board_under_tool(
     step_s: f64,
 ) {
     for (part, memory) in memories.iter_mut().enumerate() {
-        let (end_m, radius_m) = (tool.parts[part].to_m, tool.radii_m[part]);
+        let end_m = tool.parts[part].to_m;
+        let radius_m = tool.radii_m[part];
         let depth_m = z_m + radius_m - end_m.z;
         if depth_m <= 0.0 || end_m.x.abs() > half_m[0] || end_m.y.abs() > half_m[1] {
             *memory = Memory::default();

@@ -22,7 +22,8 @@ impl Setting {
         self.validate_laws()?;
         self.validate_jaws()?;
         for axis in 0..3 {
-            let (from_m, to_m) = (self.view.from_m[axis], self.view.to_m[axis]);
+            let from_m = self.view.from_m[axis];
+            let to_m = self.view.to_m[axis];
             within("view.from_m", from_m, from_m.abs() <= 1.0, "within 1 m of the origin")?;
             within("view.to_m", to_m, to_m.abs() <= 1.0 && from_m < to_m, "above from_m, within 1 m of the origin")?;
         }
@@ -30,7 +31,8 @@ impl Setting {
     }
 
     fn validate_board(&self) -> Result<(), SettingError> {
-        let (board, pegs) = (&self.board, &self.pegs);
+        let board = &self.board;
+        let pegs = &self.pegs;
         within("board.z_m", board.z_m, board.z_m.abs() <= 0.5, "within 0.5 m of 0")?;
         for size_m in board.size_m {
             within("board.size_m", size_m, (0.01..=1.0).contains(&size_m), "from 0.01 to 1 m")?;

@@ -31,7 +31,8 @@ fn swing(scene: &mut Scene, tick: u32, height_m: f64) {
 fn throw(scene: &mut Scene) {
     for ring in 0..6 {
         let i = ring as f64;
-        let (from_m, velocity_m_s) = (at(0.012 * i - 0.03, 0.013, 0.03), at(0.05, 0.02 * i - 0.05, 0.0));
+        let from_m = at(0.012 * i - 0.03, 0.013, 0.03);
+        let velocity_m_s = at(0.05, 0.02 * i - 0.05, 0.0);
         scene.objects.ring_mut(ring).throw(from_m, velocity_m_s, at(10.0, 5.0, 3.0) * 6e-8);
     }
 }

@@ -11,7 +11,8 @@ const GRAVITY_M_S2: f64 = 9.806_65;
 fn gripped() -> Scene {
     let mut setting = one_ring(Start::At([-0.007, 0.0, 0.05]));
     setting.ring = Shape { major_radius_m: 0.007, tube_radius_m: 5e-4, ..Shape::default() };
-    (setting.jaws.finger_length_m, setting.jaws.stiffness_n_m) = (0.02, 2000.0);
+    setting.jaws.finger_length_m = 0.02;
+    setting.jaws.stiffness_n_m = 2000.0;
     setting.contact.ring_stiffness_n_m = 10_000.0;
     let mut scene = Scene::new(&setting);
     scene.hands[RIGHT] = Some(instrument(RIGHT, at(0.0, 0.0, 0.049), 0.05));

@@ -56,7 +56,8 @@ fn round(left: &[([f64; 3], [f64; 3], f64, u32)], right: &[([f64; 3], [f64; 3], 
             let hand = scene.hands[side].get_or_insert_with(|| instrument(side, at(0.0, 0.0, 0.05), 0.0));
             hand.world_from_jaws = UnitQuaternion::from_scaled_axis(Vector3::from(*turn_rad));
             hand.opening_rad = *opening_rad;
-            let (from_m, ticks) = (hand.tip_m, left.3);
+            let from_m = hand.tip_m;
+            let ticks = left.3;
             for tick in 1..=ticks {
                 let to_m = Vector3::from(*to_m);
                 scene.hands[side].as_mut().unwrap().tip_m =

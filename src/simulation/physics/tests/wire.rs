@@ -93,7 +93,8 @@ fn tried_m(wire: &Wire, setting: &WireSetting, centre_m: &Vector3<f64>) -> f64 {
         (offset_m.yz().norm() - setting.hoop.radius_m).hypot(offset_m.x)
     };
     let pieces = points_m.windows(2).flat_map(|pair| {
-        let (from_m, way_m) = (pair[0], pair[1] - pair[0]);
+        let from_m = pair[0];
+        let way_m = pair[1] - pair[0];
         (0..=1000).map(move |part| from_m + way_m * (f64::from(part) / 1000.0))
     });
     pieces.map(gap_m).fold(f64::INFINITY, f64::min)
@@ -141,12 +142,15 @@ fn energy_of_a_loop_that_bounces_around_the_wire_does_not_grow() {
     const MASS_KG: f64 = 0.3;
     let mut setting = WireSetting::default();
     for (damping_n_s_m, friction) in [(0.0, 0.0), (0.0, 0.3), (3.0, 0.15)] {
-        (setting.contact.damping_n_s_m, setting.contact.friction) = (damping_n_s_m, friction);
+        setting.contact.damping_n_s_m = damping_n_s_m;
+        setting.contact.friction = friction;
         let mut wire = Wire::new(&setting, PERIOD_S);
-        let (mut tip_m, mut speed_m_s) = (wire.curve().at(0.05), at(0.02, 0.09, -0.07));
+        let mut tip_m = wire.curve().at(0.05);
+        let mut speed_m_s = at(0.02, 0.09, -0.07);
         let first_j = 0.5 * MASS_KG * speed_m_s.norm_squared();
         // In free flight all of the energy is motion.
-        let (mut most_j, mut bounces) = (0.0_f64, 0);
+        let mut most_j = 0.0_f64;
+        let mut bounces = 0;
         for tick in 0..600_000 {
             let loads = wire.step(&Side::Right.alone(holding(tip_m)))[RIGHT];
             speed_m_s += loads.tip_n * (PERIOD_S / MASS_KG);

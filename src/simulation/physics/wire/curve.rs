@@ -110,7 +110,8 @@ impl Curve {
         if after == 0 {
             return *to;
         }
-        let (from_m, to_m) = (self.along_m[after - 1], self.along_m[after]);
+        let from_m = self.along_m[after - 1];
+        let to_m = self.along_m[after];
         let share = if to_m > from_m { ((along_m - from_m) / (to_m - from_m)).clamp(0.0, 1.0) } else { 0.0 };
         from + (to - from) * share
     }
@@ -120,7 +121,8 @@ impl Curve {
         let last = self.points_m.len() - 1;
         let place = place.clamp(0.0, last as f64);
         let i = (place as usize).min(last.saturating_sub(1));
-        let (share, next) = (place - i as f64, (i + 1).min(last));
+        let share = place - i as f64;
+        let next = (i + 1).min(last);
         (
             self.along_m[i] + (self.along_m[next] - self.along_m[i]) * share,
             self.points_m[i] + (self.points_m[next] - self.points_m[i]) * share,
@@ -132,13 +134,16 @@ impl Curve {
         let reach_m = circle.radius_m + both_m + self.piece_m;
         let mut reach = Reach::default();
         // The two points before; far away where they were passed over.
-        let (mut gaps_m, mut height_before_m) = ([f64::INFINITY; 2], None);
-        let (mut i, count) = (0, self.points_m.len());
+        let mut gaps_m = [f64::INFINITY; 2];
+        let mut height_before_m = None;
+        let mut i = 0;
+        let count = self.points_m.len();
         while i < count {
             let away_m = (self.points_m[i] - circle.centre_m).norm();
             if away_m > reach_m {
                 self.note(circle, i, &[gaps_m[0], gaps_m[1], f64::INFINITY], both_m, &mut reach);
-                (gaps_m, height_before_m) = ([f64::INFINITY; 2], None);
+                gaps_m = [f64::INFINITY; 2];
+                height_before_m = None;
                 i += (((away_m - reach_m) / self.piece_m.max(1e-6)) as usize).max(1);
                 continue;
             }
@@ -151,7 +156,8 @@ impl Curve {
                     reach.through = Some((along_m, off_axis_m));
                 }
             }
-            (gaps_m, height_before_m) = ([gaps_m[1], gap_m], Some(height_m));
+            gaps_m = [gaps_m[1], gap_m];
+            height_before_m = Some(height_m);
             i += 1;
         }
         self.note(circle, count, &[gaps_m[0], gaps_m[1], f64::INFINITY], both_m, &mut reach);
@@ -183,7 +189,8 @@ impl Curve {
             (Place { along_m, wire_m, loop_m }, (loop_m - wire_m).norm_squared())
         };
         for _ in 0..NARROWINGS {
-            let (one, other) = (high - (high - low) * GOLDEN, low + (high - low) * GOLDEN);
+            let one = high - (high - low) * GOLDEN;
+            let other = low + (high - low) * GOLDEN;
             if place(one).1 < place(other).1 {
                 high = other;
             } else {
@@ -239,7 +246,8 @@ fn slopes(points_m: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
             0 => secant(0).0,
             i if i == last => secant(last - 1).0,
             i => {
-                let ((before, before_m), (after, after_m)) = (secant(i - 1), secant(i));
+                let (before, before_m) = secant(i - 1);
+                let (after, after_m) = secant(i);
                 (before * after_m + after * before_m) / (before_m + after_m)
             }
         })
@@ -254,7 +262,8 @@ fn hermite(
     to_slope: Vector3<f64>,
     t: f64,
 ) -> Vector3<f64> {
-    let (t2, t3) = (t * t, t * t * t);
+    let t2 = t * t;
+    let t3 = t * t * t;
     from * (2.0 * t3 - 3.0 * t2 + 1.0)
         + from_slope * (t3 - 2.0 * t2 + t)
         + to * (3.0 * t2 - 2.0 * t3)

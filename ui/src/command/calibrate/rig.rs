@@ -117,7 +117,8 @@ struct Bench {
 
 impl Bench {
     fn start(plan: Plan, rig: String, in_force: InForce, reader: Reader, leave: Leave) -> anyhow::Result<Self> {
-        let (wizards, ticks) = (Wizards::default(), [None; SIDES]);
+        let wizards = Wizards::default();
+        let ticks = [None; SIDES];
         let saved = Vec::new();
         let mut this = Self { plan, rig, handle: None, in_force, reader, read: None, wizards, ticks, saved, leave };
         this.restart()?;
@@ -132,7 +133,8 @@ impl Bench {
         let handle = nima_simulation::start(&self.plan)?;
         let ender = handle.ender();
         self.leave.at_once(move || ender.end());
-        (self.handle, self.ticks) = (Some(handle), [None; SIDES]);
+        self.handle = Some(handle);
+        self.ticks = [None; SIDES];
         Ok(())
     }
 
@@ -140,7 +142,8 @@ impl Bench {
         self.in_force.choose(side);
         self.wizards = Wizards::at(which);
         let what = format!("{} arm, {}", side.word(), which.name().to_lowercase());
-        let (mut shown, mut since) = (None, Instant::now());
+        let mut shown = None;
+        let mut since = Instant::now();
         let saving = loop {
             if self.leave.is_asked() {
                 bail!("ended as asked; the calibrations that were finished are saved");
@@ -157,7 +160,8 @@ impl Bench {
                 Attended::Working(step, notice) => {
                     if shown != Some(step) {
                         tell(format_args!("{what}: {}", step.to_lowercase()));
-                        (shown, since) = (Some(step), Instant::now());
+                        shown = Some(step);
+                        since = Instant::now();
                     }
                     Self::wait(since, &what, step, notice.as_deref())?;
                 }
@@ -223,7 +227,8 @@ impl Bench {
                 let folder = Store::of_user().ok().and_then(|store| Some(store.folder().parent()?.to_path_buf()));
                 let saved = self.in_force.save_frame(*saving, &self.rig, folder.as_deref());
                 let (rig, path, words) = saved.map_err(anyhow::Error::msg)?;
-                (self.plan.rig, self.rig) = (rig, path.display().to_string());
+                self.plan.rig = rig;
+                self.rig = path.display().to_string();
                 words
             }
             saving => self.in_force.save(saving).map_err(anyhow::Error::msg)?,

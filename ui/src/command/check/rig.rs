@@ -148,7 +148,8 @@ impl Bench {
     }
 
     fn go_through(&mut self, run: &mut Run, quiet: bool) -> anyhow::Result<()> {
-        let (mut told, mut asked) = (0, (Ask::Nothing, Instant::now()));
+        let mut told = 0;
+        let mut asked = (Ask::Nothing, Instant::now());
         while !run.session.is_finished() {
             self.may_go_on()?;
             self.look(run);

@@ -82,7 +82,9 @@ pub(super) fn run(
         let Compared { engaged, apart, rendered, recorded_error, changed_error } = compared[side.index()]?;
         let [difference, recorded_error, changed_error] =
             [rendered, recorded_error, changed_error].map(|one| Lengths::of(&one));
-        let (side, engaged_ticks, in_one_engaged_only) = (side.word(), engaged, apart);
+        let side = side.word();
+        let engaged_ticks = engaged;
+        let in_one_engaged_only = apart;
         Some(Arm { side, engaged_ticks, in_one_engaged_only, difference, recorded_error, changed_error })
     };
     let told = Told {

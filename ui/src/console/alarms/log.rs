@@ -71,7 +71,8 @@ impl AlarmLog {
                     entry.alarm.clone_from(alarm);
                 }
                 _ => {
-                    let (alarm, began) = (alarm.clone(), now.clone());
+                    let alarm = alarm.clone();
+                    let began = now.clone();
                     self.entries.push_back(Entry { alarm, began, ended: None, acknowledged: false });
                 }
             }
@@ -135,7 +136,8 @@ mod tests {
 
     #[test]
     fn the_first_fault_stays_first_and_a_more_urgent_one_goes_before_it() {
-        let (missed, bias) = (alarm(Kind::Missed, Priority::Medium), alarm(Kind::BiasMoved, Priority::Medium));
+        let missed = alarm(Kind::Missed, Priority::Medium);
+        let bias = alarm(Kind::BiasMoved, Priority::Medium);
         let mut log = AlarmLog::default();
         log.update(std::slice::from_ref(&bias), &at(1.0));
         log.update(&[missed.clone(), bias.clone()], &at(2.0));

@@ -147,7 +147,8 @@ fn burst(priority: Priority) -> Vec<f64> {
         let first = (start_s * f64::from(RATE_HZ)) as usize;
         let count = (length_s * f64::from(RATE_HZ)) as usize;
         for (i, sample) in burst.iter_mut().skip(first).take(count).enumerate() {
-            let (t_s, left_s) = (i as f64 / f64::from(RATE_HZ), (count - i) as f64 / f64::from(RATE_HZ));
+            let t_s = i as f64 / f64::from(RATE_HZ);
+            let left_s = (count - i) as f64 / f64::from(RATE_HZ);
             // Ramps, because a step would be heard as a click.
             let loud = (t_s / 0.015).min(left_s / 0.015).min(1.0);
             let tone: f64 = (1..=4).map(|k| (TAU * tone_hz * f64::from(k) * t_s).sin() / f64::from(k)).sum();
@@ -186,7 +187,8 @@ mod tests {
     /// Number of pulses in a burst: sound separated by at least 30 ms of silence.
     fn pulses_heard(samples: &[f64]) -> usize {
         let quiet = (0.03 * f64::from(RATE_HZ)) as usize;
-        let (mut heard, mut silent) = (0, quiet);
+        let mut heard = 0;
+        let mut silent = quiet;
         for sample in samples {
             if sample.abs() > 0.05 {
                 heard += usize::from(silent >= quiet);
@@ -215,7 +217,8 @@ mod tests {
     fn a_burst_is_played_when_due_and_silence_or_failure_is_told() {
         use std::os::unix::fs::PermissionsExt as _;
         let folder = tempfile::tempdir().unwrap();
-        let (player, told) = (folder.path().join("aplay"), folder.path().join("told"));
+        let player = folder.path().join("aplay");
+        let told = folder.path().join("told");
         let set = |script: &str| {
             std::fs::write(&player, script).unwrap();
             std::fs::set_permissions(&player, std::fs::Permissions::from_mode(0o755)).unwrap();

@@ -49,13 +49,15 @@ impl Alarms {
         }
         let colour = calls.unwrap_or(first.alarm.priority).colour(time_s, calls.is_some());
         let unseen = self.log.has_unseen();
-        let (others, first) = (live.len() - 1, first.clone());
+        let others = live.len() - 1;
+        let first = first.clone();
         let frame = Frame::new()
             .fill(theme::DARK.card)
             .stroke(Stroke::new(2.0, colour))
             .inner_margin(Margin::symmetric(14, 5))
             .outer_margin(Margin { left: 1, right: 1, top: 0, bottom: 1 });
-        let (mut acknowledged, mut opened) = (false, false);
+        let mut acknowledged = false;
+        let mut opened = false;
         Panel::top("alarms").resizable(false).frame(frame).show(ui, |ui| {
             ui.horizontal(|ui| {
                 opened |= words_ui(ui, &first, others, colour);

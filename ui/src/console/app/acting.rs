@@ -142,8 +142,12 @@ impl ConsoleApp {
     /// The arrangement and the look of the screen, which can be taken back.
     fn look(&self) -> Look {
         let Settings { layout, light, language, scale_percent, picture, .. } = &self.settings.now;
-        let (light, language, scale_percent, picture) = (*light, *language, *scale_percent, *picture);
-        let (extras, traces) = (self.panels.scene.extras, self.panels.forces.view());
+        let light = *light;
+        let language = *language;
+        let scale_percent = *scale_percent;
+        let picture = *picture;
+        let extras = self.panels.scene.extras;
+        let traces = self.panels.forces.view();
         Look { layout: layout.clone(), light, language, scale_percent, picture, extras, traces }
     }
 
@@ -151,8 +155,11 @@ impl ConsoleApp {
         let Some(look) = look else { return };
         let Look { layout, light, language, scale_percent, picture, extras, traces } = look;
         let settings = &mut self.settings.now;
-        (settings.layout, settings.light, settings.scale_percent) = (layout, light, scale_percent);
-        (settings.picture, settings.language) = (picture, language);
+        settings.layout = layout;
+        settings.light = light;
+        settings.scale_percent = scale_percent;
+        settings.picture = picture;
+        settings.language = language;
         self.panels.scene.extras = extras;
         self.panels.forces.show(traces);
     }
@@ -165,7 +172,8 @@ impl ConsoleApp {
 
     /// A trial begins: what lies over the window is closed.
     pub(super) fn clear_for_trial(&mut self) {
-        (self.help, self.top_bar.alarms.list) = (Help::default(), false);
+        self.help = Help::default();
+        self.top_bar.alarms.list = false;
         self.palette.close();
     }
 }

@@ -28,7 +28,8 @@ impl ConsoleApp {
             // A simulated rig has no arm of joints: the wizard says so.
             let rests = matches!(self.live.state(), LoopState::Idle | LoopState::Disconnected)
                 || self.live.rig.devices.is_none();
-            let (rig, scene) = (self.live.rig.clone(), self.live.scene.clone());
+            let rig = self.live.rig.clone();
+            let scene = self.live.scene.clone();
             match if rests { Ok(()) } else { self.restart(rig, scene) } {
                 Ok(()) => self.wizards.open = Some(which),
                 Err(reason) => self.in_force.tell(text::calibrations::not_opened(&reason)),

@@ -61,7 +61,8 @@ impl Checking {
     }
 
     fn begin_anew(&mut self) {
-        (self.run, self.saved) = (None, None);
+        self.run = None;
+        self.saved = None;
     }
 }
 
@@ -71,7 +72,8 @@ impl ConsoleApp {
         self.wizards.open = None;
         self.listing.close();
         let rests = matches!(self.live.state(), LoopState::Idle | LoopState::Disconnected);
-        let (rig, scene) = (self.live.rig.clone(), self.live.scene.clone());
+        let rig = self.live.rig.clone();
+        let scene = self.live.scene.clone();
         let opened = if self.live.rig.devices.is_none() && scene.person.is_none() {
             Scene::load(SCENE).map_err(|error| error.to_string()).and_then(|scene| self.restart_in(scene))
         } else if rests {
@@ -163,7 +165,8 @@ impl ConsoleApp {
                 calibrations_ui(ui, &self.live, &self.in_force, Some(Page::Check))
             });
         });
-        let (mut wanted, roster) = (None, self.roster());
+        let mut wanted = None;
+        let roster = self.roster();
         let Checking { run, by, saved, .. } = &mut self.checking;
         CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {

@@ -46,7 +46,8 @@ impl ConsoleApp {
     /// When the process is asked to end, the loop ends at once, even if the window is blocked, and then the window.
     pub(super) fn leave_when_asked(&self) {
         let Some(door) = &self.door else { return };
-        let (ender, ctx) = (door.handle().ender(), self.ctx.clone());
+        let ender = door.handle().ender();
+        let ctx = self.ctx.clone();
         self.options.leave.at_once(move || {
             ender.end();
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);

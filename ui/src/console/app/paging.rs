@@ -48,7 +48,8 @@ impl ConsoleApp {
         let Some(page) = &mut self.page else { return };
         self.panels.demo.leave(&mut self.outbox);
         self.panels.scene.let_go(&mut self.outbox);
-        (self.start.is_open, self.list.is_open) = (false, false);
+        self.start.is_open = false;
+        self.list.is_open = false;
         page.show(self.settings.folder(), &self.settings.now.studies);
     }
 

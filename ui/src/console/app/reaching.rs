@@ -176,7 +176,8 @@ impl ConsoleApp {
             let has = eyes.is_some_and(|eyes| action == Action::HideForces || eyes.has_two_lenses());
             return Reach::Can.only_if(has);
         }
-        let (scene, view) = (&self.live.scene, &self.panels.scene);
+        let scene = &self.live.scene;
+        let view = &self.panels.scene;
         let is_searched = scene.is_searched();
         let is_offered = match action {
             Action::OtherHand => self.live.is_bimanual(),

@@ -57,7 +57,8 @@ impl ConsoleApp {
         self.panels.demo.leave(&mut self.outbox);
         self.panels.scene.let_go(&mut self.outbox);
         self.outbox.flush(self.door.as_ref().map(Door::handle));
-        (self.start.is_open, self.list.is_open) = (false, false);
+        self.start.is_open = false;
+        self.list.is_open = false;
         self.past = Some(Past::open(session, &self.ctx, self.panels.scene.twin()));
     }
 
@@ -95,7 +96,8 @@ impl ConsoleApp {
         let room = ui.available_rect_before_wrap();
         let live_again = head_ui(ui, past);
         bar_ui(ui, past);
-        let (wants_beside, smooth) = (std::mem::take(&mut past.wants_beside), self.panels.scene.smooth);
+        let wants_beside = std::mem::take(&mut past.wants_beside);
+        let smooth = self.panels.scene.smooth;
         CentralPanel::no_frame().show(ui, |ui| {
             if self.list.is_open {
                 if let Some(session) = self.list.ui(ui) {

@@ -166,7 +166,9 @@ impl ConsoleApp {
         self.serve(None);
         self.start.tell(None);
         let (give, emulators) = channel();
-        let (ctx, devices, names) = (self.ctx.clone(), rig.devices.clone(), choice.clone());
+        let ctx = self.ctx.clone();
+        let devices = rig.devices.clone();
+        let names = choice.clone();
         let program = self.program.clone();
         let work = move || {
             let started = match program {

@@ -108,7 +108,9 @@ impl egui::Plugin for Canvas {
             );
         }
         output.shapes.push(callback(self.surface.end(ctx, self.frame, share, ground.background)));
-        (self.before, self.prints, self.ground) = (shapes, prints, ground);
+        self.before = shapes;
+        self.prints = prints;
+        self.ground = ground;
     }
 }
 
@@ -197,7 +199,8 @@ mod tests {
     fn only_what_differs_is_drawn_where_it_was_and_where_it_is() {
         let stays = [square(0.0, 0.0, Color32::RED), square(100.0, 0.0, Color32::RED)];
         let frame = |moving: ClippedShape| vec![stays[0].clone(), moving, stays[1].clone()];
-        let (before, now) = (frame(square(300.0, 300.0, Color32::BLUE)), frame(square(500.0, 300.0, Color32::BLUE)));
+        let before = frame(square(300.0, 300.0, Color32::BLUE));
+        let now = frame(square(500.0, 300.0, Color32::BLUE));
         assert_eq!(found(&before, &before), Some(vec![]));
         let rects = apart(found(&before, &now).unwrap(), &now);
         assert_eq!(rects.len(), 2);
@@ -208,13 +211,15 @@ mod tests {
 
     #[test]
     fn what_changes_its_place_in_the_pile_draws_everything() {
-        let (one, other) = (square(0.0, 0.0, Color32::RED), square(5.0, 5.0, Color32::BLUE));
+        let one = square(0.0, 0.0, Color32::RED);
+        let other = square(5.0, 5.0, Color32::BLUE);
         assert_eq!(found(&[one.clone(), other.clone()], &[other, one]), None);
     }
 
     #[test]
     fn a_shape_that_goes_or_comes_is_a_difference() {
-        let (one, other) = (square(0.0, 0.0, Color32::RED), square(200.0, 5.0, Color32::BLUE));
+        let one = square(0.0, 0.0, Color32::RED);
+        let other = square(200.0, 5.0, Color32::BLUE);
         let both = [one.clone(), other.clone()];
         let alone = std::slice::from_ref(&one);
         for rects in [found(&both, alone).unwrap(), found(alone, &both).unwrap()] {

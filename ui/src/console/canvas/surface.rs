@@ -89,7 +89,8 @@ impl Surface {
         rects: &[Rect],
         background: Color32,
     ) -> CallbackFn {
-        let (surface, rects) = (Arc::clone(self), rects.to_vec());
+        let surface = Arc::clone(self);
+        let rects = rects.to_vec();
         CallbackFn::new(move |info, painter| {
             let gl = painter.gl();
             let size = info.screen_size_px.map(|x| i32::try_from(x).unwrap_or(0));
@@ -116,7 +117,8 @@ impl Surface {
 
     /// Called after the shapes. From now on the window shows `frame`, of which `share` was redrawn.
     pub(super) fn end(self: &Arc<Self>, ctx: &Context, frame: u64, share: f64, background: Color32) -> CallbackFn {
-        let (surface, ctx) = (Arc::clone(self), ctx.clone());
+        let surface = Arc::clone(self);
+        let ctx = ctx.clone();
         CallbackFn::new(move |_, painter| {
             let mut inner = surface.inner.lock().unwrap_or_else(PoisonError::into_inner);
             if inner.torn || surface.is_refused() {

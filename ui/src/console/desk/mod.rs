@@ -70,7 +70,8 @@ impl Desk {
             if self.moved {
                 *at = None;
             }
-            (self.moved, self.turned) = (false, false);
+            self.moved = false;
+            self.turned = false;
         }
     }
 }

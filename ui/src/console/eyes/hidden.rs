@@ -19,8 +19,11 @@ impl Shaft {
     pub(super) fn hides(&self, lens_m: &Vector3<f64>, point_m: &Vector3<f64>) -> bool {
         let [sight, shaft] = [point_m - lens_m, self.trocar_m - self.tip_m];
         let between = self.tip_m - lens_m;
-        let (a, b, c) = (sight.norm_squared(), sight.dot(&shaft), shaft.norm_squared());
-        let (d, e) = (sight.dot(&between), shaft.dot(&between));
+        let a = sight.norm_squared();
+        let b = sight.dot(&shaft);
+        let c = shaft.norm_squared();
+        let d = sight.dot(&between);
+        let e = shaft.dot(&between);
         let least = a * c - b * b;
         if !(a > 0.0 && c > 0.0 && least > 1e-12 * a * c) {
             return false;

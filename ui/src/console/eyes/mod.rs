@@ -289,7 +289,8 @@ impl Eyes {
         let Some(found) = projector.found() else { return nothing(text::eyes::SEARCHING.get().to_owned()) };
         match found.look() {
             Ok(look) => {
-                let (poses, world_from_n) = (Some(found.poses), found.world_from_n);
+                let poses = Some(found.poses);
+                let world_from_n = found.world_from_n;
                 Seen { look: Some(look), nothing: None, poses, world_from_n }
             }
             Err(why) => nothing(text::eyes::none_then(why)),

@@ -48,7 +48,8 @@ mod tests {
         let scene = nima_simulation::scene::Scene::load("bimanual").unwrap();
         let mut settings = nima_simulation::camera::usual(&scene);
         let fixed = Mount::of(&settings).unwrap().camera(None).unwrap();
-        (settings.position_m, settings.world_from_camera_deg) = (None, None);
+        settings.position_m = None;
+        settings.world_from_camera_deg = None;
         assert_eq!(Mount::of(&settings), None);
         settings.n_from_camera_m = Some(Vector3::new(0.0, 0.01, 0.3));
         settings.n_from_camera_deg = Some(Vector3::new(0.0, 0.0, 90.0));

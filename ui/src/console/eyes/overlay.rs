@@ -133,7 +133,8 @@ impl Seen<'_> {
 
     fn ring(&self, instrument: &Instrument) {
         let radius_m = M_PER_N * self.ceiling_n.min(MOST_N);
-        let (right, up) = (self.camera.right() * radius_m, self.camera.up() * radius_m);
+        let right = self.camera.right() * radius_m;
+        let up = self.camera.up() * radius_m;
         let point_m = |piece: usize| {
             let (sin, cos) = (TAU * piece as f64 / RING_PIECES as f64).sin_cos();
             instrument.pose.tip_m + right * cos + up * sin

@@ -29,10 +29,12 @@ impl Place {
     /// In this view; `crop` cuts off so much at the left, top, right and bottom of the picture as it comes, as shares, unless the rig file
     /// cuts off more.
     pub(super) fn new(view: Rect, size_px: [usize; 2], endoscope: &Endoscope, crop: [f32; 4], aim: Aim) -> Self {
-        let (rotation_deg, mirror) = (endoscope.rotation_deg, endoscope.mirror);
+        let rotation_deg = endoscope.rotation_deg;
+        let mirror = endoscope.mirror;
         let part = part(size_px, endoscope.crop_px, crop);
         let [width, height] = size_px.map(|side| side.max(1) as f32);
-        let (width, height) = (width * part.width(), height * part.height());
+        let width = width * part.width();
+        let height = height * part.height();
         let size = if matches!(rotation_deg, 90 | 270) { vec2(height, width) } else { vec2(width, height) };
         let scale = (view.width() / size.x).min(view.height() / size.y).max(0.0);
         let full = aim.full(view, size * scale);
@@ -81,7 +83,8 @@ fn part(size_px: [usize; 2], crop_px: [usize; 4], crop: [f32; 4]) -> Rect {
         let (low, high) = (edge(low), 1.0 - edge(low + 2));
         if high - low >= LEAST { (low, high) } else { (0.0, 1.0) }
     };
-    let ((left, right), (top, bottom)) = (along(0, 0), along(1, 1));
+    let (left, right) = along(0, 0);
+    let (top, bottom) = along(1, 1);
     Rect::from_min_max(pos2(left, top), pos2(right, bottom))
 }
 

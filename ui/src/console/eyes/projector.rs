@@ -60,8 +60,10 @@ fn locked(found: &Mutex<Option<Found>>) -> MutexGuard<'_, Option<Found>> {
 impl Projector {
     /// Opens the pictures of a session; `wake` is called when there is another one.
     pub(super) fn start(session: &Path, wake: impl Fn() + Send + 'static) -> Self {
-        let ((wishes, wanted), found) = (channel(), Arc::default());
-        let (session, told) = (session.to_path_buf(), Arc::clone(&found));
+        let (wishes, wanted) = channel();
+        let found = Arc::default();
+        let session = session.to_path_buf();
+        let told = Arc::clone(&found);
         let work = move || {
             let mut reel = match Pictures::open(&session) {
                 Ok(Some(pictures)) => Projection::of(pictures, session),
@@ -73,7 +75,8 @@ impl Projector {
             };
             while let Some((tone, t_s)) = newest(&wanted) {
                 if reel.tone != tone {
-                    (reel.tone, reel.shown) = (tone, None);
+                    reel.tone = tone;
+                    reel.shown = None;
                 }
                 let found = reel.find(t_s);
                 *locked(&told) = Some(found);
@@ -106,7 +109,9 @@ fn newest(wanted: &Receiver<(Tone, f64)>) -> Option<(Tone, f64)> {
 
 impl Found {
     const fn trouble(asked_s: f64, why: String) -> Self {
-        let (picture, damage, came_s) = (None, None, None);
+        let picture = None;
+        let damage = None;
+        let came_s = None;
         Self { asked_s, came_s, picture, damage, poses: [None; SIDES], world_from_n: None, trouble: Some(why) }
     }
 
@@ -168,7 +173,8 @@ impl Stream {
 
 impl Projection {
     fn of(pictures: Pictures, session: PathBuf) -> Self {
-        let (tone, stream) = (Tone::default(), Stream::default());
+        let tone = Tone::default();
+        let stream = Stream::default();
         Self { pictures, session, shown: None, number: 0, tone, stream }
     }
 
@@ -202,7 +208,8 @@ impl Projection {
             self.number += 1;
             (self.number, Arc::new(picture))
         });
-        let (poses, world_from_n) = (self.poses(recorded.time_ns), self.marker(recorded.time_ns));
+        let poses = self.poses(recorded.time_ns);
+        let world_from_n = self.marker(recorded.time_ns);
         Found { asked_s: t_s, came_s: Some(came_s), picture, damage, poses, world_from_n, trouble: None }
     }
 
@@ -228,7 +235,8 @@ impl Projection {
 
     /// Where the tips were then; none where that is not plotted or cannot be read.
     fn poses(&self, time_ns: u64) -> [Option<Pose>; SIDES] {
-        let (reader, times_ns) = (self.pictures.reader(), time_ns.saturating_sub(TICK_NS)..time_ns.saturating_add(1));
+        let reader = self.pictures.reader();
+        let times_ns = time_ns.saturating_sub(TICK_NS)..time_ns.saturating_add(1);
         Side::ALL.map(|side| {
             let mut pose = None;
             let read = plotted::each_tick(reader, &self.session, side, times_ns.clone(), |tick| {

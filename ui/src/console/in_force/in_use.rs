@@ -67,7 +67,8 @@ mod tests {
         let mut in_use = InUse::default();
         let mut watch = |ticks: u64, state: LoopState, source: ForceSource| {
             let mut tick = some;
-            (tick.state, tick.force.source) = (state, source);
+            tick.state = state;
+            tick.force.source = source;
             (0..ticks).for_each(|_| in_use.watch(&tick));
             in_use.shares()
         };

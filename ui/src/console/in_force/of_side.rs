@@ -72,7 +72,8 @@ impl OfSide {
         this.last = this.wrist().cloned().or(last);
         let (Some(store), Bound::To(wrist)) = (store, &this.bound) else { return this };
         let WristId { serial_number, tool } = wrist;
-        let (now, bad) = (SystemTime::now(), &mut this.unusable);
+        let now = SystemTime::now();
+        let bad = &mut this.unusable;
         this.tip_force = usable(Which::TipForce, kept_model(store, serial_number, tool, now), bad);
         this.correspondence = usable(Which::Correspondence, store.load(serial_number, tool, now), bad);
         this.gravity = usable(Which::Gravity, store.load(serial_number, tool, now), bad);
@@ -290,7 +291,8 @@ fn kept<R: Record>(store: &Store, record: R, in_force: &mut Option<Loaded<R>>) -
 
 fn line_of_gravity(loaded: &Loaded<GravityRecord>) -> String {
     let GravityRecord { residuals, poses, judgement, .. } = &loaded.record;
-    let (day, remarks) = (day(&loaded.record), remarks(loaded.age, judgement.override_by.as_deref()));
+    let day = day(&loaded.record);
+    let remarks = remarks(loaded.age, judgement.override_by.as_deref());
     let error_n = residuals.held_out.mean_mae();
     text::calibrations::gravity(day, *poses, error_n, &remarks)
 }
@@ -305,7 +307,8 @@ fn line_of_drift((check, found_at): &(DriftCheck, String)) -> String {
 
 fn line_of_correspondence(loaded: &Loaded<CorrespondenceRecord>) -> String {
     let CorrespondenceRecord { agreement, pairs, uncertainty_deg, judgement, .. } = &loaded.record;
-    let (day, remarks) = (day(&loaded.record), remarks(loaded.age, judgement.override_by.as_deref()));
+    let day = day(&loaded.record);
+    let remarks = remarks(loaded.age, judgement.override_by.as_deref());
     let error_n = agreement.residuals.held_out.mean_mae();
     text::calibrations::correspondence(day, *pairs, error_n, *uncertainty_deg, &remarks)
 }

@@ -31,7 +31,8 @@ fn has_gravity(in_force: &mut InForce, rig: &RigConfig) -> [bool; SIDES] {
 #[test]
 fn a_simulated_calibration_is_not_in_force_on_a_rig_with_devices() {
     let folder = tempfile::tempdir().unwrap();
-    let (simulated, real) = (RigConfig::load("simulated").unwrap(), RigConfig::load("paper").unwrap());
+    let simulated = RigConfig::load("simulated").unwrap();
+    let real = RigConfig::load("paper").unwrap();
     let scene = Scene::load("palpation").unwrap();
     let wrist = simulated.simulated_wrist(Side::Right).unwrap();
     Store::open(folder.path()).save(&record(&wrist.serial_number, &wrist.tool)).unwrap();
@@ -47,7 +48,8 @@ fn a_simulated_calibration_is_not_in_force_on_a_rig_with_devices() {
 #[test]
 fn each_arm_has_the_calibration_of_its_own_sensor() {
     let folder = tempfile::tempdir().unwrap();
-    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("palpation").unwrap().with_left_hand());
+    let rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load("palpation").unwrap().with_left_hand();
     let store = Store::open(folder.path());
     store.save(&record("SIM-S1-0001", "Simulated grasper")).unwrap();
     let mut in_force = InForce::load(Some(folder.path()), &rig, &scene);
@@ -70,7 +72,8 @@ fn mounted(right: [&str; 2], left: [&str; 2]) -> RigConfig {
     let mut rig = RigConfig::load("simulated").unwrap();
     let wrist = |[serial, tool]: [&str; 2]| Some(WristId { serial_number: serial.to_owned(), tool: tool.to_owned() });
     let wrists = rig.simulated.as_mut().unwrap();
-    (wrists.right, wrists.left) = (wrist(right), wrist(left));
+    wrists.right = wrist(right);
+    wrists.left = wrist(left);
     rig.validate().unwrap();
     rig
 }
@@ -117,7 +120,8 @@ fn a_calibration_that_was_copied_to_the_other_side_is_not_in_force_and_is_told()
 
 #[test]
 fn a_simulated_rig_that_names_no_sensor_tells_what_to_write() {
-    let (mut rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("palpation").unwrap());
+    let mut rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load("palpation").unwrap();
     rig.simulated = None;
     let folder = tempfile::tempdir().unwrap();
     let mut in_force = InForce::load(Some(folder.path()), &rig, &scene);
@@ -207,7 +211,8 @@ impl Bench {
 
 #[test]
 fn a_calibration_comes_into_force_with_its_sensor_and_leaves_with_it() {
-    let (folder, store) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    let store = tempfile::tempdir().unwrap();
     let port = folder.path().join("ttyACM-sensor");
     let mut bench = Bench::new(store.path(), &port);
     assert!(bench.in_force.is_waiting());

@@ -153,8 +153,10 @@ impl Live {
 
     /// Updates what is stored for each side: forces and trail of the tip.
     fn follow(&mut self, tick: &Tick, before: Option<&Tick>) {
-        let (side, dt_s) = (tick.side.index(), before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0)));
-        let (m, r) = (tick.measured_n, tick.rendered_n);
+        let side = tick.side.index();
+        let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
+        let m = tick.measured_n;
+        let r = tick.rendered_n;
         self.history[side].push(tick.t_s, &forces_of(tick));
         match tick.known_n() {
             Some(force_n) => self.measured[side].push(force_n.norm(), dt_s, 0.05),
@@ -192,7 +194,8 @@ impl Live {
 
     /// Torque about the shaft of this side.
     fn twist(&self, side: Side) -> Option<Twist> {
-        let (tick, trocar_m) = (self.tick_of(side)?, self.scene.of_side(side)?.trocar_m);
+        let tick = self.tick_of(side)?;
+        let trocar_m = self.scene.of_side(side)?.trocar_m;
         let out = (trocar_m - tick.tip_m).try_normalize(1e-6)?;
         let jaws = self.objects.as_ref().and_then(|objects| objects.jaws[side.index()]);
         let wrist_nm = |sample: &WristSample| Some((sample.world_from_s1? * sample.raw.torque_nm).dot(&out));
@@ -224,7 +227,8 @@ impl Live {
 
 /// The forces of a tick, N, in the order of their channels; no numbers where they are not known.
 pub(in crate::console) fn forces_of(tick: &Tick) -> [f32; CHANNELS] {
-    let (m, r) = (tick.measured_n, tick.rendered_n);
+    let m = tick.measured_n;
+    let r = tick.rendered_n;
     [m.x, m.y, m.z, r.x, r.y, r.z].map(|x| x as f32)
 }
 
@@ -240,7 +244,8 @@ mod tests {
     fn the_fault_that_is_told_is_the_cause_and_not_what_it_did_to_the_other_arm() {
         let cause = Fault::DeviceLost { device: 4, loss: Loss::Silent };
         let raised = |(side, fault)| Event::FaultRaised { t_s: 2.7, side, fault };
-        let (follows, fails) = ((Side::Right, Fault::OtherArm), (Side::Left, cause));
+        let follows = (Side::Right, Fault::OtherArm);
+        let fails = (Side::Left, cause);
         for order in [[follows, fails, follows], [fails, follows, follows], [follows, follows, fails]] {
             let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
             live.replay(order.map(raised).iter(), &[None; SIDES]);

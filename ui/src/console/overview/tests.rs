@@ -13,7 +13,8 @@ use crate::{
 };
 
 fn listed(store: &Store) -> Vec<super::OfArm> {
-    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("palpation").unwrap());
+    let rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load("palpation").unwrap();
     overview(&InForce::load(Some(store.folder()), &rig, &scene), &rig, "simulated")
 }
 
@@ -99,7 +100,8 @@ fn what_is_to_be_calibrated_next_is_the_first_that_is_not_in_order_after_what_wa
             .map(|(which, kept)| Line { wanted: wanted(side, which), kept: kept.clone(), since: String::new() })
             .collect(),
     };
-    let (right, left) = (Side::Right, Side::Left);
+    let right = Side::Right;
+    let left = Side::Left;
     let next = |right_kept, left_kept, after| following(&[arm(right, right_kept), arm(left, left_kept)], after);
     assert_eq!(next([&missing, &good], [&good, &missing], None), Some(wanted(right, tip)));
     let after = |side, which| Some(wanted(side, which));

@@ -108,7 +108,8 @@ fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWis
             ),
             (Page::All, text::overview::OPEN.get(), text::overview::MEANING.get().to_owned(), CalibrationWish::List),
         ] {
-            let (is_open, next) = (open == Some(page), next == Some(page));
+            let is_open = open == Some(page);
+            let next = next == Some(page);
             let room = width - 2.0 * ui.spacing().button_padding.x;
             let name = RichText::new(name).font(fitting_style(ui, name, &TextStyle::Button, room));
             let button =
@@ -179,7 +180,8 @@ mod tests {
 
     #[test]
     fn a_button_leads_to_the_calibrations_only_where_one_is_missing() {
-        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
+        let rig = RigConfig::load("simulated").unwrap();
+        let scene = Scene::load("peg_transfer").unwrap();
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false };
         let mut live = Live::new(rig, scene);
         assert_eq!(next_page(&live), None);

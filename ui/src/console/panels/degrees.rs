@@ -76,7 +76,8 @@ fn key_ui(ui: &mut Ui, colour: egui::Color32, name: &str, meaning: &str) {
 /// Six pairs of bars, degrees 0 to 5, with their shares above.
 fn chart_ui(ui: &mut Ui, live: &Live, compares: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CHART_HEIGHT + 20.0), Sense::hover());
-    let (ours, papers) = (live.degrees.shares(), live.paper_degrees.shares());
+    let ours = live.degrees.shares();
+    let papers = live.paper_degrees.shares();
     let words = |shares: &[f64; DEGREES]| {
         shares
             .iter()

@@ -133,7 +133,8 @@ fn reach_n(most_n: f32, now_n: f32) -> f32 {
 }
 
 fn view(state: &ForceSpaceState, place: Rect) -> View {
-    let ((sin_yaw, cos_yaw), (sin_pitch, cos_pitch)) = (state.yaw.sin_cos(), state.pitch.sin_cos());
+    let (sin_yaw, cos_yaw) = state.yaw.sin_cos();
+    let (sin_pitch, cos_pitch) = state.pitch.sin_cos();
     View {
         centre: place.center(),
         points_per_n: 0.56 * place.width().min(place.height()) / state.reach_n,
@@ -226,7 +227,8 @@ mod tests {
     fn up_is_up_and_the_place_is_finite() {
         let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(300.0, 280.0));
         let view = view(&ForceSpaceState::default(), rect);
-        let (low, high) = (view.place(&Vector3::zeros()), view.place(&Vector3::z()));
+        let low = view.place(&Vector3::zeros());
+        let high = view.place(&Vector3::z());
         assert!(high.y < low.y && (high.x - low.x).abs() < 1e-3 && rect.contains(low));
     }
 }

@@ -36,7 +36,8 @@ pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[
     twist_ui(ui, live, state.side);
     ui.add_space(2.0);
     let now_s = state.now_s(state.history(live));
-    let (from_s, to_s) = (now_s + state.view_s.0, now_s + state.view_s.1);
+    let from_s = now_s + state.view_s.0;
+    let to_s = now_s + state.view_s.1;
     let most = (ui.available_width() * 0.8) as usize;
     let history = &live.history[state.side.index()];
     for (channel, line) in state.lines.iter_mut().enumerate() {
@@ -228,7 +229,8 @@ fn plot_ui(
             }
         }
         for (number, mark_s) in live.marks_s.iter().enumerate() {
-            let (name, at_s) = (format!("mark {}", number + 1), mark_s - now_s);
+            let name = format!("mark {}", number + 1);
+            let at_s = mark_s - now_s;
             let dashed = LineStyle::dashed_loose();
             plot.vline(VLine::new(name, at_s).color(theme::now().text).width(1.2).style(dashed).allow_hover(false));
             if axis == 0 || only {

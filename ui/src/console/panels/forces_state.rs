@@ -57,7 +57,8 @@ impl ForcesState {
 
     /// Shows this part of the traces.
     pub(in crate::console) const fn show(&mut self, ForcesView { view_s, side }: ForcesView) {
-        (self.view_s, self.side) = (view_s, side);
+        self.view_s = view_s;
+        self.side = side;
     }
 
     /// Shows the last ten seconds.

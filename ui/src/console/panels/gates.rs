@@ -73,7 +73,8 @@ fn answer(live: &Live, side: Side) -> String {
 
 /// Why this hand gets no force, or less than it should; `None` if nothing is wrong.
 pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
-    let (gates, hand) = (&live.gates[side.index()], side.index());
+    let gates = &live.gates[side.index()];
+    let hand = side.index();
     let rendered_n = live.figures.rendered_n[hand];
     let withheld_n = gates.withheld_n.get();
     let Some(tick) = live.tick_of(side) else { return Some(text::gates::NONE_STARTING.get().to_owned()) };
@@ -157,7 +158,8 @@ pub(super) fn gates(live: &Live, side: Side) -> [Gate; GATES] {
 
 /// Text beside a gate: its setting, or its present effect.
 fn note(live: &Live, side: Side, which: Which) -> String {
-    let (gates, chain) = (&live.gates[side.index()], &live.rig.gates);
+    let gates = &live.gates[side.index()];
+    let chain = &live.rig.gates;
     match which {
         Which::Permission => within(state_name(live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state))),
         Which::Validity => String::new(),
@@ -187,7 +189,9 @@ fn stored(live: &Live, side: Side) -> String {
 /// How often the gate has acted since the loop was created, and why it acted last.
 pub(super) fn history(live: &Live, side: Side, gate: Which) -> String {
     let Some(counts) = live.tick_of(side).map(|tick| tick.gates.counts) else { return String::new() };
-    let (acted, share, last) = (counts.acted[gate.index()], counts.share(gate), counts.last[gate.index()]);
+    let acted = counts.acted[gate.index()];
+    let share = counts.share(gate);
+    let last = counts.last[gate.index()];
     match last {
         Reason::Open => text::gates::NEVER_ACTED.get().to_owned(),
         last => text::gates::acted(acted, 100.0 * share, last.words()),
@@ -219,7 +223,8 @@ mod tests {
 
     /// A tick of this scene on the simulated rig at rest, without calibrations.
     fn idle(scene: &str) -> (Live, Tick) {
-        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
+        let rig = RigConfig::load("simulated").unwrap();
+        let scene = Scene::load(scene).unwrap();
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false };
         let mut last = None;
         run_virtual(&plan, 0.1, |tick| {
@@ -255,7 +260,8 @@ mod tests {
         assert!(told.contains("the wrist sensor is not calibrated") && !told.contains("Engage"), "{told}");
         for source in ForceSource::UNUSABLE {
             let mut tick = tick;
-            (tick.force.source, tick.state) = (source, LoopState::Engaged);
+            tick.force.source = source;
+            tick.state = LoopState::Engaged;
             live.replay([].iter(), &[Some(tick), None]);
             assert!(why_no_force(&live, Side::Right).unwrap().contains(source.words()));
         }

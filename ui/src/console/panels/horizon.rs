@@ -61,7 +61,8 @@ fn trend_ui(ui: &mut Ui, live: &Live) {
             let along = 1.0 - age_s as f32 / (TREND_S - 1) as f32;
             let error_n = Some(errors_n[mode.index()]).filter(|error_n| error_n.is_finite())?;
             let up = (error_n / highest_n).min(1.0) as f32;
-            let (x, y) = (rect.left() + along * rect.width(), rect.bottom() - 2.0 - up * (rect.height() - 4.0));
+            let x = rect.left() + along * rect.width();
+            let y = rect.bottom() - 2.0 - up * (rect.height() - 4.0);
             Some(egui::pos2(x, y))
         });
         let points: Vec<_> = points.collect();
@@ -106,7 +107,8 @@ fn mode_ui(ui: &mut Ui, mode: Mode, error_n: Option<f64>, dfr_n: Option<f64>, ac
         mode_meaning(mode)
     ));
     let painter = ui.painter();
-    let (top, ink) = (rect.top() + 10.0, if active { theme::now().text } else { theme::now().text_weak });
+    let top = rect.top() + 10.0;
+    let ink = if active { theme::now().text } else { theme::now().text_weak };
     if active {
         sign(painter, Sign::Disc, egui::pos2(rect.left() + 4.0, top), 4.0, theme::now().rendered);
     }

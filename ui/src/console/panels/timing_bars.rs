@@ -43,7 +43,8 @@ impl Timing<'_> {
     fn words(&self, bars: &[u64], bar: usize) -> String {
         let total = bars.iter().sum::<u64>().max(1);
         let count = bars.get(bar).copied().unwrap_or_default();
-        let (from_us, to_us) = (bar as f64 * self.step_us(), (bar + 1) as f64 * self.step_us());
+        let from_us = bar as f64 * self.step_us();
+        let to_us = (bar + 1) as f64 * self.step_us();
         let range =
             if bar + 1 == BARS { text::timing::and_more(from_us) } else { text::timing::from_to(from_us, to_us) };
         text::timing::bar(self.name, &range, &grouped(count), &percent(count as f64 / total as f64))
@@ -69,7 +70,8 @@ pub(super) fn bars_ui(ui: &mut Ui, timing: &Timing<'_>, bars: &[u64]) {
     ui.label(small(timing.name)).on_hover_text(timing.meaning);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT + AXIS), Sense::hover());
     let ground = Rect::from_min_size(rect.min, vec2(rect.width(), HEIGHT));
-    let (total, late): (u64, u64) = (bars.iter().sum(), late(bars));
+    let total: u64 = bars.iter().sum();
+    let late: u64 = late(bars);
     response.widget_info(|| {
         let words = text::timing::histogram(timing.name, &grouped(late), &grouped(total), timing.deadline_us);
         egui::WidgetInfo::labeled(egui::Role::Label, true, words)
@@ -103,7 +105,8 @@ fn late(bars: &[u64]) -> u64 {
 
 /// Marks below the histogram, the deadline in it, and the explanation of its height.
 fn axis(painter: &Painter, ground: Rect, deadline_us: f64, most: u64) {
-    let (font, ink) = (theme::regular(11.0), theme::now().text_weak);
+    let font = theme::regular(11.0);
+    let ink = theme::now().text_weak;
     let x = |share: f64| ground.left() + ground.width() * (share / REACH) as f32;
     painter.vline(x(1.0), ground.y_range(), Stroke::new(1.5, theme::now().text));
     let under = ground.bottom() + 2.0;

@@ -293,7 +293,8 @@ mod tests {
 
     #[test]
     fn an_idle_arm_does_not_hide_that_the_other_one_is_engaged() {
-        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
+        let rig = RigConfig::load("simulated").unwrap();
+        let scene = Scene::load("bimanual").unwrap();
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: true };
         let mut live = Live::new(rig, scene);
         run_virtual(&plan, 1.0, |tick| {

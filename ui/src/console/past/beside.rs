@@ -28,7 +28,8 @@ pub(crate) fn both_ui(ui: &mut Ui, past: &mut Past, smooth: bool) {
 fn half_ui(ui: &mut Ui, past: &mut Past, smooth: bool) {
     let head = Frame::new().inner_margin(Margin::symmetric(8, 4));
     let id = |of: &str| ui.scope_id().with(of);
-    let (whose, below) = (id("whose"), id("traces"));
+    let whose = id("whose");
+    let below = id("traces");
     Panel::top(whose).resizable(false).frame(head).show(ui, |ui| {
         let name = past.path.file_name().unwrap_or_default().to_string_lossy();
         let at = past.about.map(|about| text::past::position(past.shown_s(), about.end_s)).unwrap_or_default();
@@ -40,7 +41,9 @@ fn half_ui(ui: &mut Ui, past: &mut Past, smooth: bool) {
         ui.centered_and_justified(|ui| ui.label(weak(words)));
         return;
     };
-    (past.panels.scene.look, past.panels.scene.figures, past.panels.scene.smooth) = (Look::Free, true, smooth);
+    past.panels.scene.look = Look::Free;
+    past.panels.scene.figures = true;
+    past.panels.scene.smooth = smooth;
     let traces = Frame::new().inner_margin(Margin { left: 8, right: 18, top: 6, bottom: 6 });
     let height = TRACES * ui.available_height();
     Panel::bottom(below).exact_size(height).resizable(false).frame(traces).show(ui, |ui| {

@@ -102,7 +102,8 @@ fn replay(cursor: &mut Cursor<Messages>, limit_s: f64, each: &mut impl FnMut(Fra
                     return Ok(Reached::End(Some(text::past::differs(t_s))));
                 }
                 let t_s = moment.row.timing.now_s;
-                let (in_force, events) = (moment.in_force.to_vec(), moment.events.to_vec());
+                let in_force = moment.in_force.to_vec();
+                let events = moment.events.to_vec();
                 each(Frame { t_s, in_force, events, ticks: *moment.ticks, objects: None });
                 if t_s >= limit_s {
                     return Ok(Reached::Limit);

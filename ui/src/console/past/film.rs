@@ -81,7 +81,8 @@ impl File {
             Ok(start) => start.origin.rig.clone(),
             Err(_) => attached(&recorded, "rig.toml")?,
         };
-        let (scene, arms) = (attached(&recorded, "scene.toml")?, plotted::arms(recorded.reader()));
+        let scene = attached(&recorded, "scene.toml")?;
+        let arms = plotted::arms(recorded.reader());
         let has_objects = objects::are_shown(recorded.reader());
         let has_pictures = pictures::are_recorded(recorded.reader());
         let path = path.to_owned();

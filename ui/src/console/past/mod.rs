@@ -191,7 +191,8 @@ impl Past {
                     self.panels.eyes.project(&self.path, endoscope, &self.ctx);
                 }
                 self.about = Some(About { begin_ns, end_s });
-                (self.calibrations, self.devices) = (calibrations, devices);
+                self.calibrations = calibrations;
+                self.devices = devices;
                 if self.wanted_s > end_s {
                     self.show(end_s);
                 }

@@ -38,7 +38,8 @@ const TIMEOUT: Duration = Duration::from_mins(3);
 
 /// A session of this scene, with a command after so many ticks of the right arm.
 fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Option<Command>) {
-    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
+    let rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load(scene).unwrap();
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
     let (tap, recorder) = recording::begin(Destination::file(path), &plan, Some(VirtualClock::PERFECT)).unwrap();
     runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, seconds, |tick| {
@@ -50,7 +51,8 @@ fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Optio
 /// A session of a scene with a training task, and what the screen was told of it. Before each tick of the right arm, by its number, a
 /// command may be given.
 fn record_task(scene: &str, path: &Path, seconds: f64, command: impl Fn(u64) -> Option<Command>) -> Vec<Objects> {
-    let (mut rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
+    let mut rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load(scene).unwrap();
     let has_jaws = [scene.objects.is_some(); SIDES];
     rig.mode = Mode::Matched;
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
@@ -130,7 +132,8 @@ fn what_is_shown_at_once_has_the_forces_and_places_of_that_tick() {
         past.show(number as f64 * 1e-3);
         past.live = None;
         until(&mut past, "shown", |past| past.live.is_some());
-        let (shown, was) = (past.live.as_ref().unwrap().ticks[0].unwrap(), ticks[number][0].unwrap());
+        let shown = past.live.as_ref().unwrap().ticks[0].unwrap();
+        let was = ticks[number][0].unwrap();
         assert_eq!((shown.measured_n, shown.rendered_n, shown.tip_m), (was.measured_n, was.rendered_n, was.tip_m));
         assert_eq!((shown.leader_m, shown.state), (was.leader_m, was.state));
         // By its bits: the link is still filling at the beginning, and no number equals itself.
@@ -407,7 +410,8 @@ fn figures_of_scrubbing() {
     for turn in 0..200 {
         let began = Instant::now();
         past.show((f64::from(turn) * 0.618_034).fract() * end_s);
-        (past.live, past.extent) = (None, super::Extent::Plotted);
+        past.live = None;
+        past.extent = super::Extent::Plotted;
         until(&mut past, "shown", |past| past.live.is_some());
         shown.push(began.elapsed().as_secs_f64() * 1e3);
         if turn % 4 == 0 {

@@ -83,8 +83,10 @@ pub(super) struct Worker {
 impl Worker {
     /// Opens a session; `wake` is called whenever there is an answer.
     pub(super) fn start(path: &Path, wake: impl Fn() + Send + 'static) -> Self {
-        let ((wishes, wanted), (tell, answers)) = (channel(), channel());
-        let (path, gently) = (path.to_path_buf(), Arc::<AtomicBool>::default());
+        let (wishes, wanted) = channel();
+        let (tell, answers) = channel();
+        let path = path.to_path_buf();
+        let gently = Arc::<AtomicBool>::default();
         let of_thread = Arc::clone(&gently);
         let work = move || {
             let told = Told { answers: tell, wake: Box::new(wake), gently: of_thread };
@@ -234,7 +236,9 @@ impl Shown {
     fn show(&mut self, film: &Film<'_>, t_s: f64, told: &Told) {
         let live = film.at_once(t_s);
         told.tell(Answer::Shown(Box::new(live), Extent::Plotted, t_s));
-        (self.view, self.chase, self.early_s) = (None, Some((film.chase(t_s), t_s)), None);
+        self.view = None;
+        self.chase = Some((film.chase(t_s), t_s));
+        self.early_s = None;
     }
 
     fn chase_on(&mut self, film: &Film<'_>, told: &Told) {

@@ -82,7 +82,8 @@ fn told_ui(ui: &Ui, live: &Live, place: Rect) {
 /// Both forces of a hand as numbers and as bars with the ceiling.
 fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
     let ceiling_n = live.gate_settings().ceiling_n;
-    let (measured_n, rendered_n) = (live.figures.measured_n[side.index()], live.figures.rendered_n[side.index()]);
+    let measured_n = live.figures.measured_n[side.index()];
+    let rendered_n = live.figures.rendered_n[side.index()];
     let response = ui.allocate_rect(place, Sense::hover());
     let name = text::common::hand(side_name(side));
     let words = text::roles::hand(&name, &newtons_read(measured_n, 1), rendered_n, ceiling_n);

@@ -26,7 +26,8 @@ pub(super) fn technician_ui(
     in_force: &InForce,
     outbox: &mut Outbox,
 ) -> Wishes {
-    let (mut wishes, past) = (Wishes::default(), live.is_shown_only());
+    let mut wishes = Wishes::default();
+    let past = live.is_shown_only();
     let mut desk = std::mem::take(&mut panels.desk);
     desk.ui(ui, layout, &mut |ui, panel| match panel {
         Panel::Field => scene_ui(ui, live, &mut panels.scene, outbox),

@@ -127,17 +127,20 @@ impl Camera {
         if clip.w <= 1e-4 {
             return None;
         }
-        let (x, y) = (clip.x / clip.w, clip.y / clip.w);
+        let x = clip.x / clip.w;
+        let y = clip.y / clip.w;
         Some(rect.center() + Vec2::new(0.5 * x * rect.width(), -0.5 * y * rect.height()))
     }
 
     /// Where the ray through a place on the screen comes down to this height, m; `None` if it does not, or too flat.
     pub fn on_level(&self, place: Pos2, rect: Rect, height_m: f32) -> Option<Vector3<f32>> {
         let from_centre = place - rect.center();
-        let (x, y) = (2.0 * from_centre.x / rect.width(), -2.0 * from_centre.y / rect.height());
+        let x = 2.0 * from_centre.x / rect.width();
+        let y = -2.0 * from_centre.y / rect.height();
         let workspace_from_clip = self.clip_from_workspace(rect.aspect_ratio()).try_inverse()?;
         let far = workspace_from_clip * Vector4::new(x, y, 1.0, 1.0);
-        let (eye_m, way) = (self.eye_m(), (far.xyz() / far.w - self.eye_m()).try_normalize(1e-6)?);
+        let eye_m = self.eye_m();
+        let way = (far.xyz() / far.w - self.eye_m()).try_normalize(1e-6)?;
         let length_m = (height_m - eye_m.z) / way.z;
         (way.z <= -FLATTEST && length_m > 0.0).then(|| eye_m + way * length_m)
     }
@@ -202,7 +205,8 @@ mod tests {
                 assert!(seen(&scene, at_m, view), "{name}: {at_m} in {view}");
             }
             for [x, y] in scene.objects.iter().flat_map(|setting| &setting.pegs.at_m) {
-                let (foot_m, passed_m) = (Vector3::new(*x, *y, 0.0), Vector3::new(0.0, 0.0, 0.08));
+                let foot_m = Vector3::new(*x, *y, 0.0);
+                let passed_m = Vector3::new(0.0, 0.0, 0.08);
                 assert!(
                     views.iter().all(|view| seen(&scene, &foot_m, *view) && seen(&scene, &passed_m, *view)),
                     "{foot_m}"

@@ -239,7 +239,8 @@ impl Target {
             gl.bind_framebuffer(glow::READ_FRAMEBUFFER, Some(self.framebuffer));
             gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, into);
             let [width, height] = self.size;
-            let (left, bottom) = (place.left_px, place.from_bottom_px);
+            let left = place.left_px;
+            let bottom = place.from_bottom_px;
             gl.blit_framebuffer(
                 0,
                 0,

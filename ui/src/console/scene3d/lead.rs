@@ -108,7 +108,8 @@ impl Lead {
     /// Leads the other instrument, if there is one.
     fn change_side(&mut self) {
         if self.at_m[self.side.other().index()].is_some() {
-            (self.side, self.drag) = (self.side.other(), None);
+            self.side = self.side.other();
+            self.drag = None;
         }
     }
 
@@ -190,7 +191,8 @@ impl Lead {
     }
 
     fn key(&mut self, key: Key, repeat: bool, live: &Live, camera: &Camera, outbox: &mut Outbox) {
-        let (is_searched, on_wire) = (live.scene.is_searched(), live.scene.wire.is_some());
+        let is_searched = live.scene.is_searched();
+        let on_wire = live.scene.wire.is_some();
         match key {
             Key::ArrowLeft => self.step(-camera.right() * STEP_M),
             Key::ArrowRight => self.step(camera.right() * STEP_M),
@@ -255,7 +257,8 @@ mod tests {
     fn the_tip_stays_under_the_pointer_and_within_the_space_where_it_may_be_led() {
         let rect = Rect::from_min_max(pos2(100.0, 50.0), pos2(900.0, 650.0));
         let camera = Camera::of(&Scene::load("rings").unwrap());
-        let (at_m, way) = (Vector3::new(0.01, -0.01, 0.03), vec2(37.0, -21.0));
+        let at_m = Vector3::new(0.01, -0.01, 0.03);
+        let way = vec2(37.0, -21.0);
         let to_m = moved_m(&at_m, way, &camera, rect);
         let went = camera.project(&to_m, rect).unwrap() - camera.project(&at_m, rect).unwrap();
         assert!((went - way).length() < 0.05 && (to_m.z - at_m.z).abs() < 1e-6, "{went:?}");

@@ -72,7 +72,9 @@ impl Mesh {
         for row in 0..rows {
             for column in 0..columns {
                 let a = first + row * stride + column;
-                let (b, c, d) = (a + 1, a + stride, a + stride + 1);
+                let b = a + 1;
+                let c = a + stride;
+                let d = a + stride + 1;
                 self.indices.extend([a, b, d, a, d, c]);
             }
         }
@@ -190,7 +192,8 @@ impl Mesh {
         let centre = (low + high) * 0.5;
         let half = (high - low) * 0.5;
         for axis in 0..3 {
-            let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
+            let a = (axis + 1) % 3;
+            let b = (axis + 2) % 3;
             for sign in [-1.0, 1.0] {
                 let mut normal = Vector3::zeros();
                 normal[axis] = sign;

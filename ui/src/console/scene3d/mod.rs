@@ -269,12 +269,14 @@ fn triangles(
     let renderer = view.renderer.clone()?;
     let camera = view.camera(&live.scene);
     let scene = live.scene.name.clone();
-    let (smooth, extras) = (view.smooth, view.extras);
+    let smooth = view.smooth;
+    let extras = view.extras;
     let wanted = Drawn { rect, scene, camera, smooth, extras, arms: arms.to_vec(), shown };
     if let Some((_, callback)) = view.drawn.as_ref().filter(|(drawn, _)| *drawn == wanted) {
         return Some(callback.clone());
     }
-    let (eye_m, right) = (camera.eye_m(), camera.right());
+    let eye_m = camera.eye_m();
+    let right = camera.right();
     let style = stage::Style { eye_m: &eye_m, right: &right, fine: smooth, shadows: extras.shadows };
     let is_round = view.look == Look::Endoscope && extras.round;
     // What a round picture covers is neither drawn nor drawn again.

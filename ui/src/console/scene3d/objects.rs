@@ -43,13 +43,15 @@ impl Shown {
         if !live.scene.is_played() {
             return None;
         }
-        let (none, blank) = (Objects::default(), Training::default());
+        let none = Objects::default();
+        let blank = Training::default();
         let Objects { rings, jaws, .. } = live.objects.as_ref().unwrap_or(&none);
         let training = live.training.as_ref().unwrap_or(&blank);
         let rings = rings.iter().flatten();
         let rings: Vec<_> = rings.map(|ring| (ring.translation.vector.cast(), ring.rotation.cast())).collect();
         let reach = led.and_then(|side| {
-            let (tick, jaws) = (live.tick_of(side)?, jaws[side.index()].as_ref()?);
+            let tick = live.tick_of(side)?;
+            let jaws = jaws[side.index()].as_ref()?;
             Reach::of(live.scene.objects.as_ref()?, &rings, &tick.tip_m, jaws)
         });
         Some(Self {
@@ -79,7 +81,8 @@ impl Shown {
 
 /// A board with its surface at this height, m.
 pub(super) fn board(mesh: &mut Mesh, board: &nima_simulation::physics::Board) {
-    let ([x_m, y_m], top_m) = (board.size_m.map(|m| 0.5 * m as f32), board.z_m as f32);
+    let [x_m, y_m] = board.size_m.map(|m| 0.5 * m as f32);
+    let top_m = board.z_m as f32;
     let low = Vector3::new(-x_m, -y_m, top_m - BOARD_THICKNESS_M);
     mesh.cuboid(low, Vector3::new(x_m, y_m, top_m), BOARD);
 }
@@ -92,7 +95,8 @@ pub(super) fn ground(mesh: &mut Mesh, scene: &Scene, shown: &Shown, shadows: &mu
         mesh.torus(*centre_m, turn, [major_m, tube_m], shown.paint_of(i));
         shadows.circle(centre_m, turn, [major_m, tube_m]);
     }
-    let (radius_m, foot_m) = (setting.pegs.radius_m as f32, setting.board.z_m as f32);
+    let radius_m = setting.pegs.radius_m as f32;
+    let foot_m = setting.board.z_m as f32;
     let top_m = foot_m + setting.pegs.height_m as f32 - radius_m;
     for [x, y] in &setting.pegs.at_m {
         let [foot, top] = [foot_m, top_m].map(|z| Vector3::new(*x as f32, *y as f32, z));
@@ -111,7 +115,8 @@ pub(super) fn jaws(
     tip_m: &Vector3<f32>,
     shadows: &mut Shadows,
 ) -> Option<Vector3<f32>> {
-    let (setting, opening_rad) = (scene.objects.as_ref()?, shown.opening_rad[side.index()]?);
+    let setting = scene.objects.as_ref()?;
+    let opening_rad = shown.opening_rad[side.index()]?;
     let [length_m, radius_m] = [setting.jaws.finger_length_m, setting.jaws.finger_radius_m].map(|m| m as f32);
     let hinge_m = tip_m + Vector3::z() * length_m;
     for sign in [-1.0, 1.0] {

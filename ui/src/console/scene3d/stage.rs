@@ -178,7 +178,8 @@ fn tissue(mesh: &mut Mesh, scene: &Scene, dents: &Dents, cells: u32) {
     let first = mesh.vertices.len() as u32;
     for row in 0..=cells {
         for column in 0..=cells {
-            let (x, y) = (place(column, x_m), place(row, y_m));
+            let x = place(column, x_m);
+            let y = place(row, y_m);
             let lift_m = dents.lift_m(x, y);
             // Darker in a depression, and paler where the tissue is compressed.
             let shade = (-lift_m / 0.010).clamp(0.0, 1.0) * 0.55;

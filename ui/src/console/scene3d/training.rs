@@ -38,7 +38,8 @@ const HEAD_M: f32 = 0.0015;
 /// Wire and its board, with the goal.
 pub(super) fn wire(mesh: &mut Mesh, scene: &Scene, shadows: &mut Shadows) {
     let Some(setting) = &scene.wire else { return };
-    let (curve, radius_m) = (setting.curve(), setting.radius_m as f32);
+    let curve = setting.curve();
+    let radius_m = setting.radius_m as f32;
     let last = curve.points_m().len() - 1;
     let points_m: Vec<Vector3<f32>> = curve
         .points_m()
@@ -115,7 +116,8 @@ pub(super) fn board_of(scene: &Scene) -> Option<&nima_simulation::physics::Board
 
 /// How far the trial has come, in words, and what the instrument that is led reaches; `None` in a scene where that is not known.
 pub(super) fn told(live: &Live, led: Option<Side>, reach: Option<Reach>) -> Option<String> {
-    let (training, is_led) = (live.training.as_ref()?, led.is_some());
+    let training = live.training.as_ref()?;
+    let is_led = led.is_some();
     if live.scene.objects.is_some() {
         let jaws = led.map(|side| text::training::jaws(side_name(side), reach.map(name_of)));
         let Training { passed, placed, dropped, .. } = training;
@@ -195,7 +197,8 @@ mod tests {
 
     #[test]
     fn neither_picture_nor_words_tell_of_lumps_before_the_trial_is_over() {
-        let (during, after) = (live("find_lumps", &marked(false)), live("find_lumps", &marked(true)));
+        let during = live("find_lumps", &marked(false));
+        let after = live("find_lumps", &marked(true));
         let mut wrong = marked(false);
         wrong.marks.iter_mut().flatten().for_each(|mark| mark.is_true = false);
         wrong.found = 0;
@@ -227,7 +230,8 @@ mod tests {
     fn two_hands_on_rings_are_told_which_mode_they_need() {
         let needs = |scene: &str, mode: Mode, delay_s: f64| {
             let mut rig = RigConfig::load("simulated").unwrap();
-            (rig.mode, rig.delay_s) = (mode, delay_s);
+            rig.mode = mode;
+            rig.delay_s = delay_s;
             needs_another_mode(&Live::new(rig, Scene::load(scene).unwrap()))
         };
         assert!(needs("rings", Mode::Best, 0.05) && needs("rings", Mode::Anchored, 0.05));
@@ -241,8 +245,10 @@ mod tests {
         training.loops[Side::Right.index()] = LoopSeen { touches: true, on_wire: true };
         let of = |training: &Training| {
             let live = live("wire", training);
-            let (mut mesh, shown) = (Mesh::default(), Shown::of(&live, None).unwrap());
-            let (tip_m, trocar_m) = (Vector3::new(0.0, 0.0, 0.03), Vector3::new(0.0, -0.06, 0.14));
+            let mut mesh = Mesh::default();
+            let shown = Shown::of(&live, None).unwrap();
+            let tip_m = Vector3::new(0.0, 0.0, 0.03);
+            let trocar_m = Vector3::new(0.0, -0.06, 0.14);
             let mut shadows = Shadows::on(board_of(&live.scene));
             let end_m = hoop(&mut mesh, &live.scene, &shown, (Side::Right, &tip_m, &trocar_m), &mut shadows).unwrap();
             assert!(((end_m - tip_m).norm() - 0.006).abs() < 1e-6 && end_m.z > tip_m.z, "{end_m}");

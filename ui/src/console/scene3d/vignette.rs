@@ -21,7 +21,8 @@ pub(super) fn part_of(rect: Rect) -> Rect {
     let [_, dark] = radii(rect);
     // Whole points, so that its edges are those of pixels.
     let half = (dark.ceil() + 1.0).min(0.5 * rect.width());
-    let (left, right) = ((rect.center().x - half).floor(), (rect.center().x + half).ceil());
+    let left = (rect.center().x - half).floor();
+    let right = (rect.center().x + half).ceil();
     Rect::from_x_y_ranges(left.max(rect.left())..=right.min(rect.right()), rect.y_range())
 }
 
@@ -30,7 +31,8 @@ pub(super) fn part_from_whole(part: Rect, whole: Rect) -> Matrix4<f32> {
     let wider = whole.width() / part.width().max(1.0);
     let aside = 2.0 * (whole.center().x - part.center().x) / part.width().max(1.0);
     let mut matrix = Matrix4::identity();
-    (matrix[(0, 0)], matrix[(0, 3)]) = (wider, aside);
+    matrix[(0, 0)] = wider;
+    matrix[(0, 3)] = aside;
     matrix
 }
 
@@ -43,7 +45,8 @@ pub(super) fn shows(rect: Rect, place: Pos2, room: f32) -> bool {
 
 /// Covers what an endoscope does not show.
 pub(super) fn paint(painter: &Painter, rect: Rect) {
-    let ([clear, dark], part) = (radii(rect), part_of(rect));
+    let [clear, dark] = radii(rect);
+    let part = part_of(rect);
     for beside in [
         Rect::from_x_y_ranges(rect.left()..=part.left(), rect.y_range()),
         Rect::from_x_y_ranges(part.right()..=rect.right(), rect.y_range()),

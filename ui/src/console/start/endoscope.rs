@@ -75,7 +75,8 @@ impl EndoscopeCard {
         });
         if field.changed() {
             self.typed_at = Some(Instant::now());
-            (self.tried, self.preview) = (None, DoubleBuffer::default());
+            self.tried = None;
+            self.preview = DoubleBuffer::default();
         }
         let address = self.typed.trim().to_owned();
         match running.filter(|(url, _)| *url == address) {

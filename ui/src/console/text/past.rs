@@ -123,7 +123,9 @@ pub(in crate::console) fn speed(factor: f64) -> String {
 
 /// A time of a session, s.
 pub(in crate::console) fn clock(t_s: f64) -> String {
-    let (hours, minutes, seconds) = ((t_s / 3600.0).floor(), (t_s / 60.0).floor() % 60.0, t_s % 60.0);
+    let hours = (t_s / 3600.0).floor();
+    let minutes = (t_s / 60.0).floor() % 60.0;
+    let seconds = t_s % 60.0;
     if hours > 0.0 { format!("{hours}:{minutes:02}:{seconds:06.3}") } else { format!("{minutes}:{seconds:06.3}") }
 }
 

@@ -16,7 +16,9 @@ pub(in crate::console) const CURE: Text = Text::of(
 /// On the button that keeps a session: how long it has been recorded, and whether it is kept.
 pub(in crate::console) fn recorded_for(seconds: u64, kept: bool) -> String {
     let what = if kept { word("Kept", "Gesichert") } else { word("Rec", "Rec") };
-    let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
+    let hours = seconds / 3600;
+    let minutes = seconds / 60 % 60;
+    let seconds = seconds % 60;
     if hours > 0 {
         format!("{what} {hours}:{minutes:02}:{seconds:02}")
     } else {
@@ -49,7 +51,8 @@ pub(in crate::console) fn hover(shown: &Shown) -> String {
     let watched = shown.watched.iter().fold(String::new(), |words, one| {
         words + &told!("\nOthers watch at {}: {} now", "\nZuschauer über {}: jetzt {}", one.at, one.watchers)
     });
-    let (path, megabytes) = (shown.path.display(), shown.bytes as f64 * 1e-6);
+    let path = shown.path.display();
+    let megabytes = shown.bytes as f64 * 1e-6;
     let pictures = if shown.pictures > 0 {
         told!("\n{} pictures of the endoscope", "\n{} Endoskopbilder", shown.pictures)
     } else {

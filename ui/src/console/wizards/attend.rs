@@ -19,7 +19,8 @@ impl Wizards {
         let which = self.open?;
         let wizard = self.the_mut(which)?;
         wizard.refresh(binding);
-        let (steps, now) = (wizard.steps(), wizard.frame_mut().step);
+        let steps = wizard.steps();
+        let now = wizard.frame_mut().step;
         if now + 1 < steps.len() {
             if wizard.attend(binding) && wizard.may_go_on(binding).is_ok() {
                 wizard.go_to(now + 1);

@@ -325,7 +325,8 @@ fn verdict_ui(ui: &mut Ui, report: &CorrespondenceReport) {
     card(ui, report.verdict.words(), text::correspondence::VERDICT_HOVER.get(), |ui| {
         ui.label(&report.reason);
         ui.add_space(4.0);
-        let (left_out, weak) = (report.outliers.len(), report.weak.len());
+        let left_out = report.outliers.len();
+        let weak = report.weak.len();
         let pushes = text::correspondence::used(report.pairs, left_out, weak);
         figure(ui, text::correspondence::STEP_PUSHES.get(), pushes, text::correspondence::PUSHES_HOVER.get());
         let spread = format!("{:.2}, {:.2}", report.excitation.second, report.excitation.third);
@@ -395,7 +396,8 @@ fn agreement_ui(ui: &mut Ui, agreement: &Agreement) {
                 ui.end_row();
             }
         });
-        let (fitted, held_out) = (agreement.r2_fitted_overall, agreement.r2_held_out_overall);
+        let fitted = agreement.r2_fitted_overall;
+        let held_out = agreement.r2_held_out_overall;
         figure(
             ui,
             text::correspondence::R2_OVERALL.get(),

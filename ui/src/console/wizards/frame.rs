@@ -49,7 +49,9 @@ pub(crate) struct Frame {
 impl Frame {
     /// Shows the result of saving, and what is to be done after it.
     pub(super) fn tell_saved(&mut self, told: Result<String, String>, following: Option<GoOn>) {
-        (self.saved, self.changed, self.following) = (Some(told), true, following);
+        self.saved = Some(told);
+        self.changed = true;
+        self.following = following;
     }
 
     const fn is_saved(&self) -> bool {
@@ -131,7 +133,8 @@ pub(crate) trait Wizard: std::fmt::Debug {
 /// Draws a wizard; returns what is asked for.
 pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding) -> Option<Asked> {
     wizard.refresh(binding);
-    let (steps, now) = (wizard.steps(), wizard.frame_mut().step);
+    let steps = wizard.steps();
+    let now = wizard.frame_mut().step;
     let following = wizard.frame_mut().following();
     let going_on = GoingOn { may: wizard.may_go_on(binding), is_done: wizard.is_done(), following };
     let mut wish = steps_ui(ui, steps, now, &going_on);

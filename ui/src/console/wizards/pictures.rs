@@ -11,7 +11,8 @@ use crate::console::{text, theme, widgets::fitting};
 
 /// Projection for a viewer in front of the base, slightly to the right and above (`world`: x to the right, z up).
 pub(super) fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2, f64) {
-    let (turn, raise) = (0.45_f64, 0.38_f64);
+    let turn = 0.45_f64;
+    let raise = 0.38_f64;
     let right = point.x * turn.cos() + point.y * turn.sin();
     let away = -point.x * turn.sin() + point.y * turn.cos();
     let up = point.z * raise.cos() + away * raise.sin();
@@ -26,7 +27,8 @@ pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, he
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text::wizards::POSE_PICTURE.get()));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
-    let (centre, scale) = (rect.center() - vec2(0.0, 22.0), rect.height() * 0.31);
+    let centre = rect.center() - vec2(0.0, 22.0);
+    let scale = rect.height() * 0.31;
     ground(&painter, centre, scale);
     if let Some(target) = target {
         tool(&painter, centre, scale, target, false);
@@ -56,7 +58,8 @@ fn ground(painter: &Painter, centre: Pos2, scale: f32) {
     let corner = |x: f64, y: f64| on_paper(centre, scale, &Vector3::new(x, y, -1.15)).0;
     let corners = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
     painter.add(Shape::convex_polygon(corners, theme::now().panel, Stroke::new(1.0, theme::now().line)));
-    let (top, bottom) = (on_paper(centre, scale, &Vector3::z()).0, corner(0.0, 0.0));
+    let top = on_paper(centre, scale, &Vector3::z()).0;
+    let bottom = corner(0.0, 0.0);
     painter.extend(Shape::dashed_line(&[top, bottom], Stroke::new(1.0, theme::now().line), 5.0, 5.0));
 }
 
@@ -98,7 +101,8 @@ pub(super) fn sphere_picture(
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, words.clone()));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
-    let (centre, scale) = (rect.center() - vec2(0.0, 6.0), rect.height() * 0.37);
+    let centre = rect.center() - vec2(0.0, 6.0);
+    let scale = rect.height() * 0.37;
     painter.circle_stroke(centre, scale, Stroke::new(1.0, theme::now().text_weak));
     graticule(&painter, centre, scale);
     for direction in wanted {

@@ -174,7 +174,8 @@ impl TipForceWizard {
         if let Some((job, narrow)) = &mut self.training
             && let Some(result) = job.take_result()
         {
-            let (narrow, cancelled) = (*narrow, job.is_cancelled());
+            let narrow = *narrow;
+            let cancelled = job.is_cancelled();
             self.training = None;
             self.take_model(result, narrow, cancelled);
         }
@@ -192,8 +193,12 @@ impl TipForceWizard {
         match result {
             Ok(model) => {
                 // Results of the previous network are not valid for this one.
-                (self.trained, self.proof, self.checked) = (Some(Trained { model, narrow }), None, None);
-                (self.judging, self.frame.saved, self.told) = (None, None, None);
+                self.trained = Some(Trained { model, narrow });
+                self.proof = None;
+                self.checked = None;
+                self.judging = None;
+                self.frame.saved = None;
+                self.told = None;
             }
             Err(_) if cancelled => self.told = Some(text::tip_force::CANCELLED.get().to_owned()),
             Err(error) => self.told = Some(text::tip_force::not_trained(&error)),
@@ -221,7 +226,8 @@ impl TipForceWizard {
             bound: [with.sensor.clone(), with.tool.clone()],
             store: store.clone(),
         };
-        let (narrow, curves) = (self.lacking().map(|goal| goal.what), Arc::clone(&self.curves));
+        let narrow = self.lacking().map(|goal| goal.what);
+        let curves = Arc::clone(&self.curves);
         match Job::start("tip-force-training", move |cancel| train(order, &curves, cancel)) {
             Ok(job) => (self.training, self.written, self.told) = (Some((job, narrow)), true, None),
             Err(error) => self.told = Some(error),

@@ -126,7 +126,8 @@ mod tests {
     #[test]
     fn the_shaft_of_each_arm_goes_through_the_trocar_that_the_screen_shows() {
         for (scene, arms) in [("peg_transfer", 1), ("bimanual", 2)] {
-            let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
+            let rig = RigConfig::load("simulated").unwrap();
+            let scene = Scene::load(scene).unwrap();
             let plan = Plan { rig, scene: scene.clone(), calibrations: Default::default(), engage: false };
             let known = outline(&plan).trocars_m;
             assert_eq!(known.iter().flatten().count(), arms);
@@ -136,7 +137,8 @@ mod tests {
 
     #[test]
     fn a_mark_of_contact_begins_where_the_task_counts_contact() {
-        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("rings").unwrap());
+        let rig = RigConfig::load("simulated").unwrap();
+        let scene = Scene::load("rings").unwrap();
         let contact_n = TaskFile::of(scene.task.as_ref().unwrap()).unwrap().contact_n;
         let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
         let marked_n = marked(&plan, Some("P03 4".to_owned())).contact_n;

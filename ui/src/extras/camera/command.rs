@@ -137,7 +137,9 @@ fn of_camera(address: Address, board: Board) -> anyhow::Result<Taken> {
     let shown = address.to_string();
     let feed = Feed::start(address, None, || {}).context("no thread for the picture")?;
     let mut session: Option<Session> = None;
-    let (mut last, mut since, mut told) = (0, Instant::now(), String::new());
+    let mut last = 0;
+    let mut since = Instant::now();
+    let mut told = String::new();
     let mut say = |words: String| {
         if told != words {
             tell(&words);
@@ -205,7 +207,8 @@ fn in_words(report: &Report, taken: &Taken) -> String {
         writeln!(text, "left out: {}, {}", taken.views[*at].0, camera::left_out(*why)).ok();
     }
     let Some(found) = &report.lens else { return text + "no lens" };
-    let (lens, sd) = (&found.lens, &found.deviations);
+    let lens = &found.lens;
+    let sd = &found.deviations;
     writeln!(
         text,
         "focal length {:.2} +- {:.2} px across, {:.2} px down   centre {:.2} +- {:.2}, {:.2} +- {:.2} px",
@@ -245,7 +248,8 @@ fn in_json(report: &Report, taken: &Taken, reason: Option<&str>) -> serde_json::
     let left_out =
         report.left_out.iter().map(|(at, why)| json!({ "view": taken.views[*at].0, "why": camera::left_out(*why) }));
     let lens = report.lens.as_ref().map(|found| {
-        let (lens, sd) = (&found.lens, &found.deviations);
+        let lens = &found.lens;
+        let sd = &found.deviations;
         json!({
             "focal_px": [lens.focal_px.x, lens.focal_px.y],
             "focal_sd_px": [sd.focal_px.x, sd.focal_px.y],

@@ -21,10 +21,12 @@ pub(super) struct FoundPlace {
 pub(super) fn changes(file: &RigFile, lens: &Lens, place: Option<FoundPlace>) -> Vec<RigChange> {
     let [width, height] = lens.size_px;
     let Bend { k1, k2, p1, p2 } = lens.bend;
-    let (focal_px, centre_px) = (lens.focal_px, lens.centre_px);
+    let focal_px = lens.focal_px;
+    let centre_px = lens.centre_px;
     let term = |value: f64| (value != 0.0).then(|| format!("{value:.6}"));
     let at = |place: &FoundPlace| {
-        let (at_m, deg) = (place.pose.translation.vector, to_roll_pitch_yaw_deg(&place.pose.rotation));
+        let at_m = place.pose.translation.vector;
+        let deg = to_roll_pitch_yaw_deg(&place.pose.rotation);
         let at_m = format!("[{:.6}, {:.6}, {:.6}]", at_m.x, at_m.y, at_m.z);
         [at_m, format!("[{:.4}, {:.4}, {:.4}]", deg.x, deg.y, deg.z)]
     };

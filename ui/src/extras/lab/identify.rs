@@ -127,7 +127,8 @@ fn identify(arguments: &Arguments, path: &Path) -> anyhow::Result<Figures> {
 
 fn options(arguments: &Arguments) -> Options {
     let &Arguments { mode, max_degree, cross_talk, reading, choice, constant, ridge, .. } = arguments;
-    let (window_s, delay_s) = (arguments.window_ms * 1e-3, arguments.delay_ms * 1e-3);
+    let window_s = arguments.window_ms * 1e-3;
+    let delay_s = arguments.delay_ms * 1e-3;
     let literal = Recipe { reading, choice, constant, ridge };
     Options { mode, window_s, delay_s, max_degree, cross_talk, literal }
 }

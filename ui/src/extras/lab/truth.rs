@@ -57,7 +57,8 @@ impl TipComparison {
     fn know(&mut self, known: impl Iterator<Item = Known>) {
         self.waiting.extend(known);
         while let Some(known) = self.waiting.front().copied() {
-            let (recent, t_s) = (&self.recent[known.truth.index()], known.at_s - self.began_s);
+            let recent = &self.recent[known.truth.index()];
+            let t_s = known.at_s - self.began_s;
             if recent.back().is_none_or(|last| last.t_s < t_s + NEAR_S) {
                 return;
             }
@@ -106,7 +107,8 @@ fn in_words(figures: &[TipError]) -> String {
     for TipError { side, method, mae_n: [x, y, z], free, without_network, doubt, .. } in figures {
         write!(text, "\n  {:5}  {method:12}  mean error {x:.3} {y:.3} {z:.3}", side.word()).ok();
         if let Some(free) = free {
-            let ([a, b, c], [d, e, f]) = (free.mean_n, free.sd_n);
+            let [a, b, c] = free.mean_n;
+            let [d, e, f] = free.sd_n;
             write!(text, "   without contact mean {a:.3} {b:.3} {c:.3}   sd {d:.3} {e:.3} {f:.3}").ok();
         }
         if *method == IN_USE {
@@ -137,7 +139,8 @@ mod tests {
 
     /// Ticks of an engaged run on the simulated rig.
     fn ticks() -> Vec<Tick> {
-        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("palpation").unwrap());
+        let rig = RigConfig::load("simulated").unwrap();
+        let scene = Scene::load("palpation").unwrap();
         let folder = tempfile::tempdir().unwrap();
         nima_recording::store::Store::open(folder.path()).save(&nima_tests::gravity::gravity()).unwrap();
         let calibrations = InForce::load(Some(folder.path()), &rig, &scene).calibrations(&rig);

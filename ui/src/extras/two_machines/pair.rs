@@ -43,7 +43,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let leave = Leave::on_signals()?;
     let off = Arc::clone(&called_off);
     leave.at_once(move || off.store(true, Relaxed));
-    let (mut attempts, wait) = (Attempts::default(), Duration::from_secs_f64(arguments.wait));
+    let mut attempts = Attempts::default();
+    let wait = Duration::from_secs_f64(arguments.wait);
     let pairing = Pairing { keys: &keys, attempts: &mut attempts, wait, called_off: &called_off };
     let (name, pending) = if let Some(host) = &arguments.host {
         (network::name_of(host), pairing.ask(network::address(host)?)?)

@@ -109,7 +109,9 @@ mod tests {
                 std::fs::create_dir_all(&own).unwrap();
                 Keys::open(&own).unwrap()
             };
-            let (follower, first, second) = (keys("follower"), keys("first"), keys("second"));
+            let follower = keys("follower");
+            let first = keys("first");
+            let second = keys("second");
             let mut consoles = Peers::open(&folder.path().join("follower")).unwrap();
             consoles.add("first", first.public()).unwrap();
             consoles.add("second", second.public()).unwrap();
@@ -153,7 +155,8 @@ mod tests {
     #[test]
     fn control_changes_hands_by_a_question_and_consent() {
         let mut three = Three::new();
-        let (mut first, mut second) = (three.panel(1), three.panel(2));
+        let mut first = three.panel(1);
+        let mut second = three.panel(2);
         three.until(&mut first, Control::Holds);
         three.running = 3;
         three.until(&mut second, Control::Waits);

@@ -181,7 +181,8 @@ fn times(figures: &Figures) -> Vec<LinkRow> {
 
 /// What is lost, and what it takes of the network.
 fn amounts(report: &LineReport) -> Vec<LinkRow> {
-    let (figures, counts) = (&report.figures, &report.figures.counts);
+    let figures = &report.figures;
+    let counts = &report.figures.counts;
     let mut rows = Vec::new();
     let mut row = |name, value, meaning| rows.push(LinkRow { name, value, meaning });
     row(

@@ -139,7 +139,9 @@ pub(super) fn scene_file(study: &Study) -> PathBuf {
 /// The scene for a trial on this rig, with this hand and its random sequences, and its task.
 pub(super) fn scene_for(study: &Study, rig: &RigConfig, hand: &Hand) -> anyhow::Result<(Scene, TaskFile)> {
     let mut scene = scene_in(study)?;
-    (scene.hand.pace, scene.hand.tremor_m, scene.seed) = (hand.pace, hand.tremor_m, hand.seed);
+    scene.hand.pace = hand.pace;
+    scene.hand.tremor_m = hand.tremor_m;
+    scene.seed = hand.seed;
     scene.hand.intended_n = hand.intended_n;
     let task = TaskFile::of(scene.task.as_ref().context("the scene of the study has no task")?)?;
     Ok((scene.mounted_at(rig)?, task))

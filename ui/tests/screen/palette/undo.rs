@@ -66,7 +66,8 @@ fn panels_and_plots_are_put_back() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = begin(folder.path(), "peg_transfer");
     let state = |console: &mut Console| {
-        let (extras, traces) = (console.state().extras(), console.state().traces_s());
+        let extras = console.state().extras();
+        let traces = console.state().traces_s();
         let settings = console.state_mut().settings_mut();
         (settings.layout.closed.clone(), settings.light, settings.scale_percent, extras, traces)
     };

@@ -142,7 +142,8 @@ impl Calibration for HandEye {
         let row =
             |sample: &FrameSample| Some(Row { base_from_flange: sample.base_from_flange?, c_from_m: sample.c_from_m? });
         let rows: Vec<Row> = samples.iter().filter_map(row).collect();
-        let (have, least) = (rows.len(), self.limits.least);
+        let have = rows.len();
+        let least = self.limits.least;
         if have < least {
             return FrameReport::nothing(have, Cause::TooFew { have, least });
         }

@@ -50,7 +50,9 @@ pub(super) fn refined(rows: &[Row], start: Frames) -> Option<Refined> {
         let there = linear(rows, &tried);
         if there.squares <= here.squares {
             let last = here.squares - there.squares <= LAST_SHARE * here.squares;
-            (frames, here, damping) = (tried, there, damping * 0.1);
+            frames = tried;
+            here = there;
+            damping *= 0.1;
             if last {
                 break;
             }
@@ -115,7 +117,8 @@ pub(super) fn slopes_at_tip(row: &Row, frames: &Frames, tip_in_flange_m: &Vector
     let in_c = row.c_from_m * in_m;
     let y = frames.base_from_c.rotation.to_rotation_matrix().into_inner();
     let yb = (frames.base_from_c.rotation * row.c_from_m.rotation).to_rotation_matrix().into_inner();
-    let (mut place, mut turn) = (Slopes::zeros(), Slopes::zeros());
+    let mut place = Slopes::zeros();
+    let mut turn = Slopes::zeros();
     place.fixed_view_mut::<3, 3>(0, 0).copy_from(&-yb);
     place.fixed_view_mut::<3, 3>(0, 3).copy_from(&(yb * in_m.coords.cross_matrix()));
     place.fixed_view_mut::<3, 3>(0, 6).copy_from(&y);

@@ -52,7 +52,8 @@ fn rotation(matrix: &Matrix3<f64>) -> Option<UnitQuaternion<f64>> {
 
 /// Both places for known rotations: `R_A t_X - t_Y = R_Y t_B - t_A`, least squares over all poses.
 fn with_places(rows: &[Row], x: UnitQuaternion<f64>, y: UnitQuaternion<f64>) -> Option<Frames> {
-    let (mut normal, mut right) = (Matrix6::zeros(), Vector6::zeros());
+    let mut normal = Matrix6::zeros();
+    let mut right = Vector6::zeros();
     for row in rows {
         let a = row.base_from_flange.rotation.to_rotation_matrix().into_inner();
         let wanted_m = y * row.c_from_m.translation.vector - row.base_from_flange.translation.vector;

@@ -95,7 +95,8 @@ fn a_trocar_is_within_half_a_millimetre() {
     let trocar = Trocar::by_tracker(&arm(), &flange_from_m());
     let truth = base_from_c().inverse() * Point3::from(TROCAR_M);
     for count in [30, 40, 100] {
-        let (mut figures, mut inside) = (Figures::default(), 0);
+        let mut figures = Figures::default();
+        let mut inside = 0;
         for seed in 0..SEEDS {
             let report = trocar.fit(&Rig::new(seed).samples(through_trocar(), count)).unwrap();
             let found = report.found.unwrap();
@@ -168,7 +169,8 @@ fn right_on_the_handle_is_right_in_the_picture() {
     let seen = base_from_view().inverse() * mapping.to_tip(&right_m);
     assert!(seen.angle(&Vector3::x()).to_degrees() < 3.0, "{seen}");
     // The same by a marker on the endoscope, after it was turned.
-    let (c_from_n, turn) = (any_turn(&mut rig), any_turn(&mut rig));
+    let c_from_n = any_turn(&mut rig);
+    let turn = any_turn(&mut rig);
     let base_from_c = base_from_c().rotation;
     let n_from_view = by_tip.n_from_view(&base_from_c, &c_from_n);
     let turned = base_from_c.inverse() * turn * base_from_c * c_from_n;
@@ -203,7 +205,8 @@ fn a_sensor_mount_is_found_from_weight_and_agrees_or_names_the_axes() {
 #[test]
 fn a_gravity_pose_of_the_arm_serves_for_the_mount_too() {
     use crate::calibration::gravity::{Orientation, Pose};
-    let (mut rig, in_force) = (Rig::new(3), pose([0.0; 3], [0.0, 0.0, 40.0]).rotation);
+    let mut rig = Rig::new(3);
+    let in_force = pose([0.0; 3], [0.0, 0.0, 40.0]).rotation;
     let truth = in_force * UnitQuaternion::from(Rotation3::from_euler_angles(0.0, 0.1, 0.0));
     let base = pose([0.0; 3], [0.0, 0.0, 25.0]).rotation;
     let samples: Vec<FrameSample> = (0..12)

@@ -87,7 +87,8 @@ fn a_table_names_swaps_and_exchanged_axes() {
 fn resting(samples: &mut [FrameSample]) {
     let first = samples[0];
     for sample in samples {
-        (sample.other_base_from_flange, sample.c_from_other_m) = (first.other_base_from_flange, first.c_from_other_m);
+        sample.other_base_from_flange = first.other_base_from_flange;
+        sample.c_from_other_m = first.c_from_other_m;
     }
 }
 

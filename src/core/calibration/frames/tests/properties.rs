@@ -88,7 +88,8 @@ proptest! {
         y in [-2.0..2.0f64, -2.0..2.0, -2.0..2.0, -3.0..3.0, -1.5..1.5, -3.0..3.0],
     ) {
         let frame = |[a, b, c, d, e, f]: [f64; 6]| Isometry3::new(Vector3::new(a, b, c), Vector3::new(d, e, f));
-        let (flange_from_m, base_from_c) = (frame(x), frame(y));
+        let flange_from_m = frame(x);
+        let base_from_c = frame(y);
         let sample = |at: &Isometry3<f64>| FrameSample {
             base_from_flange: Some(*at),
             c_from_m: Some(base_from_c.inverse() * at * flange_from_m),

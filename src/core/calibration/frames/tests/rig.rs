@@ -40,7 +40,8 @@ pub(crate) fn base_from_c() -> Isometry3<f64> {
 /// Joint angles that put the tip here with the shaft in this direction; `None` if the arm does not reach that. Newton's method with
 /// damping.
 fn reached(tip_m: &Vector3<f64>, direction: &Vector3<f64>) -> Option<Joints> {
-    let (arm, mut joints) = (arm(), Joints::from(READY_RAD));
+    let arm = arm();
+    let mut joints = Joints::from(READY_RAD);
     for _ in 0..100 {
         let at = arm.pose(&joints);
         let mut error = SVector::<f64, 6>::zeros();
@@ -71,7 +72,8 @@ fn pool(seed: u64, cone_deg: f64, tip_m: impl Fn(&Vector3<f64>, &mut Noise) -> V
     let mut noise = Noise::new(seed);
     let mut poses = Vec::new();
     while poses.len() < 300 {
-        let (tilt, turn) = (cone_deg.to_radians() * noise.uniform().sqrt(), std::f64::consts::TAU * noise.uniform());
+        let tilt = cone_deg.to_radians() * noise.uniform().sqrt();
+        let turn = std::f64::consts::TAU * noise.uniform();
         let direction = Vector3::new(tilt.sin() * turn.cos(), tilt.sin() * turn.sin(), -tilt.cos());
         let Some(mut joints) = reached(&tip_m(&direction, &mut noise), &direction) else { continue };
         // The last joint turns the instrument about its shaft; the marker must stay in sight.

@@ -30,7 +30,8 @@ fn hold<C: Calibration>(
 
 #[test]
 fn a_guided_tip_session_ends_accepted() {
-    let (mut rig, mut t_s) = (Rig::new(5), 0.0);
+    let mut rig = Rig::new(5);
+    let mut t_s = 0.0;
     let mut session = FrameSession::new(Tip::by_tracker());
     assert_eq!(session.coverage(), Coverage { share: 0.0, missing: Some(Missing::Poses) });
     let mut before = 0.0;
@@ -60,7 +61,8 @@ fn a_guided_tip_session_ends_accepted() {
 #[test]
 fn a_pose_that_moved_is_not_recorded() {
     for (speed_m_s, name) in [(0.02, "fast"), (0.004, "slow")] {
-        let (mut rig, mut t_s) = (Rig::new(6), 0.0);
+        let mut rig = Rig::new(6);
+        let mut t_s = 0.0;
         let mut session = FrameSession::new(Tip::by_tracker());
         let phases = hold(&mut session, &mut rig, &in_dimple()[0], speed_m_s, &mut t_s);
         assert!(session.samples().is_empty(), "{name}");
@@ -82,7 +84,8 @@ fn what_is_no_measurement_pauses_the_session() {
 
 #[test]
 fn a_marker_that_was_mistaken_for_the_other_is_recorded_and_named() {
-    let (mut rig, mut t_s) = (Rig::new(8), 0.0);
+    let mut rig = Rig::new(8);
+    let mut t_s = 0.0;
     let mut session = FrameSession::new(Tip::by_tracker());
     let rest = pose([0.1, 0.2, -1.0], [10.0, 20.0, 30.0]);
     for at in &in_dimple()[..30] {
@@ -90,7 +93,8 @@ fn a_marker_that_was_mistaken_for_the_other_is_recorded_and_named() {
             t_s += 1.0 / RATE_HZ;
             let sample = rig.sample(at);
             // The instrument's marker is reported as the other's, and this one lies on a table.
-            let (c_from_m, c_from_other_m) = (Some(rig.noisy(&rest)), sample.c_from_m);
+            let c_from_m = Some(rig.noisy(&rest));
+            let c_from_other_m = sample.c_from_m;
             session.step(&FrameSample { c_from_m, c_from_other_m, ..sample }, t_s);
         }
     }
@@ -100,7 +104,8 @@ fn a_marker_that_was_mistaken_for_the_other_is_recorded_and_named() {
 
 #[test]
 fn a_view_session_asks_for_one_move_after_the_other() {
-    let (mut rig, mut t_s) = (Rig::new(9), 0.0);
+    let mut rig = Rig::new(9);
+    let mut t_s = 0.0;
     let mut session = FrameSession::new(View::by_arm(TIP_IN_FLANGE_M));
     let ends = moved(&mut rig, &all_moves(), 3.0);
     for (count, end) in ends.iter().enumerate() {

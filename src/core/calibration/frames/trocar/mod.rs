@@ -137,7 +137,8 @@ impl Problem for Lines {
     const FLOOR: Miss = Miss::of_place(1.5e-3);
 
     fn solve(&self, rows: &[ShaftLine]) -> Option<Centre> {
-        let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+        let mut normal = Matrix3::zeros();
+        let mut right = Vector3::zeros();
         for row in rows {
             let across = across(&row.direction);
             normal += across;
@@ -154,7 +155,8 @@ impl Problem for Lines {
 
 /// Root mean square tilt of lines from their mean direction, degrees.
 fn tilt_deg(lines: impl Iterator<Item = ShaftLine>) -> f64 {
-    let (mut sum, mut count) = (Matrix3::zeros(), 0.0);
+    let mut sum = Matrix3::zeros();
+    let mut count = 0.0;
     for line in lines {
         sum += across(&line.direction);
         count += 1.0;
@@ -201,7 +203,8 @@ impl Calibration for Trocar {
 
     fn attempt(&self, samples: &[FrameSample]) -> FrameReport<TrocarFound> {
         let rows: Vec<ShaftLine> = self.lines(samples).collect();
-        let (have, least) = (rows.len(), self.limits.least);
+        let have = rows.len();
+        let least = self.limits.least;
         if have < least {
             return FrameReport::nothing(have, Cause::TooFew { have, least });
         }

@@ -77,7 +77,9 @@ impl TrocarWatch {
                 self.average(line, 1.0 - libm::exp(-(t_s - last_s) / AVERAGE_S));
             }
             _ => {
-                (self.normal, self.right_m, self.since_s) = (Matrix3::zeros(), Vector3::zeros(), t_s);
+                self.normal = Matrix3::zeros();
+                self.right_m = Vector3::zeros();
+                self.since_s = t_s;
                 self.state = TrocarState::Waiting;
             }
         }

@@ -49,7 +49,9 @@ struct Plan {
 impl Plan {
     fn new(noise: &mut Noise) -> Self {
         let mut pick = |most: f64| (most * noise.uniform()) as u32;
-        let (pattern, left, every) = (PATTERNS[pick(10.0) as usize], 1 + pick(400.0), 2 + pick(40.0));
+        let pattern = PATTERNS[pick(10.0) as usize];
+        let left = 1 + pick(400.0);
+        let every = 2 + pick(40.0);
         Self { pattern, left, size_n: 5.0 * noise.uniform(), every }
     }
 
@@ -102,7 +104,10 @@ pub(super) fn most_given_j(requests: u64, seed: u64, settings: ChainSettings) ->
 fn episode_j(noise: &mut Noise, settings: ChainSettings) -> f64 {
     let mut chain = Chain::<1>::new(settings, PERIOD_S);
     let handle_kg = 0.2 + 0.11 * noise.uniform();
-    let (mut at_m, mut speed_m_s, mut given_j, mut most_j) = (0.0, 0.0, 0.0, 0.0_f64);
+    let mut at_m = 0.0;
+    let mut speed_m_s = 0.0;
+    let mut given_j = 0.0;
+    let mut most_j = 0.0_f64;
     let mut plan = Plan::new(noise);
     for tick in 0..(EPISODE_S / PERIOD_S) as u32 {
         if plan.left == 0 {

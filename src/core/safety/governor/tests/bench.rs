@@ -145,7 +145,8 @@ impl Bench {
             hand_age_s: 0.0,
             permitted: true,
         });
-        (self.force_n, self.report) = (force_n.x, report);
+        self.force_n = force_n.x;
+        self.report = report;
         self.passed_n = asked_n.signum() * (asked_n.abs() - report.withheld_n).min(4.0);
     }
 
@@ -183,7 +184,8 @@ impl Bench {
 
     fn follow(&mut self) {
         let omega = TAU * FOLLOWER_HZ;
-        let (offset_m, decay) = (self.tip_m - self.command_m, (-omega * PERIOD_S).exp());
+        let offset_m = self.tip_m - self.command_m;
+        let decay = (-omega * PERIOD_S).exp();
         let slope_m_s = self.tip_m_s + offset_m * omega;
         self.tip_m = self.command_m + (offset_m + slope_m_s * PERIOD_S) * decay;
         self.tip_m_s = (self.tip_m_s - slope_m_s * (omega * PERIOD_S)) * decay;

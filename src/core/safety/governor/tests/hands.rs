@@ -49,7 +49,8 @@ pub(super) fn way(noise: &mut Noise, ticks: usize, grip_n_m: f64) -> Vec<f64> {
             way_m.extend(std::iter::repeat_n(at_m, count));
         } else {
             let count = (1e3 * between(noise, [0.5, 2.0])) as usize;
-            let (hz, size_m) = (spread(noise, [0.5, 5.0]), between(noise, [0.5e-3, 6e-3]));
+            let hz = spread(noise, [0.5, 5.0]);
+            let size_m = between(noise, [0.5e-3, 6e-3]);
             way_m.extend((0..count).map(|tick| {
                 let ends = (tick as f64 / 200.0).min((count - tick) as f64 / 200.0).min(1.0);
                 at_m + size_m * ends * (std::f64::consts::TAU * hz * tick as f64 * 1e-3).sin()
@@ -71,7 +72,8 @@ pub(super) fn grip(noise: &mut Noise, ticks: usize) -> Vec<f64> {
     let mut now = 1.0;
     while grip.len() < ticks {
         let count = (1e3 * between(noise, [0.3, 1.5])) as usize;
-        let (to, within) = (between(noise, [0.25, 1.5]), 1e3 * between(noise, [0.03, 0.3]));
+        let to = between(noise, [0.25, 1.5]);
+        let within = 1e3 * between(noise, [0.03, 0.3]);
         grip.extend((0..count).map(|tick| now + (to - now) * (tick as f64 / within).min(1.0)));
         now = to;
     }

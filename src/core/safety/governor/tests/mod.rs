@@ -51,11 +51,15 @@ fn let_go(bench: &mut Bench, force_n: f64, held: bool) -> LetGo {
     }
     let mut out = LetGo { before_n: bench.force_n, closed_before: bench.report.governed > 0.0, ..LetGo::default() };
     let Person { handle_kg, handle_n_s_m, .. } = bench.person;
-    let (from_m, swing_m_s, swing_s) = (bench.handle_m, bench.handle_m_s, handle_kg / handle_n_s_m);
-    let (mut energy_j, mut alone_mm) = (0.0_f64, 0.0_f64);
+    let from_m = bench.handle_m;
+    let swing_m_s = bench.handle_m_s;
+    let swing_s = handle_kg / handle_n_s_m;
+    let mut energy_j = 0.0_f64;
+    let mut alone_mm = 0.0_f64;
     bench.gripped = false;
     for tick in 1..=1000 {
-        let (held_n, at_m) = (bench.force_n, bench.handle_m);
+        let held_n = bench.force_n;
+        let at_m = bench.handle_m;
         bench.step(wanted_m);
         energy_j += held_n * (bench.handle_m - at_m);
         let t_s = f64::from(tick) * PERIOD_S;
@@ -169,7 +173,9 @@ fn present(runs: u64, first_seed: u64, handle_kg: f64) -> Lost {
         let grip = if noise.uniform() < 0.5 { hands::grip(&mut noise, ticks) } else { vec![1.0; ticks] };
         let mut bench = Bench::new(person, render, delay, 30.0, seed);
         bench.stiffer = hands::spread(&mut noise, [0.37, 2.7]);
-        let (mut withheld, mut force, mut closed_ms) = (0.0, 0.0, 0);
+        let mut withheld = 0.0;
+        let mut force = 0.0;
+        let mut closed_ms = 0;
         for (wanted_m, tighter) in way_m.into_iter().zip(grip) {
             bench.tighter = tighter;
             bench.step(wanted_m);
@@ -252,7 +258,9 @@ fn fuzz_no_requests_give_a_lone_handle_more_than_the_bound() {
 fn cost_of_withdrawal_n(render: Render, delay: usize, m_s: f64) -> f64 {
     let mut benches = [ChainSettings::default(), ChainSettings::default().without_governor()]
         .map(|settings| Bench::of(Person::STANDARD, render, delay, settings, 3));
-    let (deep_m, out_m, ticks) = (-0.014, 0.005, 1500);
+    let deep_m = -0.014;
+    let out_m = 0.005;
+    let ticks = 1500;
     let mut errors_n = [0.0; 2];
     for _ in 0..12 {
         for tick in 0..ticks {
@@ -287,7 +295,10 @@ fn in_space_it_does_along_the_push_what_it_does_on_one_axis() {
     let along = Vector3::new(2.0, -1.0, 0.5).normalize();
     let mut line = Governor::<1>::new(handle, 500.0, PERIOD_S);
     let mut space = Governor::<3>::new(handle, 500.0, PERIOD_S);
-    let (mut at_m, mut speed_m_s, mut held_n, mut most) = (0.0, 0.0, 3.0, 0.0_f64);
+    let mut at_m = 0.0;
+    let mut speed_m_s = 0.0;
+    let mut held_n = 3.0;
+    let mut most = 0.0_f64;
     for tick in 0..400 {
         let t_s = f64::from(tick) * PERIOD_S;
         let hand_n = if tick < 100 { -3.0 - 900.0 * at_m - 20.0 * speed_m_s } else { 0.0 };
@@ -321,7 +332,8 @@ proptest! {
     ) {
         let handle = Handle { mass_kg, damping_n_s_m, brake_n_s_m, step_m };
         let mut governor = Governor::<3>::new(handle, 500.0, period_s);
-        let (mut at_m, mut t_s) = (Vector3::zeros(), 0.0);
+        let mut at_m = Vector3::zeros();
+        let mut t_s = 0.0;
         for (asked, way, age_s, spacing_s) in ticks {
             let asked_n = Vector3::from(asked);
             at_m += Vector3::from(way);

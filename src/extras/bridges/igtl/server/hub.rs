@@ -42,7 +42,9 @@ impl Hub {
         while !self.shared.is_ending() {
             match hears.recv_timeout(LOOK_EVERY) {
                 Ok(Told::Begins(started_ns, outline)) => {
-                    (self.started_ns, self.outline, self.newest) = (started_ns, outline, None);
+                    self.started_ns = started_ns;
+                    self.outline = outline;
+                    self.newest = None;
                     self.shared.hurry();
                 }
                 Ok(Told::Moment(moment)) => self.moment(moment),

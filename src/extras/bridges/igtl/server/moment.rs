@@ -95,7 +95,8 @@ impl Writer<'_> {
             }
             Kind::Turned => {
                 let turned = |Known { name, kind, pose }: Known| {
-                    let (place_mm, turn) = (pose.0[3], quaternion(&pose));
+                    let place_mm = pose.0[3];
+                    let turn = quaternion(&pose);
                     Turned { name, kind, place_mm, turn }
                 };
                 add(BUNDLE, Content::Turned(self.poses().map(turned).collect()));
@@ -215,7 +216,8 @@ mod tests {
 
     #[test]
     fn an_unknown_force_is_left_out_and_never_zero() {
-        let (tip_m, rendered_n) = (Vector3::zeros(), Vector3::zeros());
+        let tip_m = Vector3::zeros();
+        let rendered_n = Vector3::zeros();
         let measured_n = nima_machine::messages::UNKNOWN_N;
         let arm = Arm { state: State::Idle, tip_m, leader_m: tip_m, measured_n, rendered_n };
         let moment = Moment { t_s: 1.0, arms: [Some(arm), None] };

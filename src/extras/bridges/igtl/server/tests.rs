@@ -65,11 +65,13 @@ struct Runs {
 impl Runs {
     fn on(server: &Server) -> Self {
         let outline = Outline { trocars_m: [Some(TROCAR_M), None] };
-        let (ends, mut audience) = (Arc::new(AtomicBool::new(false)), server.audience(outline));
+        let ends = Arc::new(AtomicBool::new(false));
+        let mut audience = server.audience(outline);
         audience.begins("nima test", STARTED_NS);
         let ended = Arc::clone(&ends);
         let run = move || {
-            let (mut rig, mut ticks) = (Rig::new(), Vec::new());
+            let mut rig = Rig::new();
+            let mut ticks = Vec::new();
             while !ended.load(Ordering::Relaxed) {
                 ticks.push(rig.step(&mut *audience));
                 sleep(Duration::from_millis(1));
@@ -306,7 +308,8 @@ fn clients_that_stall_flood_or_die_harm_nobody() {
     let request = Message::new("", 0, Content::Request(Verb::Get, Kind::Capability, None)).encode().repeat(1000);
     let ends = Arc::new(AtomicBool::new(false));
     let flood = |bytes: Vec<u8>| {
-        let (mut stream, ends) = (Peer::of(&server).0, Arc::clone(&ends));
+        let mut stream = Peer::of(&server).0;
+        let ends = Arc::clone(&ends);
         stream.set_write_timeout(Some(Duration::from_millis(100))).unwrap();
         let is_open = |written: io::Result<usize>| match written {
             Ok(count) => count > 0,

@@ -187,7 +187,8 @@ fn state(header: Header, status: &Status) -> Data {
         6 => "FAULT",
         _ => "DISABLED",
     };
-    let (is_homed, is_busy) = (status.subcode != 0, false);
+    let is_homed = status.subcode != 0;
+    let is_busy = false;
     Data::State(OperatingState { header, state: state.to_owned(), is_homed, is_busy })
 }
 

@@ -88,8 +88,12 @@ fn sender(mut engine: Box<dyn Engine>, seconds: f64) -> Outcome<()> {
             return Err("nobody answers".into());
         }
     }
-    let (begin, before_s, mut wake) = (Instant::now(), processor_s(), Instant::now());
-    let (mut costs_us, mut number, mut payload) = (Vec::with_capacity(100_000), 0_u64, [0; LEN]);
+    let begin = Instant::now();
+    let before_s = processor_s();
+    let mut wake = Instant::now();
+    let mut costs_us = Vec::with_capacity(100_000);
+    let mut number = 0_u64;
+    let mut payload = [0; LEN];
     while begin.elapsed().as_secs_f64() < seconds {
         payload[..8].copy_from_slice(&number.to_le_bytes());
         let sent_ns = now_ns();
@@ -111,8 +115,10 @@ fn sender(mut engine: Box<dyn Engine>, seconds: f64) -> Outcome<()> {
 
 /// The process on the receiver's host: prints payloads got, quantiles of the one-way delay (us) and its load (%).
 fn receiver(mut engine: Box<dyn Engine>, seconds: f64) -> Outcome<()> {
-    let (mut delays_us, mut last) = (Vec::with_capacity(100_000), Instant::now());
-    let (begin, mut start) = (Instant::now(), None);
+    let mut delays_us = Vec::with_capacity(100_000);
+    let mut last = Instant::now();
+    let begin = Instant::now();
+    let mut start = None;
     while begin.elapsed().as_secs_f64() < seconds + 12.0 {
         engine.poll(&mut |payload, seen_ns| {
             if let Some(Ok(sent)) = payload.get(8..16).map(TryInto::try_into) {

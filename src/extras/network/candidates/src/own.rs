@@ -28,7 +28,8 @@ pub(crate) struct Link(Endpoint);
 impl Link {
     pub(crate) fn open(sends: bool, folder: &Path) -> Outcome<Self> {
         let folder = folder.join(if sends { "console" } else { "follower" });
-        let (keys, peers) = (Keys::open(&folder)?, Peers::open(&folder)?);
+        let keys = Keys::open(&folder)?;
+        let peers = Peers::open(&folder)?;
         let at = format!("{THERE}:{PORT}").parse()?;
         let role = if sends {
             Role::Console { follower: at, key: peers.list().first().ok_or("no key")?.key }

@@ -137,7 +137,8 @@ impl Engine for Quic {
     fn poll(&mut self, got: &mut dyn FnMut(&[u8], u64)) {
         let mut buffer = [0; 2048];
         while let Ok((len, from)) = self.socket.recv_from(&mut buffer) {
-            let (now, data) = (Instant::now(), BytesMut::from(&buffer[..len]));
+            let now = Instant::now();
+            let data = BytesMut::from(&buffer[..len]);
             self.out.clear();
             match self.endpoint.handle(now, from, None, None, data, &mut self.out) {
                 Some(DatagramEvent::ConnectionEvent(_, event)) => {

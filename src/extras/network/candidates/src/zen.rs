@@ -40,7 +40,8 @@ impl Zenoh {
         }
         let session = zenoh::open(config).wait().map_err(|error| error.to_string())?;
         let (sender, got) = channel();
-        let (mut publisher, mut subscriber) = (None, None);
+        let mut publisher = None;
+        let mut subscriber = None;
         if sends {
             let made = session
                 .declare_publisher(KEY)

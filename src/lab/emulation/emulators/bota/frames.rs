@@ -98,7 +98,8 @@ impl Frames {
         if self.since.len() < BLOCK {
             self.since.push(*frame);
         }
-        let (first, time) = (self.since[0], frame.timestamp_us);
+        let first = self.since[0];
+        let time = frame.timestamp_us;
         match fault {
             EmulatedFault::Repeat => *frame = first,
             EmulatedFault::Block => {

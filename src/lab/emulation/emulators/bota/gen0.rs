@@ -173,7 +173,9 @@ impl Wire for Gen0 {
             Mode::Booting(until_s) if now_s >= until_s => {
                 self.start();
                 self.mode = Mode::Run;
-                let (name, serial, firmware) = (&self.product, &self.serial, &self.firmware);
+                let name = &self.product;
+                let serial = &self.serial;
+                let firmware = &self.firmware;
                 answer
                     .extend(format!("App Init\r\nname: {name}\r\nS/N: {serial}\r\nFW version: {firmware}\r\n").bytes());
             }

@@ -70,7 +70,8 @@ impl GenA {
     }
 
     fn read(&self, id: &str, sub: &str) -> Result<String, u32> {
-        let (id, sub): (u8, usize) = (id.parse().map_err(|_| SYNTAX)?, sub.parse().map_err(|_| SYNTAX)?);
+        let id: u8 = id.parse().map_err(|_| SYNTAX)?;
+        let sub: usize = sub.parse().map_err(|_| SYNTAX)?;
         let part = sub.checked_sub(1).ok_or(UNKNOWN_PART);
         let of = |values: &[u32]| part.and_then(|part| values.get(part).copied().ok_or(UNKNOWN_PART));
         let number = match (id, sub) {
@@ -93,7 +94,8 @@ impl GenA {
         let number = u32::from_str_radix(value, 16).map_err(|_| SYNTAX)?;
         // Whatever cannot be read is not there to be written.
         self.read(id, sub)?;
-        let (id, sub): (u8, usize) = (id.parse().map_err(|_| SYNTAX)?, sub.parse().map_err(|_| SYNTAX)?);
+        let id: u8 = id.parse().map_err(|_| SYNTAX)?;
+        let sub: usize = sub.parse().map_err(|_| SYNTAX)?;
         if id != 1 && self.state == RUN {
             return Err(WRONG_STATE);
         }

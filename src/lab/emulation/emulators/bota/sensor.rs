@@ -42,7 +42,8 @@ impl Sensor {
         if answer.is_empty() {
             return;
         }
-        (self.known, self.unanswered) = (true, 0);
+        self.known = true;
+        self.unanswered = 0;
         if turn.fault != EmulatedFault::Silence {
             garble(&mut answer, self.understands(turn));
             turn.send_unspoilt(Peer::Everyone, &answer);
@@ -71,7 +72,8 @@ impl Emulator for Sensor {
     }
 
     fn meet(&mut self, _: Peer, turn: &mut Turn<'_>) {
-        (self.known, self.unanswered) = (false, 0);
+        self.known = false;
+        self.unanswered = 0;
         self.wire.opened(turn.now_s);
     }
 

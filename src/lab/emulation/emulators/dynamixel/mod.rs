@@ -182,7 +182,9 @@ impl Bus {
                 if packet.instruction == STATUS {
                     continue;
                 }
-                let (id, instruction, wire_bytes) = (packet.id, packet.instruction, packet.wire_bytes);
+                let id = packet.id;
+                let instruction = packet.instruction;
+                let wire_bytes = packet.wire_bytes;
                 let body = packet.body.to_vec();
                 self.advance(now_s);
                 // The answer begins when the question is over, and after what is still on the line.

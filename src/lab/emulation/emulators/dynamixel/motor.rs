@@ -80,8 +80,11 @@ pub(super) struct Motor {
 impl Motor {
     /// The torque comes on or goes off: the profile begins where the shaft is.
     pub(super) const fn restart(&mut self) {
-        (self.wanted_rad, self.wanted_rad_s, self.wanted_rad_s2) = (self.angle_rad, 0.0, 0.0);
-        (self.integral, self.error_before) = (0.0, 0.0);
+        self.wanted_rad = self.angle_rad;
+        self.wanted_rad_s = 0.0;
+        self.wanted_rad_s2 = 0.0;
+        self.integral = 0.0;
+        self.error_before = 0.0;
     }
 
     /// One step of control and motion.
@@ -90,7 +93,8 @@ impl Motor {
         let Plant { resistance_ohm, torque_nm_per_a, back_emf_v_s_per_rad, inertia_kg_m2, friction_nm_s_per_rad } =
             *plant;
         let Some(volts) = volts else {
-            (self.pwm, self.current_a) = (0.0, 0.0);
+            self.pwm = 0.0;
+            self.current_a = 0.0;
             self.turn(drive.load_nm, friction_nm_s_per_rad, inertia_kg_m2);
             return;
         };
@@ -165,7 +169,9 @@ impl Motor {
         let fastest = drive.profile_velocity * VELOCITY_UNIT_RAD_S;
         let acceleration = drive.profile_acceleration * ACCELERATION_UNIT_RAD_S2;
         if fastest <= 0.0 {
-            (self.wanted_rad, self.wanted_rad_s, self.wanted_rad_s2) = (goal_rad, 0.0, 0.0);
+            self.wanted_rad = goal_rad;
+            self.wanted_rad_s = 0.0;
+            self.wanted_rad_s2 = 0.0;
             return;
         }
         let rest = goal_rad - self.wanted_rad;
@@ -178,7 +184,8 @@ impl Motor {
             let target = speed.copysign(rest);
             self.wanted_rad_s += (target - before).clamp(-most, most);
             if rest.abs() < most * STEP_S && self.wanted_rad_s.abs() <= 2.0 * most {
-                (self.wanted_rad, self.wanted_rad_s) = (goal_rad, 0.0);
+                self.wanted_rad = goal_rad;
+                self.wanted_rad_s = 0.0;
             }
         } else {
             self.wanted_rad_s = speed.copysign(rest);

@@ -177,7 +177,9 @@ fn of_model(mut rule: Rule, model: &Model) -> Rule {
         (table::VOLTAGE, U16, 50),
     ];
     if let Some((_, (low, high), factory)) = small.iter().find(|(known, _, _)| *known == register) {
-        (rule.low, rule.high, rule.factory) = (*low, *high, *factory);
+        rule.low = *low;
+        rule.high = *high;
+        rule.factory = *factory;
     }
     rule
 }

@@ -249,7 +249,8 @@ impl Servo {
     }
 
     pub(super) fn factory_reset(&mut self, keep: Keep, now_s: f64) {
-        let (id, baud) = (self.get(table::ID), self.get(table::BAUD));
+        let id = self.get(table::ID);
+        let baud = self.get(table::BAUD);
         self.set_factory(|_| true);
         if keep != Keep::Nothing {
             self.set(table::ID, id);

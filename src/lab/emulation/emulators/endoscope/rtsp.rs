@@ -77,7 +77,8 @@ impl Session {
 
     fn reply(&mut self, head: &str, announces: &str) -> Reply {
         let mut words = head.split_whitespace();
-        let (method, url) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+        let method = words.next().unwrap_or_default();
+        let url = words.next().unwrap_or_default();
         let number: String =
             header(head, "cseq").unwrap_or("0").chars().filter(char::is_ascii_digit).take(10).collect();
         let session = "Session: 4e494d41;timeout=60\r\n";
@@ -132,7 +133,8 @@ impl Session {
                 self.packet(&mut out, stamp, is_last, &[nal]);
                 continue;
             }
-            let (head, body) = (nal[0], &nal[1..]);
+            let head = nal[0];
+            let body = &nal[1..];
             let pieces = body.len().div_ceil(PAYLOAD_MOST - 2);
             for (number, piece) in body.chunks(PAYLOAD_MOST - 2).enumerate() {
                 let begins = if number == 0 { 0x80 } else { 0 };
@@ -278,7 +280,10 @@ mod tests {
         let mut session = Session { channel: 2, ..Session::default() };
         let since = Duration::new(1_700_000_000, 250_000_000);
         let bytes = session.packets(&unit, since);
-        let (mut at, mut found, mut marks, mut last): (_, Vec<Vec<u8>>, _, _) = (0, Vec::new(), 0, None);
+        let mut at = 0;
+        let mut found: Vec<Vec<u8>> = Vec::new();
+        let mut marks = 0;
+        let mut last = None;
         while at < bytes.len() {
             assert_eq!(bytes[at], b'$');
             let length = usize::from(u16::from_be_bytes([bytes[at + 2], bytes[at + 3]]));

@@ -82,10 +82,12 @@ fn a_tip_is_seen_where_the_camera_says_through_either_distortion() {
         settings.k1 = k1;
         let camera = camera_of(&settings);
         let mut painter = Painter::new(camera, &scene);
-        let (mut squares, mut count) = (0.0, 0.0);
+        let mut squares = 0.0;
+        let mut count = 0.0;
         for number in 0..40 {
             let turn = 0.7 * f64::from(number);
-            let (far_m, up_m) = (0.0012 * f64::from(number), 0.004 + 0.008 * turn.sin());
+            let far_m = 0.0012 * f64::from(number);
+            let up_m = 0.004 + 0.008 * turn.sin();
             let tip_m = Vector3::new(far_m * turn.cos(), 0.7 * far_m * turn.sin(), up_m);
             let expected_px = camera.project(&tip_m).unwrap();
             let inside =
@@ -278,8 +280,10 @@ fn figures_of_a_picture_on_its_way() {
     let feed = Feed::start(serving.endpoint.parse().unwrap(), Some([1280, 720]), || {}).unwrap();
     let now_us = || SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_micros() as u64;
     until(&feed, "live", |look| look.standing == Standing::Live && look.rate_hz > 25.0);
-    let (begin, mut last) = (Instant::now(), 0);
-    let (mut work_ms, mut whole_ms) = (Vec::new(), Vec::new());
+    let begin = Instant::now();
+    let mut last = 0;
+    let mut work_ms = Vec::new();
+    let mut whole_ms = Vec::new();
     while begin.elapsed() < Duration::from_secs(20) {
         let look = feed.look(Instant::now());
         if let Some((number, picture)) = look.picture.filter(|(number, _)| *number != last) {

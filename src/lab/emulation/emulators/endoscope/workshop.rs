@@ -53,7 +53,8 @@ pub(super) struct Workshop {
 
 impl Workshop {
     pub(super) fn start(emulated: Emulated, subject: Subject, pipe: Option<Pipe>) -> io::Result<Self> {
-        let ((orders, ordered), (hand_over, made)) = (sync_channel::<Order>(1), sync_channel(1));
+        let (orders, ordered) = sync_channel::<Order>(1);
+        let (hand_over, made) = sync_channel(1);
         let work = move || {
             if emulated.gives_way {
                 give_way();

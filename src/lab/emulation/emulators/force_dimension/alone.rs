@@ -12,7 +12,8 @@ use super::{Emulated, Held, Machine, stand_in};
 use crate::emulators::{Emulator, Settings, alone::unusable};
 
 pub(in crate::emulators) fn handle(settings: &Settings) -> Result<Box<dyn Emulator>> {
-    let (usual, hand) = (Emulated::default(), Held::default());
+    let usual = Emulated::default();
+    let hand = Held::default();
     let emulated = Emulated {
         serial: settings.get_or("serial", usual.serial)?,
         kind: Kind::Omega7 { left_handed: settings.get_or("left_handed", false)? },

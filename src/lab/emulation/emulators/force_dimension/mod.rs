@@ -85,7 +85,8 @@ const GIVE_S: f64 = 0.010;
 impl Held {
     /// As a body.
     pub fn body(self) -> impl Body {
-        let (mut last_s, mut given_m) = (0.0, Vector3::zeros());
+        let mut last_s = 0.0;
+        let mut given_m = Vector3::zeros();
         move |now_s: f64, applied: &Applied| {
             let share = ((now_s - last_s) / GIVE_S).clamp(0.0, 1.0);
             last_s = now_s;

@@ -149,7 +149,8 @@ const LATE: Duration = Duration::from_micros(200);
 /// Readings that come in this many rounds of a loop, one in 1.2 ms, which is a fifth slower than the handle's own cycle.
 fn readings_in(driver: &mut Driver, rounds: u32, mut each: impl FnMut(&mut Driver)) -> u64 {
     driver.poll(now_s());
-    let (before, begin) = (driver.health().readings, Instant::now());
+    let before = driver.health().readings;
+    let begin = Instant::now();
     let mut late = 0;
     for round in 1..=rounds {
         let due = begin + Duration::from_micros(1200) * round;

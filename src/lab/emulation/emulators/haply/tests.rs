@@ -41,7 +41,8 @@ fn run(
 #[test]
 fn the_hand_feels_the_force_and_gives_way_and_the_lever_reaches_it_without_the_loop() {
     judged(|| {
-        let ((serving, felt), begin) = (serving(), Instant::now());
+        let (serving, felt) = serving();
+        let begin = Instant::now();
         let mut driver = Driver::open(&Settings::at(serving.endpoint.as_str())).unwrap();
         assert_eq!(driver.identity().serial, "049D");
         let lever = Lever::default();
@@ -93,7 +94,8 @@ fn every_fault_is_told_or_harmless() {
             (EmulatedFault::DeviceFault, None),
             (EmulatedFault::NotANumber, Some(Loss::Implausible)),
         ] {
-            let ((serving, _), begin) = (serving(), Instant::now());
+            let (serving, _) = serving();
+            let begin = Instant::now();
             let mut driver = Driver::open(&Settings::at(serving.endpoint.as_str())).unwrap();
             run(&mut driver, begin, Vector3::zeros(), Duration::from_millis(60), |_| false);
             serving.faults.set(fault);
@@ -118,7 +120,8 @@ fn every_fault_is_told_or_harmless() {
 #[test]
 fn noise_between_the_answers_is_skipped_or_told_and_never_a_position() {
     judged(|| {
-        let ((serving, _), begin) = (serving(), Instant::now());
+        let (serving, _) = serving();
+        let begin = Instant::now();
         let mut driver = Driver::open(&Settings::at(serving.endpoint.as_str())).unwrap();
         serving.faults.set(EmulatedFault::Garbage);
         let since = Instant::now();

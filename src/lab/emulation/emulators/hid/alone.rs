@@ -17,11 +17,13 @@ fn cap_body(settings: &Settings) -> Result<CapBody> {
             if !(-1.0..=1.0).contains(&value) {
                 return Err(unusable(key, value, "give a number from -1 to 1"));
             }
-            (*axis, held) = (value, true);
+            *axis = value;
+            held = true;
         }
     }
     if let Some(bits) = settings.get("buttons")? {
-        (*buttons, held) = (bits, true);
+        *buttons = bits;
+        held = true;
     }
     Ok(if held { CapBody::moved_by(move |_| reading) } else { CapBody::alone() })
 }

@@ -88,7 +88,8 @@ impl Base {
         if self.player.advance(&mut self.robot, &mut self.topics) {
             self.driving = None;
         }
-        let (state, mode) = (self.robot.state(), self.robot.mode());
+        let state = self.robot.state();
+        let mode = self.robot.mode();
         if self.told.0 != state {
             self.topics.tell(ARM_STATE_TOPIC, &Number { value: state });
         }
@@ -143,7 +144,8 @@ impl Base {
         now_s: f64,
         fault: EmulatedFault,
     ) -> Result<(u16, Vec<u8>), Refused> {
-        let (header, rpc) = (&asked.header, asked.header.rpc());
+        let header = &asked.header;
+        let rpc = asked.header.rpc();
         if rpc == Rpc::CREATE_SESSION {
             return self.log_in(link, &read(asked.payload)?, now_s).map(|number| (number, Vec::new()));
         }

@@ -120,7 +120,8 @@ type Log = Arc<Mutex<Vec<Asked>>>;
 
 fn logged() -> (Log, impl Body) {
     let log = Log::default();
-    let (kept, mut arm) = (Arc::clone(&log), StandIn::at(HOME_RAD));
+    let kept = Arc::clone(&log);
+    let mut arm = StandIn::at(HOME_RAD);
     let body = move |elapsed_s: f64, asked: &Asked| {
         let mut log = kept.lock().unwrap();
         if log.last() != Some(asked) {
@@ -166,7 +167,9 @@ fn low_level_moves_to_targets_over_the_turn_without_jumps() {
         assert_eq!(ticking.driver.aim(&[f64::NAN; ARM_JOINTS]), Err(Refusal::NotFinite));
         // The first joint crosses from 0 to 360 degrees on the wire, the third from below half a turn to above it.
         let mut target = HOME_RAD;
-        (target[0], target[2], target[6]) = (-0.15, 3.3, 1.2);
+        target[0] = -0.15;
+        target[2] = 3.3;
+        target[6] = 1.2;
         let near = |reading: &ArmReading| reading.joint_rad.iter().zip(&target).all(|(is, to)| (is - to).abs() < 1e-3);
         let arrived = (0..2000).any(|_| {
             ticking.lead(&target);

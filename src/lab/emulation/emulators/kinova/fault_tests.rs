@@ -105,13 +105,17 @@ fn figures_of_the_cycle() {
     let (_serving, settings) = started(patient());
     let mut driver = open(&settings).unwrap();
     let begin = Instant::now();
-    let (mut longest, mut total, mut polls) = (Duration::ZERO, Duration::ZERO, 0_u32);
+    let mut longest = Duration::ZERO;
+    let mut total = Duration::ZERO;
+    let mut polls = 0_u32;
     let mut next = Duration::ZERO;
     while begin.elapsed() < Duration::from_secs(10) {
         let from = Instant::now();
         driver.poll(begin.elapsed().as_secs_f64());
         let took = from.elapsed();
-        (longest, total, polls) = (longest.max(took), total + took, polls + 1);
+        longest = longest.max(took);
+        total += took;
+        polls += 1;
         if polls == 100 {
             driver.enter_low_level().unwrap();
         }

@@ -61,7 +61,8 @@ impl Motion {
                 *at_s += elapsed_s;
                 while let Some(leg) = legs.front().filter(|leg| *at_s >= leg.duration_s).copied() {
                     legs.pop_front();
-                    (*from_rad, *at_s) = (leg.to_rad, *at_s - leg.duration_s);
+                    *from_rad = leg.to_rad;
+                    *at_s -= leg.duration_s;
                 }
                 let leg = legs.front()?;
                 let share = 0.5 - 0.5 * (PI * *at_s / leg.duration_s).cos();
@@ -164,7 +165,10 @@ mod tests {
         let first = leg(&home(), [0.0; ARM_JOINTS], 0.0).unwrap();
         let second = leg(first.end_rad(), home(), 8.0).unwrap();
         let mut motion = Motion::path(home(), vec![first, second]);
-        let (mut last, mut before, mut steps, mut nearest) = (home(), [0.0; ARM_JOINTS], 0, f64::INFINITY);
+        let mut last = home();
+        let mut before = [0.0; ARM_JOINTS];
+        let mut steps = 0;
+        let mut nearest = f64::INFINITY;
         while let Some(Asked::Joints(angles)) = motion.step(1e-3) {
             let speeds: Joints = std::array::from_fn(|j| (angles[j] - last[j]) / 1e-3);
             for j in 0..ARM_JOINTS {
@@ -172,7 +176,9 @@ mod tests {
                 assert!((speeds[j] - before[j]).abs() <= ACCELERATION_RAD_S2[j] * 1e-3 * 1.05 + 1e-6);
             }
             nearest = nearest.min(angles.iter().fold(0.0, |most, angle| angle.abs().max(most)));
-            (last, before, steps) = (angles, speeds, steps + 1);
+            last = angles;
+            before = speeds;
+            steps += 1;
         }
         assert!(nearest < 1e-5, "{nearest}");
         assert!((last[3] - home()[3]).abs() < 1e-5);

@@ -105,7 +105,9 @@ impl Robot {
         if let Some(asked) = motion.step(elapsed_s) {
             self.asked = asked;
         } else {
-            (self.motion, self.asked, self.ended) = (None, Asked::Rest, Some(Ok(())));
+            self.motion = None;
+            self.asked = Asked::Rest;
+            self.ended = Some(Ok(()));
         }
     }
 
@@ -128,7 +130,8 @@ impl Robot {
 
     /// Bank A of the base and of a joint; the emulated fault is a torque that joint 3 tells while it is in force.
     const fn banks(&self, j: usize) -> (u32, u32) {
-        let (base, joint) = (self.base_fault, self.actuator_faults[j]);
+        let base = self.base_fault;
+        let joint = self.actuator_faults[j];
         match (self.emulated_fault, j) {
             (true, 2) => (base | JOINT_FAULT, joint | MAXIMUM_TORQUE),
             (true, _) => (base | JOINT_FAULT, joint),
@@ -348,7 +351,8 @@ impl Robot {
         let twist = jacobian(&self.state.joint_rad) * nalgebra::SVector::from(self.state.joint_rad_s);
         let linear = twist.fixed_rows::<3>(0).map(|x| x as f32);
         let angular = twist.fixed_rows::<3>(3).map(|x| x.to_degrees() as f32);
-        let (force, torque) = (self.state.tool_force_n.cast::<f32>(), self.state.tool_torque_nm.cast::<f32>());
+        let force = self.state.tool_force_n.cast::<f32>();
+        let torque = self.state.tool_torque_nm.cast::<f32>();
         BaseFeedback {
             state: self.state(),
             arm_voltage: 24.0,

@@ -79,7 +79,8 @@ impl Client {
     fn ask(&mut self, device: u8, rpc: Rpc, question: &impl Message) -> Result<Vec<u8>, Refused> {
         self.message += 1;
         let Rpc { service, function } = rpc;
-        let (session, message) = (self.session, self.message);
+        let session = self.session;
+        let message = self.message;
         let header = Header { kind: REQUEST, device, session, message, service, function, ..Header::default() };
         let mut out = Vec::new();
         encode_packet(&header, question, &mut out);

@@ -125,7 +125,8 @@ fn answer(base: &mut Base, link: Peer, asked: &Frame<'_>, now_s: f64, fault: Emu
             (header, payload)
         }
         Err((error, code)) => {
-            (header.error, header.sub_error) = (error, code);
+            header.error = error;
+            header.sub_error = code;
             let text = sub::words(code).to_owned();
             let told = ErrorInfo { code: u32::from(error), sub_code: u32::from(code), text };
             (header, told.encode_to_vec())

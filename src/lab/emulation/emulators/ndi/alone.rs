@@ -14,7 +14,8 @@ fn profile(settings: &Settings) -> Result<Profile> {
 }
 
 fn body(settings: &Settings) -> Result<impl Body + use<>> {
-    let (missing, outside) = (settings.get::<usize>("missing")?, settings.get::<usize>("outside")?);
+    let missing = settings.get::<usize>("missing")?;
+    let outside = settings.get::<usize>("outside")?;
     Ok(move |unit_s: f64, number: usize| {
         if missing == Some(number) || outside == Some(number) {
             Tracked::Missing { out_of_volume: outside == Some(number) }

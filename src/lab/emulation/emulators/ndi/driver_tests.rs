@@ -74,7 +74,8 @@ fn attempt(settings: &Settings, form: Form) -> (Health, Vec<Stamped<TrackerReadi
     let mut driver = Driver::open(settings).unwrap();
     assert_eq!(driver.form(), form);
     assert_eq!(driver.identity().product, "Polaris Vega");
-    let (begin, mut readings) = (Instant::now(), Vec::new());
+    let begin = Instant::now();
+    let mut readings = Vec::new();
     until(
         begin,
         1.3,

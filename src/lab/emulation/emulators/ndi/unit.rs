@@ -138,7 +138,8 @@ impl Unit {
         match *command {
             Command::Init => {
                 self.ports.clear();
-                (self.initialised, self.tracking) = (true, false);
+                self.initialised = true;
+                self.tracking = false;
                 Ok(Reply::Okay)
             }
             Command::Reset => Ok(Reply::Reset),

@@ -184,7 +184,8 @@ mod tests {
                 std::thread::sleep(Duration::from_micros(100));
             }
             assert_eq!(rest, 0, "a busy machine had the line full for a minute");
-            let (begin, mut heard) = (Instant::now(), Vec::new());
+            let begin = Instant::now();
+            let mut heard = Vec::new();
             while !String::from_utf8_lossy(&heard).contains("Polaris Vega") {
                 assert!(begin.elapsed() < Duration::from_secs(30), "{}", String::from_utf8_lossy(&heard));
                 // What is asked while the unit speaks is lost.

@@ -125,8 +125,11 @@ impl Errors {
 }
 
 pub(super) fn in_window(recording: &Recording) -> Result<InWindow, ValidationError> {
-    let (mut nonlinear, mut linear, mut displacement) = (Errors::default(), Errors::default(), Errors::default());
-    let (mut window, mut next) = (Share::default(), Share::default());
+    let mut nonlinear = Errors::default();
+    let mut linear = Errors::default();
+    let mut displacement = Errors::default();
+    let mut window = Share::default();
+    let mut next = Share::default();
     identify(recording, PRINTED, 0.0, |_, identifier| {
         let report = identifier.report();
         if let degree @ 1.. = usize::from(report.paper_degree) {
@@ -144,7 +147,8 @@ pub(super) fn in_window(recording: &Recording) -> Result<InWindow, ValidationErr
             displacement.add(&report.reconstruction_n[degree - 1]);
         }
     })?;
-    let (nonlinear, linear) = (nonlinear.figures(recording), linear.figures(recording));
+    let nonlinear = nonlinear.figures(recording);
+    let linear = linear.figures(recording);
     Ok(InWindow {
         nonlinear,
         linear,
@@ -161,7 +165,9 @@ pub(super) fn horizon(
     recipe: Recipe,
     delay_s: f64,
 ) -> Result<AtHorizon, ValidationError> {
-    let (mut literal, mut dfr, mut stiffness) = (Errors::default(), Errors::default(), Vec::new());
+    let mut literal = Errors::default();
+    let mut dfr = Errors::default();
+    let mut stiffness = Vec::new();
     identify(recording, recipe, delay_s, |measured_n, identifier| {
         let model = identifier.parcel().literal;
         if model.degree > 0 {
@@ -176,7 +182,8 @@ pub(super) fn horizon(
     })?;
     stiffness.sort_unstable_by(f64::total_cmp);
     let stiffness_p99_n_m = stiffness.get(stiffness.len() * 99 / 100).copied().unwrap_or(0.0);
-    let (literal, dfr) = (literal.figures(recording), dfr.figures(recording));
+    let literal = literal.figures(recording);
+    let dfr = dfr.figures(recording);
     Ok(AtHorizon { name, recipe, delay_s, literal, dfr, stiffness_p99_n_m })
 }
 

@@ -82,10 +82,15 @@ pub fn all() -> Result<Vec<Kick>, ReleaseError> {
 
 pub(super) fn let_go(way: Way, situation: Situation, hand: Hand, delay_s: f64) -> Result<Kick, ReleaseError> {
     let tissue = pressed_tissue()?;
-    let ((name, mode, literal), Hand { tremor_m, noise_n, grip_n_m }) = (way, hand);
-    let (gates, handle, gain, seed) = (ChainSettings::default().without_governor(), Handle::OMEGA, 1.0, 1);
+    let (name, mode, literal) = way;
+    let Hand { tremor_m, noise_n, grip_n_m } = hand;
+    let gates = ChainSettings::default().without_governor();
+    let handle = Handle::OMEGA;
+    let gain = 1.0;
+    let seed = 1;
     let clock = VirtualClock::PERFECT;
-    let (own_motion, grip) = (OwnMotion::Follower, Grip::of_stiffness(grip_n_m));
+    let own_motion = OwnMotion::Follower;
+    let grip = Grip::of_stiffness(grip_n_m);
     let trial =
         Trial { mode, own_motion, literal, delay_s, gates, gain, tissue, tremor_m, noise_n, handle, grip, seed, clock };
     Ok(Kick { name, tremor_m, noise_n, grip_n_m, row: release(&trial, situation, CONTACT_N)? })

@@ -59,7 +59,8 @@ impl Conditions {
     /// [`ValidationError`] if the scene or a setting is invalid.
     pub fn record(&self, seed: u64, seconds: f64) -> Result<Recording, ValidationError> {
         let mut scene = Scene { seed, ..Scene::load(SCENE)? };
-        (scene.hand.hold_s, scene.hand.tremor_m) = (self.hold_s, self.tremor_m);
+        scene.hand.hold_s = self.hold_s;
+        scene.hand.tremor_m = self.tremor_m;
         if let Some(sensor) = &mut scene.sensor {
             sensor.noise_n = self.noise_n;
         }

@@ -104,7 +104,8 @@ fn look_ui(ui: &mut Ui, live: &Live, chooser: &mut Chooser) {
         if button.on_hover_text(text::devices::LOOK_HOVER.get()).clicked()
             && let Some(devices) = live.rig.devices.clone()
         {
-            let (part, place) = (*part, place.clone());
+            let part = *part;
+            let place = place.clone();
             sought.forget();
             sought.begin(ui.ctx(), move || seek(part, &devices, &Plugged::list(), &place));
         }

@@ -74,7 +74,8 @@ impl DevicesState {
 
     /// Other devices may be there now: what was found out about the ones before is forgotten.
     pub(in crate::console) fn begin_anew(&mut self) {
-        (self.test, self.chooser) = (None, None);
+        self.test = None;
+        self.chooser = None;
         self.results.clear();
     }
 

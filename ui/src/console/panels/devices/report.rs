@@ -109,7 +109,8 @@ fn short(value: f64) -> String {
 /// Greatest distance from the middle of the range as a share of what is possible, percent.
 fn reached_percent(one: &Measured) -> Option<f64> {
     let [low, high] = one.range?;
-    let (middle, half) = (f64::midpoint(low, high), (high - low) / 2.0);
+    let middle = f64::midpoint(low, high);
+    let half = (high - low) / 2.0;
     Some(100.0 * (one.high - middle).max(middle - one.low) / half)
 }
 

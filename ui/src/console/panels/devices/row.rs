@@ -24,7 +24,8 @@ pub(super) fn row_ui(
     place: usize,
     refused: Option<&str>,
 ) -> Option<Change> {
-    let (entry, health) = (live.roster.get(place)?, live.healths.devices.get(place)?);
+    let entry = live.roster.get(place)?;
+    let health = live.healths.devices.get(place)?;
     let (what, colour, words) = standing_words(health);
     ui.horizontal(|ui| {
         sign_ui(ui, what, 5.0, colour);

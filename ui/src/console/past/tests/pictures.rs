@@ -38,7 +38,8 @@ fn with_pictures(from: &Path, to: &Path, damaged: u64) -> u64 {
         if number == damaged {
             data.truncate(data.len() / 2);
         }
-        let (timestamp, frame_id) = (Some(Timestamp::of_ns(time_ns)), "endoscope".to_owned());
+        let timestamp = Some(Timestamp::of_ns(time_ns));
+        let frame_id = "endoscope".to_owned();
         CompressedImage { timestamp, data, format: "jpeg".to_owned(), frame_id }.encode_to_vec()
     })
 }
@@ -46,7 +47,8 @@ fn with_pictures(from: &Path, to: &Path, damaged: u64) -> u64 {
 /// The same as a stream, whose pictures come from `coded`.
 fn with_stream(from: &Path, to: &Path, mut coded: impl FnMut(u64, u64) -> Vec<u8>) -> u64 {
     with_messages(from, to, VIDEO_TOPIC, encoding::<CompressedVideo>(), |number, time_ns| {
-        let (timestamp, frame_id) = (Some(Timestamp::of_ns(time_ns)), "endoscope".to_owned());
+        let timestamp = Some(Timestamp::of_ns(time_ns));
+        let frame_id = "endoscope".to_owned();
         let data = coded(number, time_ns);
         CompressedVideo { timestamp, frame_id, data, format: "h264".to_owned() }.encode_to_vec()
     })
@@ -92,7 +94,8 @@ fn with_messages(
 fn drawn(past: &mut Past) -> String {
     let context = Context::default();
     theme::apply(&context);
-    let (eyes, live) = (&mut past.panels.eyes, past.live.as_ref().unwrap());
+    let eyes = &mut past.panels.eyes;
+    let live = past.live.as_ref().unwrap();
     let mut output = context.run_ui(egui::RawInput::default(), |ui| eyes.ui(ui, live));
     output.textures_delta.clear();
     let mut all = String::new();

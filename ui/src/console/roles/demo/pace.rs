@@ -31,7 +31,8 @@ impl Pace {
 
     /// Begins a chapter.
     pub(super) const fn begin(&mut self) {
-        (self.shown_s, self.seen_s) = (0.0, 0.0);
+        self.shown_s = 0.0;
+        self.seen_s = 0.0;
     }
 
     /// Begins the chapter after one of this length (s), which ended between two frames: what was shown beyond its end counts for the next
@@ -65,7 +66,9 @@ mod tests {
 
     /// Lengths of six chapters of 14 s, s, drawn at these times, s.
     fn lengths_s(drawn_s: impl Iterator<Item = f64>) -> Vec<f64> {
-        let (mut pace, mut began_s, mut lengths_s) = (Pace::default(), 0.0, Vec::new());
+        let mut pace = Pace::default();
+        let mut began_s = 0.0;
+        let mut lengths_s = Vec::new();
         for now_s in drawn_s {
             pace.count_to(now_s);
             if pace.is_over(14.0) {
@@ -89,7 +92,8 @@ mod tests {
     fn a_chapter_takes_its_time_at_every_frame_rate() {
         for rate_hz in [0.4, 2.0, 10.0, 32.0, 60.0, 144.0] {
             let lengths_s = lengths_s((0..100_000).map(|frame| f64::from(frame) / rate_hz));
-            let (frame_s, all_s) = (1.0 / rate_hz + 1e-6, lengths_s.iter().sum::<f64>());
+            let frame_s = 1.0 / rate_hz + 1e-6;
+            let all_s = lengths_s.iter().sum::<f64>();
             assert_eq!(lengths_s.len(), 6);
             assert!(lengths_s.iter().all(|length_s| (length_s - 14.0).abs() <= frame_s), "{rate_hz} Hz: {lengths_s:?}");
             // Frames that are farther apart than a pause start each chapter anew.

@@ -25,7 +25,8 @@ struct Show {
 
 impl Show {
     fn of(rig: &str) -> Self {
-        let (rig, scene) = (RigConfig::load(rig).unwrap(), Scene::load("peg_transfer").unwrap());
+        let rig = RigConfig::load(rig).unwrap();
+        let scene = Scene::load("peg_transfer").unwrap();
         let simulated = RigConfig::load("simulated").unwrap();
         let plan = Plan { rig: simulated, scene: scene.clone(), calibrations: Default::default(), engage: false };
         let mut first = None;
@@ -48,7 +49,9 @@ impl Show {
 
     /// The loop enters this state.
     fn enters(&mut self, to: LoopState, why: Why) {
-        let (side, t_s, from) = (Side::Right, self.tick.t_s, self.tick.state);
+        let side = Side::Right;
+        let t_s = self.tick.t_s;
+        let from = self.tick.state;
         let raised = match to {
             LoopState::Faulted(fault) => Some(Event::FaultRaised { t_s, side, fault }),
             _ => None,
@@ -73,7 +76,8 @@ impl Show {
 
     /// A loop that obeys: what it was asked for within this time, s.
     fn obeyed(&mut self, seconds: f64) -> Vec<(f64, Command)> {
-        let (began_s, mut asked) = (self.tick.t_s, Vec::new());
+        let began_s = self.tick.t_s;
+        let mut asked = Vec::new();
         while self.tick.t_s < began_s + seconds {
             for command in self.frame() {
                 asked.push((self.tick.t_s - began_s, command));
@@ -124,7 +128,8 @@ fn resumes(commands: &[Command]) -> Vec<Command> {
 /// When each chapter of a whole round began, s.
 fn began_s(rate_hz: f64) -> Vec<f64> {
     let mut show = Show { rate_hz, ..Show::of("simulated") };
-    let (mut began_s, mut step) = (Vec::new(), None);
+    let mut began_s = Vec::new();
+    let mut step = None;
     while began_s.len() <= SCRIPT.len() {
         show.frame();
         if step.replace(show.demo.step) != Some(show.demo.step) {
@@ -163,7 +168,8 @@ fn a_fault_in_each_chapter_is_explained_and_the_chapter_restarts() {
         assert!(show.caption().contains("the chapter restarts in 8 s"), "{}", show.caption());
         let asked = show.obeyed(10.0);
         let at_s = |wanted: Command| asked.iter().find(|(_, command)| *command == wanted).map(|(at_s, _)| *at_s);
-        let (released_s, engaged_s) = (at_s(Command::ReleaseStop).unwrap(), at_s(Command::Engage).unwrap());
+        let released_s = at_s(Command::ReleaseStop).unwrap();
+        let engaged_s = at_s(Command::Engage).unwrap();
         assert!((7.9..8.1).contains(&released_s) && (released_s..8.3).contains(&engaged_s), "{asked:?}");
         assert!(
             at_s(Command::SetMode(step.mode)).unwrap() > engaged_s && at_s(Command::SetDelay(step.delay_s)).is_some()

@@ -139,7 +139,9 @@ impl FrameWizard {
     /// Begins anew, for this subject.
     fn begin(&mut self, subject: Option<Subject>) {
         let job = subject.as_ref().and_then(|subject| self.kind.job(subject, self.other_way));
-        let (other_way, clock_s, kind) = (self.other_way, self.clock_s, self.kind);
+        let other_way = self.other_way;
+        let clock_s = self.clock_s;
+        let kind = self.kind;
         *self = Self { other_way, subject, job, clock_s, ..Self::new(kind) };
     }
 
@@ -160,7 +162,8 @@ impl FrameWizard {
         self.phase = job.step(&self.kind.seen(&self.seen, subject), t_s);
         match self.phase {
             Phase::Recorded { .. } => {
-                (self.report, self.frame.saved) = (None, None);
+                self.report = None;
+                self.frame.saved = None;
                 self.passed = (0, 0.0);
             }
             Phase::TakenHere => {
@@ -339,7 +342,8 @@ impl Wizard for FrameWizard {
         self.frame.step = step;
         self.frame.changed = true;
         if step == RECORD {
-            (self.paused, self.phase) = (false, Phase::Missing(None));
+            self.paused = false;
+            self.phase = Phase::Missing(None);
         }
         if step == RESULT && self.report.is_none() {
             self.fit();

@@ -147,7 +147,8 @@ fn marker(subject: &Subject, s1_from_m: &Isometry3<f64>) -> Vec<Number> {
 fn hand_eye(found: &HandEyeFound, subject: &Subject) -> (Vec<Number>, Effect) {
     let s1_from_m = subject.arm.flange_from_s1.inverse() * found.flange_from_m.pose();
     let base_from_c = found.base_from_c.pose();
-    let (set, angles_deg) = (&subject.set, to_roll_pitch_yaw_deg(&base_from_c.rotation));
+    let set = &subject.set;
+    let angles_deg = to_roll_pitch_yaw_deg(&base_from_c.rotation);
     let place_m = base_from_c.translation.vector;
     let mut numbers = marker(subject, &s1_from_m);
     numbers.push(Number::three(subject.key("base_from_c_m"), Unit::Metres, set.base_from_c_m, place_m));
@@ -166,7 +167,8 @@ fn trocar(found: &TrocarFound, subject: &Subject) -> Option<(Vec<Number>, Effect
         Carrier::Marker => subject.base_from_c()? * found_m,
         Carrier::Flange | Carrier::Handle => found_m,
     };
-    let (before_m, after_m) = (subject.set.rcm.trocar_m, (subject.arm.world_from_base * in_base_m).coords);
+    let before_m = subject.set.rcm.trocar_m;
+    let after_m = (subject.arm.world_from_base * in_base_m).coords;
     let number = Number::three(subject.key("rcm.trocar_m"), Unit::Metres, Some(before_m), after_m);
     Some((vec![number], Effect::of_points(before_m, after_m)))
 }
@@ -176,7 +178,8 @@ fn table(found: &TableFound, subject: &Subject) -> (Vec<Number>, Effect) {
     let before = subject.arm.world_from_base;
     let after = found.from_table.pose().inverse();
     let moved = after * before.inverse();
-    let (mount, rcm) = (&subject.set.mount, &subject.set.rcm);
+    let mount = &subject.set.mount;
+    let rcm = &subject.set.rcm;
     let angles_deg = to_roll_pitch_yaw_deg(&after.rotation);
     let trocar_m = (moved * Point3::from(rcm.trocar_m)).coords;
     let numbers = vec![
@@ -192,7 +195,8 @@ fn table(found: &TableFound, subject: &Subject) -> (Vec<Number>, Effect) {
 fn view(found: &ViewFound, subject: &Subject, seen_view: Option<UnitQuaternion<f64>>) -> (Vec<Number>, Effect) {
     let teleoperation = &subject.teleoperation;
     if found.carrier == Carrier::Handle {
-        let (before, after) = (teleoperation.view_from_leader(), found.from_view().inverse());
+        let before = teleoperation.view_from_leader();
+        let after = found.from_view().inverse();
         let key = "teleoperation.view_from_leader_deg".to_owned();
         let angles_deg = to_roll_pitch_yaw_deg(&after);
         let number = Number::three(key, Unit::Degrees, teleoperation.view_from_leader_deg, angles_deg);
@@ -215,7 +219,8 @@ fn view(found: &ViewFound, subject: &Subject, seen_view: Option<UnitQuaternion<f
 
 /// A mount that agrees stays: a drawing tells an angle better than a weight does.
 fn mount(found: &SensorMountFound, subject: &Subject) -> (Vec<Number>, Effect) {
-    let (before, after) = (subject.arm.flange_from_s1, found.flange_from_s1());
+    let before = subject.arm.flange_from_s1;
+    let after = found.flange_from_s1();
     let effect = Effect::of_turns(before.rotation, after);
     if found.agrees() {
         return (Vec::new(), effect);

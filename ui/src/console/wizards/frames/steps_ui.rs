@@ -80,7 +80,8 @@ impl FrameWizard {
                 }
                 if ui.add_enabled(self.taken() > 0, Button::new(texts::REMOVE_LAST.get())).clicked() {
                     self.job.iter_mut().for_each(|job| job.undo());
-                    (self.report, self.frame.saved) = (None, None);
+                    self.report = None;
+                    self.frame.saved = None;
                 }
             });
         });

@@ -54,7 +54,8 @@ impl Subject {
             flange_from_s1: pose(arm.flange_from_s1()),
             shaft_m: arm.shaft_m(),
         };
-        let (teleoperation, endoscope) = (rig.teleoperation, devices.endoscope);
+        let teleoperation = rig.teleoperation;
+        let endoscope = devices.endoscope;
         Some(Self { side, set, teleoperation, endoscope, arm, serials })
     }
 

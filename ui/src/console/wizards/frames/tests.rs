@@ -74,7 +74,8 @@ impl Bench {
             other => panic!("{other:?}"),
         };
         let (rig, path, words) = self.in_force.save_frame(saving, &self.rig_name, Some(self.folder.path()))?;
-        (self.rig, self.rig_name) = (rig, path.display().to_string());
+        self.rig = rig;
+        self.rig_name = path.display().to_string();
         self.wizard.frame.tell_saved(Ok(words), None);
         self.refresh();
         Ok(())
@@ -153,7 +154,8 @@ fn a_tip_is_recorded_judged_written_into_the_rig_file_and_undone() {
 fn a_mount_is_recorded_while_the_arm_turns_about_the_vertical() {
     let mut bench = Bench::new(Kind::Mount);
     let subject = bench.subject();
-    let (mount, up) = (subject.arm.flange_from_s1.rotation, subject.up_in_base());
+    let mount = subject.arm.flange_from_s1.rotation;
+    let up = subject.up_in_base();
     let wrist = |down_s1: Vector3<f64>| nima_core::frames::Wrench { force_n: down_s1 * 4.0, ..Default::default() };
     let pose = |target: &PoseTarget, turned_rad: f64| {
         let vertical = UnitQuaternion::from_scaled_axis(up * turned_rad);

@@ -32,7 +32,8 @@ impl TipForceWizard {
     pub(super) fn check_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
         let mut wish = None;
         card(ui, text::tip_force::CHECK_TITLE.get(), text::tip_force::CHECK_HOVER.get(), |ui| {
-            let (work_s, free_s) = (CHECK_WORK as f64 * ROW_EVERY_S, (CHECK_ROWS - CHECK_WORK) as f64 * ROW_EVERY_S);
+            let work_s = CHECK_WORK as f64 * ROW_EVERY_S;
+            let free_s = (CHECK_ROWS - CHECK_WORK) as f64 * ROW_EVERY_S;
             ui.label(RichText::new(self.task(work_s, free_s)).font(theme::strong(18.0)));
             if let Some(take) = &self.proof {
                 ui.label(text::tip_force::state(&take.phase_words()));

@@ -191,7 +191,8 @@ pub(super) fn judge(
         let reason = || text::tip_force::trained_on_too_little(&goal.name().to_lowercase());
         check.judgement.reason = language::with(Language::English, reason);
     }
-    let (points, bins) = (points(&data, &evaluation), bins(&data, &evaluation));
+    let points = points(&data, &evaluation);
+    let bins = bins(&data, &evaluation);
     Ok(Checked { check, part: evaluation.overall, points, bins })
 }
 

@@ -26,7 +26,8 @@ const PAPER_ROWS: usize = 30_000;
 impl TipForceWizard {
     /// Returns the request to train although not all requirements are met.
     pub(super) fn record_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
-        let (running, rows) = (self.is_recording(), self.rows());
+        let running = self.is_recording();
+        let rows = self.rows();
         let mut wish = None;
         let meaning = text::tip_force::RECORD_HOVER.get();
         card(ui, text::tip_force::RECORD_TITLE.get(), meaning, |ui| {

@@ -65,7 +65,8 @@ impl Take {
     /// Pauses: the rig may be touched, so a rest period is required before continuing.
     pub(super) fn break_off(&mut self) {
         self.recorder.interrupt();
-        (self.running, self.asked) = (false, Prompt::Rest);
+        self.running = false;
+        self.asked = Prompt::Rest;
     }
 
     /// Present instruction to the person at the arm.

@@ -147,7 +147,8 @@ fn curves_ui(ui: &mut Ui, curves: &Curves) {
 
 /// Marks at 1, 2 and 5 in each decade; values are in decades.
 fn whole_decades(grid: &GridInput) -> Vec<GridMark> {
-    let (low, high) = (grid.bounds.0.max(-12.0), grid.bounds.1.min(12.0));
+    let low = grid.bounds.0.max(-12.0);
+    let high = grid.bounds.1.min(12.0);
     let fine = high - low < 3.0;
     let decades = (low.floor() as i32)..=(high.ceil() as i32);
     let within = |decade: i32| {

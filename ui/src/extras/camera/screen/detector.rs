@@ -51,7 +51,8 @@ impl Detector {
     /// Shows it the newest picture; what is passed while it looks at another one is left out.
     pub(super) fn show(&mut self, (number, picture): (u64, Arc<Picture>), board: Board) {
         if !self.busy && number != self.last {
-            (self.busy, self.last) = (self.asked.send((picture, board)).is_ok(), number);
+            self.busy = self.asked.send((picture, board)).is_ok();
+            self.last = number;
         }
     }
 

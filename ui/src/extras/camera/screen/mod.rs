@@ -147,7 +147,8 @@ impl CameraWizard {
         let Some(session) = &mut self.session else { return Offer::Moving };
         let offer = session.offer(sight);
         if offer == Offer::Taken {
-            (self.report, self.frame.saved) = (None, None);
+            self.report = None;
+            self.frame.saved = None;
         }
         offer
     }
@@ -163,7 +164,8 @@ impl CameraWizard {
             None => self.lying = Some(sight.clone()),
         }
         if self.touches.is_empty() && self.base.as_ref().is_some_and(|base| base.mean_move_px(sight) > limit_px) {
-            (self.base, self.lying) = (None, Some(sight.clone()));
+            self.base = None;
+            self.lying = Some(sight.clone());
             self.marker = Marker::default();
         }
     }
@@ -223,7 +225,8 @@ impl CameraWizard {
     }
 
     fn find_place(&mut self) {
-        (self.pending, self.frame.saved) = (None, None);
+        self.pending = None;
+        self.frame.saved = None;
         let found = self.board().ok().zip(self.lens()).zip(self.base.as_ref());
         self.placed = found
             .filter(|_| !self.touches.is_empty())
@@ -232,7 +235,9 @@ impl CameraWizard {
 
     /// The board lies elsewhere now: what was touched is forgotten.
     fn lay_anew(&mut self) {
-        (self.base, self.lying, self.moved) = (None, None, false);
+        self.base = None;
+        self.lying = None;
+        self.moved = false;
         self.marker = Marker::default();
         self.touches.clear();
         self.find_place();
@@ -241,7 +246,8 @@ impl CameraWizard {
     /// What is saved of the place: on the endoscope's marker, if the tracker saw it while the board lay.
     fn found_place(&self) -> Option<FoundPlace> {
         let placed = self.good_place()?;
-        let (world_from_camera, checked_px) = (placed.world_from_camera, placed.held_out_px);
+        let world_from_camera = placed.world_from_camera;
+        let checked_px = placed.held_out_px;
         let on_marker = self.marker.world_from_n().map(|world_from_n| world_from_n.inverse() * world_from_camera);
         Some(FoundPlace { pose: on_marker.unwrap_or(world_from_camera), on_marker: on_marker.is_some(), checked_px })
     }
@@ -383,7 +389,8 @@ impl Wizard for CameraWizard {
     fn go_to(&mut self, step: usize) {
         self.frame.step = step;
         if step == SAVE {
-            (self.pending, self.frame.saved) = (None, None);
+            self.pending = None;
+            self.frame.saved = None;
             self.undoable.clear();
         }
         if step == LENS && self.report.is_none() && !self.keeps_lens {
@@ -394,7 +401,8 @@ impl Wizard for CameraWizard {
     }
 
     fn start_over(&mut self) {
-        let (corners, square_mm) = (std::mem::take(&mut self.corners), self.square_mm);
+        let corners = std::mem::take(&mut self.corners);
+        let square_mm = self.square_mm;
         let detector = self.detector.take();
         *self = Self { corners, square_mm, detector, ..Self::default() };
     }

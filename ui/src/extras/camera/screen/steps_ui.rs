@@ -70,8 +70,11 @@ impl CameraWizard {
             ui.label(texts::NO_PICTURE.get());
             return;
         };
-        let (asked, share, views) = (session.asks(), session.share(), session.views().len());
-        let (coverage, size_px) = (session.coverage(), session.size_px());
+        let asked = session.asks();
+        let share = session.share();
+        let views = session.views().len();
+        let coverage = session.coverage();
+        let size_px = session.size_px();
         card(ui, texts::VIEWS_TITLE.get(), texts::VIEWS_HOVER.get(), |ui| {
             ui.label(RichText::new(words::ask(asked)).font(theme::strong(19.0)));
             let told = self.told();
@@ -198,7 +201,8 @@ fn lens_figures(ui: &mut Ui, report: &Report) {
     }
     figure(ui, texts::COVERAGE.get(), format!("{:.0} %", 100.0 * report.coverage.share()), texts::COVERAGE_HOVER.get());
     let Some(found) = &report.lens else { return };
-    let (lens, sd) = (&found.lens, &found.deviations);
+    let lens = &found.lens;
+    let sd = &found.deviations;
     let with = |value: f64, sd: f64| texts::with_deviation(value, sd);
     figure(ui, texts::HELD_OUT.get(), format!("{:.3} px", found.held_out_px), texts::HELD_OUT_HOVER.get());
     figure(ui, texts::HELD_OUT_MAX.get(), format!("{:.2} px", found.held_out_max_px), texts::HELD_OUT_HOVER.get());

@@ -37,7 +37,8 @@ impl Tip {
 
     /// Its place, m; `None` while it moves.
     pub(super) fn still_m(&self) -> Option<Vector3<f64>> {
-        let (first, last) = (self.kept.front()?, self.kept.back()?);
+        let first = self.kept.front()?;
+        let last = self.kept.back()?;
         if last.0 - first.0 < HELD_S {
             return None;
         }

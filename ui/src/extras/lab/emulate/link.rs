@@ -39,7 +39,8 @@ fn line(set: &[String]) -> anyhow::Result<Line> {
         let Some((key, value)) = setting.split_once('=') else {
             bail!("--set {setting}: give a key and a value, such as delay_s=0.02");
         };
-        let (key, value) = (key.trim(), value.trim());
+        let key = key.trim();
+        let value = value.trim();
         let lines = match key {
             "at" | "to" => format!("{key} = {value:?}\n"),
             _ if key == "seed" || key.starts_with("there.") || key.starts_with("back.") => format!("{key} = {value}\n"),

@@ -31,7 +31,8 @@ fn strip_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
         ui.label(small(text::STABLE_GAIN_UNKNOWN.get())).on_hover_text(text::STABLE_GAIN_HOVER.get());
         return;
     };
-    let (mode, delay_s) = (live.mode(), live.delay_s());
+    let mode = live.mode();
+    let delay_s = live.delay_s();
     // The slider's handle stays within the rail by half its own width.
     let ends = rail.x_range().shrink(0.3 * rail.height());
     let (rect, response) = ui.allocate_exact_size(vec2(rail.width(), HEIGHT), Sense::hover());
@@ -48,7 +49,8 @@ fn strip_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
                 painter.rect_filled(cell.shrink2(vec2(0.0, 2.5)), 0.0, theme::now().at_rest);
             }
             Verdict::Unstable if part % 2 == 0 => {
-                let (low, high) = (pos2(cell.left(), cell.bottom()), pos2(cell.right(), cell.top()));
+                let low = pos2(cell.left(), cell.bottom());
+                let high = pos2(cell.right(), cell.top());
                 painter.line_segment([low, high], Stroke::new(1.5, theme::now().text));
             }
             Verdict::Unstable => {}

@@ -43,10 +43,13 @@ struct Job {
 
 impl Job {
     fn start(live: &Live) -> std::io::Result<Self> {
-        let (plan, rate_hz, scene) = (plan(live), live.rig.rate_hz, live.scene.clone());
+        let plan = plan(live);
+        let rate_hz = live.rig.rate_hz;
+        let scene = live.scene.clone();
         let cancel = Arc::new(AtomicBool::new(false));
         let progress = Arc::new([AtomicUsize::new(0), AtomicUsize::new(1)]);
-        let (stop, told) = (Arc::clone(&cancel), Arc::clone(&progress));
+        let stop = Arc::clone(&cancel);
+        let told = Arc::clone(&progress);
         // A thread with normal priority: the loop's thread has real-time priority if that is granted, and is not
         // delayed.
         let thread = Builder::new().name("trade-off".to_owned()).spawn(move || {

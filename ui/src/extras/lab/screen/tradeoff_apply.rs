@@ -178,7 +178,8 @@ mod tests {
             let control = loop_after(&live, &Apply::of(&live, mode, &point.choice));
             let from_s = figures.judged_from_s + point.choice.delay_ms * 1e-3;
             let in_loop = median_us(control.pair(SIDE).unwrap().identifier(), &source.recording.samples, from_s);
-            let (studied, front) = (point.cost_us.p50, if point.pareto { ", on the front" } else { "" });
+            let studied = point.cost_us.p50;
+            let front = if point.pareto { ", on the front" } else { "" };
             println!("| {}{front} | {studied:.2} | {in_loop:.2} | {:.2} |", name(&point), in_loop / studied);
         }
     }

@@ -101,7 +101,8 @@ fn place(point: &Point) -> [f64; 2] {
 type Range = ([f64; 2], [f64; 2]);
 
 fn range(points: &[Point], shown: &[usize]) -> Option<Range> {
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let mut low = [f64::INFINITY; 2];
+    let mut high = [f64::NEG_INFINITY; 2];
     for &i in shown {
         for (axis, value) in place(&points[i]).into_iter().enumerate() {
             low[axis] = low[axis].min(value);

@@ -190,7 +190,8 @@ impl Load {
     fn start(count: usize, work: impl Fn() + Clone + Send + 'static) -> Self {
         let stop = Arc::new(AtomicBool::new(false));
         let threads = (0..count).map(|_| {
-            let (flag, work) = (Arc::clone(&stop), work.clone());
+            let flag = Arc::clone(&stop);
+            let work = work.clone();
             thread::spawn(move || {
                 while !flag.load(Ordering::Relaxed) {
                     work();

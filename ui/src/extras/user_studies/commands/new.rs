@@ -28,7 +28,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let study = study_file(file)?;
     let made = create(out, &study)?;
     let plan = made.plan();
-    let (participants, rows) = (plan.participants.len(), plan.rows());
+    let participants = plan.participants.len();
+    let rows = plan.rows();
     let balanced = participants.is_multiple_of(rows);
     if *json {
         return output::json(&json!({

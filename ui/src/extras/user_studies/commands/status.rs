@@ -53,7 +53,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 impl<'a> Status<'a> {
     fn of(study: &'a Study) -> anyhow::Result<Self> {
-        let (plan, state) = (study.plan(), study.state());
+        let plan = study.plan();
+        let state = study.state();
         let standing = |participant: &'a nima_user_study::Participant| {
             let progress = state.progress(&participant.name);
             let results = |with: bool| {

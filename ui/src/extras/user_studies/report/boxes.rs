@@ -26,7 +26,8 @@ pub(super) fn svg(table: &Table, measure: &str, order: &[String], axis: &str) ->
     let Ok(whole) = Summary::of(&all) else { return String::new() };
     let [low, high] = whole.extremes;
     let room = 0.05 * if high > low { high - low } else { high.abs().max(1.0) };
-    let (low, high) = (low - room, high + room);
+    let low = low - room;
+    let high = high + room;
     let down = |value: f64| HEIGHT - BOTTOM - (value - low) / (high - low) * (HEIGHT - TOP - BOTTOM);
     let title = escape(&format!("{axis} under each condition"));
     let mut out = format!(
@@ -66,7 +67,9 @@ fn group(out: &mut String, x: f64, values: &[f64], colour: &str, down: impl Fn(f
     let reach = REACH * (third - first);
     let within = values.iter().copied().filter(|value| (first - reach..=third + reach).contains(value));
     let (least, most) = within.fold((first, third), |(least, most), value| (least.min(value), most.max(value)));
-    let (top, bottom, left) = (down(third), down(first), x - HALF_BOX);
+    let top = down(third);
+    let bottom = down(first);
+    let left = x - HALF_BOX;
     writeln!(
         out,
         "<path d=\"M{x:.1} {:.1}V{top:.1}M{x:.1} {bottom:.1}V{:.1}\" stroke=\"{colour}\"/>\

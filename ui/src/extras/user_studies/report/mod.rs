@@ -39,7 +39,8 @@ const SCORES: [&str; 4] = ["nasa_tlx_weighted", "nasa_tlx_raw", "sus", "realism"
 pub(super) fn write(study: &Study, out: &Path, all: bool) -> anyhow::Result<PathBuf> {
     let journal = study.folder().join(nima_user_study::JOURNAL);
     output::folder(out, &[PAGE, TRIALS, QUESTIONNAIRES], &[&journal])?;
-    let (trials, questionnaires) = (study.trials(), study.questionnaires());
+    let trials = study.trials();
+    let questionnaires = study.questionnaires();
     output::write(out, TRIALS, &trials.csv)?;
     output::write(out, QUESTIONNAIRES, &questionnaires.csv)?;
     let plan = study.plan();
@@ -136,7 +137,8 @@ fn page(
 
 /// Whether the study is blind, and what its conditions are.
 fn conditions(study: &Study) -> String {
-    let (plan, state) = (study.plan(), study.state());
+    let plan = study.plan();
+    let state = study.state();
     let mut text = "<section>\n<h2>Conditions</h2>\n".to_owned();
     match (&state.unblinding, plan.blind) {
         (_, false) => text.push_str("<p>The study is not blind.</p>\n"),

@@ -13,7 +13,8 @@ const DRAWN: usize = 7;
 
 /// Who did what.
 pub(super) fn participants(study: &Study) -> String {
-    let (plan, state) = (study.plan(), study.state());
+    let plan = study.plan();
+    let state = study.state();
     let row = |participant: &nima_user_study::Participant| {
         let order: Vec<String> = participant.order.iter().map(ToString::to_string).collect();
         let progress = state.progress(&participant.name);
@@ -52,7 +53,8 @@ pub(super) fn left_out(trials: &Table) -> String {
 
 /// Scores at the end, free texts, and notes of the people who ran the study.
 pub(super) fn remarks(study: &Study) -> String {
-    let (mut scores, mut rows) = (Vec::new(), Vec::new());
+    let mut scores = Vec::new();
+    let mut rows = Vec::new();
     for (name, progress) in study.state().participants() {
         for (after, answers, _) in &progress.answers {
             let about = after.map_or_else(|| "at the end".to_owned(), |label| format!("after {label}"));

@@ -49,7 +49,8 @@ impl Aside {
             let words = if running { text::studies::REPORT_WRITING.get() } else { text::studies::REPORT_WRITE.get() };
             let button = Button::new(words).min_size(vec2(ui.available_width(), 32.0));
             if ui.add_enabled(!running, button).clicked() {
-                let (folder, ctx) = (study.folder().to_owned(), ui.ctx().clone());
+                let folder = study.folder().to_owned();
+                let ctx = ui.ctx().clone();
                 self.report.forget();
                 self.opened.forget();
                 self.report.begin(&ctx, move || {
@@ -123,10 +124,12 @@ fn written_before(study: &Study) -> Option<PathBuf> {
 }
 
 fn about_ui(ui: &mut Ui, study: &Study) {
-    let (plan, state) = (study.plan(), study.state());
+    let plan = study.plan();
+    let state = study.state();
     card(ui, text::studies::ABOUT.get(), text::studies::ABOUT_HOVER.get(), |ui| {
         ui.add(Label::new(RichText::new(&plan.name).font(theme::strong(15.0))).wrap());
-        let (count, blind) = (plan.participants.len(), blindness(study));
+        let count = plan.participants.len();
+        let blind = blindness(study);
         let facts = text::studies::facts(&plan.rig, finished(study), count, state.results(), blind);
         ui.add(Label::new(facts).wrap());
         if state.is_simulated() {

@@ -80,7 +80,8 @@ impl Desk {
         let rig = RigConfig::load(&study.plan().rig);
         let hand = rig.as_ref().map_or(Hand::OfRig, Hand::of);
         // Whoever was in the middle of it comes first.
-        let (plan, state) = (study.plan(), study.state());
+        let plan = study.plan();
+        let state = study.state();
         let goes_on = plan.participants.iter().find(|one| !matches!(state.next(plan, one), Step::Done { .. }));
         let chosen = goes_on.or_else(|| plan.participants.first()).map_or_else(String::new, |one| one.name.clone());
         Self {
@@ -192,7 +193,9 @@ impl Desk {
             }
         });
         if let Some(chosen) = chosen.filter(|chosen| *chosen != self.chosen) {
-            (self.chosen, self.told, self.left_out) = (chosen, None, None);
+            self.chosen = chosen;
+            self.told = None;
+            self.left_out = None;
         }
     }
 
@@ -239,7 +242,8 @@ impl Desk {
     fn done_ui(&self, ui: &mut Ui) {
         let Some(progress) = self.study.state().progress(&self.chosen) else { return };
         let lost = progress.trials.iter().filter(|made| made.measures.is_none()).count();
-        let (practice, breaks) = (progress.practice_s.len(), progress.breaks_s.len());
+        let practice = progress.practice_s.len();
+        let breaks = progress.breaks_s.len();
         let words = text::studies::done(practice, progress.trials.len(), lost, progress.interruptions, breaks);
         ui.add(Label::new(weak(words)).wrap());
     }

@@ -146,7 +146,8 @@ impl Draft {
     pub(super) fn choose(&mut self, at: usize) {
         let Some(place) = self.scenes.get(at).filter(|place| place.of != self.file.scene).cloned() else { return };
         self.measures = place.measures();
-        (self.takes_few, self.file.task) = (false, place.task);
+        self.takes_few = false;
+        self.file.task = place.task;
         self.file.scene = place.of;
         self.task = task_of(&self.file());
         let known = |key: &String| self.measures.iter().any(|measure| measure.key == *key);
@@ -170,7 +171,8 @@ impl Draft {
 
     /// One rule of exclusion more.
     pub(super) fn add_rule(&mut self) {
-        let (is, exclude) = (Comparison::Above, Excludes::Trial);
+        let is = Comparison::Above;
+        let exclude = Excludes::Trial;
         let measure = self.file.primary.clone();
         self.file.exclusion.push(ExclusionRule { measure, is, limit: None, exclude, times: 1 });
     }
@@ -192,7 +194,8 @@ impl Draft {
     pub(super) fn remove(&mut self, gone: usize) {
         self.file.conditions.remove(gone);
         let moved = |at: Option<usize>| at.filter(|at| *at != gone).map(|at| at - usize::from(at > gone));
-        (self.under, self.reference) = (moved(self.under), moved(self.reference));
+        self.under = moved(self.under);
+        self.reference = moved(self.reference);
     }
 
     /// A folder for it that is not there yet.
@@ -212,12 +215,16 @@ impl Draft {
 
 /// The hand feels no force under this condition.
 pub(super) fn without_force(condition: &mut Condition) {
-    (condition.no_force, condition.mode, condition.gain, condition.own_motion) = (true, None, None, None);
+    condition.no_force = true;
+    condition.mode = None;
+    condition.gain = None;
+    condition.own_motion = None;
 }
 
 /// The force of this condition is made in this way.
 pub(super) fn with_mode(condition: &mut Condition, mode: Mode) {
-    (condition.no_force, condition.mode) = (false, Some(mode));
+    condition.no_force = false;
+    condition.mode = Some(mode);
     condition.gain.get_or_insert(1.0);
     condition.delay_ms.get_or_insert(0.0);
 }
@@ -249,14 +256,17 @@ mod tests {
         assert_eq!(draft.file().reference.as_deref(), Some("No force"), "the reference follows its condition");
         draft.remove(1);
         assert_eq!(draft.file().reference, None);
-        (draft.practises, draft.rests) = (false, false);
+        draft.practises = false;
+        draft.rests = false;
         let file = draft.file();
         assert!(file.practice.is_none() && file.breaks.is_none() && file.conditions.len() == 2);
         without_force(&mut draft.file.conditions[1]);
         assert!(mistakes(&draft.file()).is_empty());
         with_mode(&mut draft.file.conditions[1], Mode::Matched);
         assert!(mistakes(&draft.file()).is_empty());
-        (draft.file.participants, draft.file.trials, draft.file.name) = (0, 0, "DFR".to_owned());
+        draft.file.participants = 0;
+        draft.file.trials = 0;
+        draft.file.name = "DFR".to_owned();
         assert_eq!(mistakes(&draft.file()).len(), 3, "{:?}", mistakes(&draft.file()));
     }
 
@@ -306,7 +316,8 @@ mod tests {
         assert!(mistakes(&draft.file())[0].contains("limit is missing"), "{:?}", mistakes(&draft.file()));
         draft.file.exclusion[last].limit = Some(2.0);
         assert!(mistakes(&draft.file()).is_empty());
-        (draft.takes_few, draft.rings) = (true, 9);
+        draft.takes_few = true;
+        draft.rings = 9;
         assert_eq!(mistakes(&draft.file()), ["rings = 9: scene \"Rings on pegs\" has 6"]);
     }
 

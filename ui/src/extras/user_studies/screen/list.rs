@@ -77,7 +77,8 @@ impl List {
 
     /// Draws the page.
     pub(super) fn ui(&mut self, ui: &mut Ui) -> Option<Done> {
-        let (mut done, mut wanted) = (None, None);
+        let mut done = None;
+        let mut wanted = None;
         ui.horizontal(|ui| {
             if ui.add(Button::new(text::studies::BACK.get()).min_size(BUTTON)).clicked() {
                 done = Some(Done::Back);
@@ -87,7 +88,8 @@ impl List {
         // A line of its own, so that what is below never moves.
         ui.add(Label::new(weak(self.told.clone().unwrap_or_default())).wrap());
         ui.add_space(4.0);
-        let (room, gap) = (ui.available_size(), theme::GAP);
+        let room = ui.available_size();
+        let gap = theme::GAP;
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = gap;
             column(ui, "studies", vec2(0.62 * room.x - gap, room.y), |ui| {
@@ -156,7 +158,8 @@ impl Row {
 
 /// Those who have finished, or are excluded.
 pub(super) fn finished(study: &Study) -> usize {
-    let (plan, state) = (study.plan(), study.state());
+    let plan = study.plan();
+    let state = study.state();
     plan.participants.iter().filter(|one| matches!(state.next(plan, one), Step::Done { .. })).count()
 }
 

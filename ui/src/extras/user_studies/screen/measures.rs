@@ -19,7 +19,8 @@ const LIST: f32 = 460.0;
 /// Scene and task.
 pub(super) fn task_ui(ui: &mut Ui, draft: &mut Draft) {
     card(ui, text::study_form::TASK.get(), text::study_form::TASK_HOVER.get(), |ui| {
-        let (mut chosen, rings) = (None, draft.place_of_scene().map_or(0, |place| place.rings));
+        let mut chosen = None;
+        let rings = draft.place_of_scene().map_or(0, |place| place.rings);
         let place = draft.place_of_scene();
         let [name, about] = place.map_or([&draft.file.scene, ""], |place| [place.name.as_str(), &place.about]);
         let label = ui.label(weak(text::study_form::SCENE.get()));

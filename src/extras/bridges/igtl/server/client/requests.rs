@@ -67,7 +67,8 @@ mod tests {
         let long = Message::new("", 0, Content::Text(Text::of(&"x".repeat(20_000)))).encode();
         let all = [request().encode(), long, request().encode(), request().encode()].concat();
         for size in [1, 7, 58, 59, 1024, 50_000] {
-            let (mut requests, mut heard) = (Requests::default(), Vec::new());
+            let mut requests = Requests::default();
+            let mut heard = Vec::new();
             for chunk in all.chunks(size) {
                 requests.take(chunk, |message| heard.push(message)).unwrap();
                 assert!(requests.buffer.len() < Header::BYTES + LONGEST as usize);
@@ -82,7 +83,8 @@ mod tests {
         assert_eq!(requests.take(&[b'G'; 58], |_| panic!()), Err(Wrong::Version(0x4747)));
         let mut damaged = request().encode();
         damaged[Header::BYTES] ^= 1;
-        let (mut requests, mut heard) = (Requests::default(), Vec::new());
+        let mut requests = Requests::default();
+        let mut heard = Vec::new();
         let bytes = [damaged, request().encode()].concat();
         requests.take(&bytes, |message| heard.push(message)).unwrap();
         assert_eq!(heard, [Err(Wrong::Checksum), Ok(request())]);

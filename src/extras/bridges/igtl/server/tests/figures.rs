@@ -33,7 +33,8 @@ fn percentiles(of: &Histogram<u64>) -> String {
 
 /// A loop of the simulated rig on the real clock, recorded to nobody but the bridge; what its ticks tell of their lateness.
 fn run(server: &Server, seconds: u64) -> Histogram<u64> {
-    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
+    let rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load("bimanual").unwrap();
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
     let (tap, end) = tap();
     let started_ns = super::super::client::now_ns();
@@ -43,7 +44,8 @@ fn run(server: &Server, seconds: u64) -> Histogram<u64> {
     let to = Destination { audiences: vec![server.audience(Outline::default())], ..Destination::default() };
     let recorder = Recorder::start(to, about, plan.origin(), end).unwrap();
     let handle = runtime::start(Assembly { tap: Some(tap), ..plan.assembly().unwrap() }).unwrap();
-    let (begin, mut late) = (Instant::now(), histogram());
+    let begin = Instant::now();
+    let mut late = histogram();
     while begin.elapsed() < Duration::from_secs(seconds) {
         sleep(Duration::from_millis(20));
         handle.drain_ticks(|tick| late.saturating_record((tick.wake_s * 1e6) as u64));
@@ -56,9 +58,11 @@ fn run(server: &Server, seconds: u64) -> Histogram<u64> {
 
 /// How late bundles come: the time of their arrival less their stamp, less the least of all (the recorder's estimate of when the loop began).
 fn lateness(server: &Server, ends: &Arc<AtomicBool>) -> JoinHandle<(Histogram<u64>, Histogram<u64>)> {
-    let (mut peer, ends) = (Peer::of(server), Arc::clone(ends));
+    let mut peer = Peer::of(server);
+    let ends = Arc::clone(ends);
     spawn(move || {
-        let (mut ages, mut stamps) = (Vec::new(), Vec::new());
+        let mut ages = Vec::new();
+        let mut stamps = Vec::new();
         while !ends.load(Ordering::Relaxed) {
             let Some(message) = peer.next() else { break };
             if matches!(message.content, Content::Tracking(_)) {
@@ -67,7 +71,8 @@ fn lateness(server: &Server, ends: &Arc<AtomicBool>) -> JoinHandle<(Histogram<u6
             }
         }
         let least = ages.iter().copied().min().unwrap_or_default();
-        let (mut late, mut between) = (histogram(), histogram());
+        let mut late = histogram();
+        let mut between = histogram();
         for age in ages {
             late.saturating_record(((age - least) / 1000) as u64);
         }
@@ -87,7 +92,8 @@ fn figures_of_the_bridge_and_its_clients() {
         let server = server();
         let ends = Arc::new(AtomicBool::new(false));
         let reads = (case != "no client").then(|| lateness(&server, &ends));
-        let (address, ended) = (server.address(), Arc::clone(&ends));
+        let address = server.address();
+        let ended = Arc::clone(&ends);
         let connect = move || TcpStream::connect(address).unwrap();
         let harms: Option<JoinHandle<()>> = match case {
             "a stalled client" => Some(spawn(move || {

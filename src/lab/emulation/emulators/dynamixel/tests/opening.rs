@@ -22,7 +22,8 @@ fn peek(bench: &Bench, id: u8, address: u16, count: u16) -> Vec<u8> {
     let mut out = Outgoing::new(64);
     Instruction::Read { address, count }.encode(id, &mut out);
     let mut world = bench.world.borrow_mut();
-    let (mut incoming, mut body) = (Incoming::new(512), Vec::new());
+    let mut incoming = Incoming::new(512);
+    let mut body = Vec::new();
     let now_s = world.now_s;
     world.emulator.receive(now_s, out.bytes());
     world.emulator.send(now_s + 1.0, EmulatedFault::None, &mut |bytes| {
@@ -179,7 +180,8 @@ fn a_servo_that_does_not_keep_what_is_written_is_told() {
     let mut bench = Bench::usual();
     let [ours, theirs] = MemoryBytes::pair();
     bench.world.borrow_mut().end = theirs;
-    let (wanted, reboots) = (bench.settings.clone(), bench.reboots.clone());
+    let wanted = bench.settings.clone();
+    let reboots = bench.reboots.clone();
     let told = open_over(Meddler(ours), &mut bench, &wanted, &reboots).err();
     let Some(Trouble::Refused { place, command, answer }) = told else { panic!("{told:?}") };
     assert_eq!((place.as_str(), command.as_str()), ("servo 1 on test", "0 in register 64"));

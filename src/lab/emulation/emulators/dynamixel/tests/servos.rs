@@ -38,7 +38,8 @@ impl Client {
     }
 
     fn wait(&mut self, length_s: f64) -> Vec<(u8, u8, Vec<u8>)> {
-        let (mut incoming, mut answers) = (Incoming::new(512), Vec::new());
+        let mut incoming = Incoming::new(512);
+        let mut answers = Vec::new();
         for _ in 0..(length_s * 1e3).round() as usize {
             self.now_s += 1e-3;
             self.emulator.send(self.now_s, EmulatedFault::None, &mut |bytes| {
@@ -191,7 +192,8 @@ fn response(registers: &[(u16, i32, usize)]) -> (f64, f64) {
     client.write(64, &[1]);
     client.write(116, &3048_i32.to_le_bytes());
     let begin_s = client.now_s;
-    let (mut settled_s, mut highest) = (0.0, 0.0_f64);
+    let mut settled_s = 0.0;
+    let mut highest = 0.0_f64;
     while client.now_s < begin_s + 3.0 {
         let position = f64::from(client.read(132, 4));
         highest = highest.max(position - 3048.0);
@@ -229,7 +231,8 @@ fn a_position_that_is_off_under_load_comes_home_with_the_integral() {
         client.wait(3.0);
         f64::from(2048 - client.read(132, 4))
     };
-    let (without, with) = (sag(0), sag(1000));
+    let without = sag(0);
+    let with = sag(1000);
     assert!(without > 10.0 && with.abs() < 2.0, "{without} {with}");
 }
 

@@ -55,7 +55,8 @@ fn measure_rate_and_losses() {
             let (_serving, settings) = serving(&Emulated { baud, fast, ..emulated() });
             let mut driver = open(&settings).unwrap();
             let begin = Instant::now();
-            let (mut polls, mut longest) = (0_u64, Duration::ZERO);
+            let mut polls = 0_u64;
+            let mut longest = Duration::ZERO;
             while begin.elapsed() < Duration::from_secs(5) {
                 let before = Instant::now();
                 driver.poll(begin.elapsed().as_secs_f64());
@@ -87,7 +88,8 @@ fn a_slot_brings_it_back_after_faults_and_a_cut_line() {
         let (serving, mut settings) = serving(&emulated());
         settings.silence_s = 0.1;
         let reboots = Reboots::default();
-        let (wanted, asked) = (settings, reboots.clone());
+        let wanted = settings;
+        let asked = reboots.clone();
         let mut slot = Slot::start("servos", move || open_with(&wanted, &asked)).unwrap();
         let begin = Instant::now();
         let connected = |slot: &Slot<Driver>| slot.health().standing == Standing::Connected;

@@ -97,7 +97,8 @@ impl Bench {
     pub(super) fn open(&mut self) -> Result<Driver<MemoryBytes>, Trouble> {
         let [ours, theirs] = MemoryBytes::pair();
         self.world.borrow_mut().end = theirs;
-        let (settings, reboots) = (self.settings.clone(), self.reboots.clone());
+        let settings = self.settings.clone();
+        let reboots = self.reboots.clone();
         open_over(ours, self, &settings, &reboots)
     }
 

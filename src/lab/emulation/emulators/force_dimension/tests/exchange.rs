@@ -52,7 +52,8 @@ fn the_bytes_of_a_request_are_those_of_the_contract() {
 fn datagrams_come_back_as_they_went_in() {
     let mut random = fastrand::Rng::with_seed(1);
     for _ in 0..1000 {
-        let (request, reply) = (request(&mut random), reply(&mut random));
+        let request = request(&mut random);
+        let reply = reply(&mut random);
         assert_eq!(Request::decode(&request.encode()), Some(request));
         assert_eq!(Reply::decode(&reply.encode()), Some(reply));
     }

@@ -76,12 +76,14 @@ fn shows(
         seen.push(slot.health().standing);
         return false;
     }
-    let (begin_s, before) = (now_s(), *slot.health());
+    let begin_s = now_s();
+    let before = *slot.health();
     serving.faults.set(fault);
     match expected(fault) {
         Expected::Lost(loss) => {
             assert!(wait(slot, |slot, _| lost(slot)), "{fault:?} leads to no loss: {:?}", slot.health());
-            let (after_ms, silent_ms) = ((now_s() - begin_s) * 1e3, slot.health().age_s(now_s()) * 1e3);
+            let after_ms = (now_s() - begin_s) * 1e3;
+            let silent_ms = slot.health().age_s(now_s()) * 1e3;
             println!(
                 "{fault:?}: {:?} after {after_ms:.1} ms, {silent_ms:.1} ms without a reading",
                 slot.health().standing

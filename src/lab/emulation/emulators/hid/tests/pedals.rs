@@ -39,7 +39,8 @@ fn a_pressed_pedal_that_is_unplugged_or_broken_is_released_and_stays_so_until_it
             let (serving, foot) = pedal(PedalModel::Keyboard);
             let settings = pedal_settings(&serving);
             let mut slot = Slot::start("pedal", move || PedalDriver::open(&settings)).unwrap();
-            let (begin, mut held) = (Instant::now(), Held::<PedalReading>::default());
+            let begin = Instant::now();
+            let mut held = Held::<PedalReading>::default();
             assert!(until_slot(&mut slot, begin, |health, _| health.standing == Standing::Connected));
             foot.store(1, Ordering::Release);
             assert!(until_slot(&mut slot, begin, |health, reading| held.update(reading, health).pressed == 1));

@@ -94,7 +94,7 @@ fn bad_input_is_refused_in_one_line() {
         (&["--recording", "nowhere.csv", "--map", "x"], "NAME=COLUMN"),
         (&["--map", "x=angle"], "--recording"),
         (&["--scene", "no_such_scene"], "peg_transfer"),
-        (&["--delay-ms", "-5"], "between 0 and 1000"),
+        (&["--delay-ms", "-5"], "0 to 1000 ms"),
         (&["--delay-ms", "soon"], "soon"),
         (&short, "no point of the plan"),
         (&["--quick", "--out", blocked.to_str().unwrap()], "cannot create the folder"),

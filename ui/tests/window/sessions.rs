@@ -130,7 +130,12 @@ fn left_alone(x: &Xvfb, folder: tempfile::TempDir, options: &[&str]) -> serde_js
 fn the_built_in_rig_engages_by_itself_and_a_rig_file_waits_for_a_person() {
     let _alone = nima_testing::real_time::alone();
     let Some(x) = Xvfb::start() else { return };
-    let built_in = left_alone(&x, tempfile::tempdir().unwrap(), &[]);
+    // Beside other work an emulated device is lost now and then.
+    nima_testing::real_time::judged(|| engages_or_waits(&x));
+}
+
+fn engages_or_waits(x: &Xvfb) {
+    let built_in = left_alone(x, tempfile::tempdir().unwrap(), &[]);
     assert!(states(&built_in).contains(&"Engaged"), "{:?}", states(&built_in));
     // Nothing is missing on it: its sensors at the tips need no calibration.
     let folder = tempfile::tempdir().unwrap();
@@ -141,7 +146,7 @@ fn the_built_in_rig_engages_by_itself_and_a_rig_file_waits_for_a_person() {
     }
     file.save(&path).unwrap();
     let path = path.display().to_string();
-    let finished = left_alone(&x, folder, &["--rig", &path]);
+    let finished = left_alone(x, folder, &["--rig", &path]);
     assert_eq!(states(&finished).last(), Some(&"Idle"), "{:?}", states(&finished));
     assert!(!states(&finished).contains(&"Ready"), "{:?}", states(&finished));
 }

@@ -165,10 +165,13 @@ pub(crate) fn given<C: Subcommand>(matches: &ArgMatches) -> Option<Result<C, cla
     C::has_subcommand(name).then(|| C::from_arg_matches(matches))
 }
 
-/// Why this command is unknown, if another build has it.
-pub(crate) fn absent_command(name: &str) -> Option<anyhow::Error> {
+/// Why this command is unknown, if another build has it and this command line nowhere does.
+pub(crate) fn absent_command(line: &clap::Command, name: &str) -> Option<anyhow::Error> {
+    fn has(line: &clap::Command, name: &str) -> bool {
+        line.get_subcommands().any(|command| command.get_name() == name || has(command, name))
+    }
     let (_, feature) = COMMANDS.into_iter().find(|(known, _)| *known == name)?;
-    Some(not_built(&format!("command `{name}`"), feature))
+    (!has(line, name)).then(|| not_built(&format!("command `{name}`"), feature))
 }
 
 /// What is told of a part that another build has.
@@ -192,6 +195,7 @@ mod tests {
 
     #[derive(Debug, Subcommand)]
     enum OwnCommand {
+        /// Its own help
         Calibrate,
     }
 
@@ -204,5 +208,8 @@ mod tests {
         let mut known: Vec<&str> = own.chain(below).map(clap::Command::get_name).collect();
         known.sort_unstable();
         assert_eq!(known, COMMANDS.map(|(command, _)| command));
+        assert!(absent_command(&line, "camera").is_none() && absent_command(&Own::command(), "camera").is_some());
+        let help = line.find_subcommand("calibrate").and_then(clap::Command::get_about).map(ToString::to_string);
+        assert_eq!(help.as_deref(), Some("Its own help"));
     }
 }

@@ -85,7 +85,7 @@ fn command_line() -> clap::Command {
 /// Reports invalid arguments in one line, without the usage text.
 fn usage(error: &clap::Error) -> ExitCode {
     if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
-        && let Some(words) = extras::absent_command(name)
+        && let Some(words) = extras::absent_command(&command_line(), name)
     {
         tell(format_args!("nima: {words}"));
         return ExitCode::FAILURE;

@@ -16,6 +16,9 @@
 //! and changes no faster than the slew limit; once let go, `F . v <= 0` with the estimated `v`. The energy gate before this one
 //! observes the applied force, so its bound holds too.
 //!
+//! A handle whose readings repeat themselves while it moves is not judged, and the whole force passes: its readings are up to a millisecond
+//! older than their times, and a hand that is there would look like none.
+//!
 //! Measured, not certain: how far a released handle travels, and how rarely a hand looks like none (`docs/release.md`,
 //! `docs/hands.md`). Below about 1.5 N a slowly opening hand and a fast voluntary motion look the same; there the handle travels
 //! farther, because a hand that is there must never be braked.
@@ -223,7 +226,13 @@ impl<const D: usize> Governor<D> {
         self.observer.held(&self.applied_n, dt_s);
         let Some(reading) = reading else { return SVector::zeros() };
         self.observer.read(reading.t_s, reading.at_m);
-        if self.grip == Grip::Gone || (self.grip == Grip::Held && self.applied_n.norm() < COULOMB_N) {
+        if self.observer.times_are_unknown() && self.grip != Grip::Gone {
+            self.grip = Grip::Held;
+        }
+        if self.grip == Grip::Gone
+            || self.observer.times_are_unknown()
+            || (self.grip == Grip::Held && self.applied_n.norm() < COULOMB_N)
+        {
             self.evidence = Evidence::default();
             return SVector::zeros();
         }

@@ -25,6 +25,15 @@ pub(super) const ROOM: usize = 96;
 const SPACING_S: f64 = 0.4e-3;
 /// After a longer gap nothing is known of the force in it: a device takes its force off by itself when no command comes, s.
 const GAP_S: f64 = 0.010;
+/// A hand that moves by so many steps of the reading between two samples does not stand still between the next two.
+const MOVES_STEPS: f64 = 3.0;
+/// Shortest time between two samples in which such a motion must show, s.
+const SHOWS_S: f64 = 0.7e-3;
+/// Repeated readings while the handle moves, of which each counts for `REMEMBERED_S` (s): with more than this the times of the readings
+/// are not those of the motion. An emulated handle that steps in a thread of its own repeats 3 % of them.
+const REPEATED_MAX: f64 = 1.0;
+const REMEMBERED_S: f64 = 5.0;
+const REPEATED_MOST: f64 = 4.0;
 /// Least mass that is believed, kg: a lighter handle moves farther in a tick than can be judged.
 const MIN_KG: f64 = 0.01;
 
@@ -46,18 +55,31 @@ pub(super) struct Observer<const D: usize> {
     /// Impulse of the force since the newest sample, N s, and the time in it, s.
     impulse_n_s: SVector<f64, D>,
     over_s: f64,
+    /// How far the newest sample lies from the one before, m.
+    moved_m: f64,
+    repeated: f64,
 }
 
 impl<const D: usize> Observer<D> {
     pub(super) fn new(handle: Handle) -> Self {
         let blank = Sample { t_s: 0.0, at_m: SVector::zeros(), applied_n: SVector::zeros() };
         let handle = Handle { mass_kg: handle.mass_kg.max(MIN_KG), ..handle };
-        Self { handle, ring: [blank; ROOM], newest: 0, count: 0, impulse_n_s: SVector::zeros(), over_s: 0.0 }
+        Self {
+            handle,
+            ring: [blank; ROOM],
+            newest: 0,
+            count: 0,
+            impulse_n_s: SVector::zeros(),
+            over_s: 0.0,
+            moved_m: 0.0,
+            repeated: 0.0,
+        }
     }
 
     /// Forgets all samples.
     pub(super) fn forget(&mut self) {
         self.count = 0;
+        self.moved_m = 0.0;
         self.impulse_n_s = SVector::zeros();
         self.over_s = 0.0;
     }
@@ -79,12 +101,27 @@ impl<const D: usize> Observer<D> {
             } else if self.over_s > 0.0 {
                 self.ring[self.newest].applied_n = self.impulse_n_s / self.over_s;
             }
+            self.notice_repeats((at_m - self.ring[self.newest].at_m).norm(), since_s);
         }
         self.newest = (self.newest + 1) % ROOM;
         self.ring[self.newest] = Sample { t_s, at_m, applied_n: SVector::zeros() };
         self.count = (self.count + 1).min(ROOM);
         self.impulse_n_s = SVector::zeros();
         self.over_s = 0.0;
+    }
+
+    fn notice_repeats(&mut self, moved_m: f64, since_s: f64) {
+        let must_move = self.moved_m >= MOVES_STEPS * self.handle.step_m && since_s >= SHOWS_S;
+        let repeats = must_move && moved_m == 0.0;
+        self.repeated = (self.repeated - since_s.max(0.0) / REMEMBERED_S).max(0.0);
+        self.repeated = (self.repeated + f64::from(u8::from(repeats))).min(REPEATED_MOST);
+        self.moved_m = moved_m;
+    }
+
+    /// The readings repeat themselves while the handle moves: each may be a millisecond older than its time, and no force follows from
+    /// them.
+    pub(super) fn times_are_unknown(&self) -> bool {
+        self.repeated > REPEATED_MAX
     }
 
     /// The samples relative to the newest one.

@@ -15,7 +15,7 @@ use screen::CameraWizard;
 /// The extra.
 pub(super) struct Camera;
 
-/// What it adds to `nima calibrate`.
+// What it adds to `nima calibrate`. A doc comment would replace the help of that command.
 #[derive(Debug, Subcommand)]
 enum Calibrate {
     /// Find the lens of the endoscope's camera from pictures of a checkerboard

@@ -290,6 +290,25 @@ fn a_hand_that_withdraws_loses_next_to_nothing() {
 }
 
 #[test]
+fn a_handle_read_by_a_thread_that_is_late_now_and_then_is_not_braked() {
+    let handle = Handle { mass_kg: 0.25, damping_n_s_m: 0.5, brake_n_s_m: 30.0, step_m: 1e-5 };
+    let mut governor = Governor::<1>::new(handle, 500.0, PERIOD_S);
+    let mut noise = Noise::new(7);
+    let mut late = 0;
+    for tick in 0..4000_u32 {
+        let t_s = f64::from(tick) * PERIOD_S;
+        // The thread is a step behind now and then, and makes up for it in the next one.
+        late = u32::from(late == 0 && noise.uniform() < 0.04);
+        let moved_s = f64::from(tick - late.min(tick)) * PERIOD_S;
+        let at_m = (0.015 * (4.0 * moved_s).sin() * 1e5).round() * 1e-5;
+        // Free motion first: there the repeats show. Then the hand carries a force.
+        let asked_n = if t_s < 0.5 { 0.0 } else { 3.0 * (10.0 * (t_s - 0.5)).min(1.0) };
+        let governed = governor.step(t_s, Some(Reading { t_s, at_m: [at_m].into() }), [asked_n].into());
+        assert!((governed.force_n.x - asked_n).abs() < 1e-9, "at {t_s} s: {governed:?}");
+    }
+}
+
+#[test]
 fn in_space_it_does_along_the_push_what_it_does_on_one_axis() {
     let handle = Handle { mass_kg: 0.25, damping_n_s_m: 0.5, brake_n_s_m: 30.0, step_m: 1e-5 };
     let along = Vector3::new(2.0, -1.0, 0.5).normalize();

@@ -297,8 +297,8 @@ fn a_handle_read_by_a_thread_that_is_late_now_and_then_is_not_braked() {
     let mut late = 0;
     for tick in 0..4000_u32 {
         let t_s = f64::from(tick) * PERIOD_S;
-        // The thread is a step behind now and then, and makes up for it in the next one.
-        late = u32::from(late == 0 && noise.uniform() < 0.04);
+        // The thread stands still for up to 4 ms now and then.
+        late = if (1..4).contains(&late) || noise.uniform() < 0.02 { late + 1 } else { 0 };
         let moved_s = f64::from(tick - late.min(tick)) * PERIOD_S;
         let at_m = (0.015 * (4.0 * moved_s).sin() * 1e5).round() * 1e-5;
         // Free motion first: there the repeats show. Then the hand carries a force.

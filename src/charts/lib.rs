@@ -53,7 +53,6 @@ pub struct Series {
 
 /// One plot.
 #[derive(Clone, Debug)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Chart {
     pub title: String,
     pub x: Axis,

@@ -3,7 +3,6 @@
 //! Takes samples of motion (m) and force (N) and the time (s); returns forces, models and verdicts. This crate uses no
 //! files, devices, threads or clocks, and nothing in a tick allocates. SI units (m, s, N, rad); a name contains its
 //! unit and frame if the type does not.
-#![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod calibration;

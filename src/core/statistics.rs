@@ -25,7 +25,6 @@ pub struct Percentiles {
 
 /// Summary of a histogram, microseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Quantiles {
     pub p50: f64,
     pub p99: f64,

@@ -7,7 +7,6 @@ use crate::Side;
 /// What is done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum TaskKind {
     /// Motion and force alone: no objects are known, and no picture.
     Free,
@@ -28,7 +27,6 @@ pub struct Happening {
 /// What can happen. Rings, pegs and lumps are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Event {
     /// The trial begins. Everything before it is forgotten.
     Begun,

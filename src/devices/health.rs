@@ -147,7 +147,6 @@ impl Outages {
 
 /// Identity that a device reports.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Identity {
     pub product: String,
     pub serial: String,

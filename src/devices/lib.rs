@@ -3,24 +3,17 @@
 //! Each driver has a folder of its own, with a codec without input and output, and a driver over a [`transport`] that
 //! neither waits nor allocates. Readings are in SI units in the device's own frame, with their time of arrival. This
 //! crate knows nothing of the rig to which a device belongs.
-#![warn(missing_docs)]
 
-#[expect(missing_docs, reason = "the names are the manufacturer's")]
 pub mod bota;
 pub mod discovery;
-#[expect(missing_docs, reason = "the names are the manufacturer's")]
 pub mod dynamixel;
 pub mod external;
-#[expect(missing_docs, reason = "the names are the manufacturer's")]
 pub mod force_dimension;
 pub mod haply;
 mod health;
-#[expect(missing_docs, reason = "the names are the manufacturer's")]
 pub mod hid;
-#[expect(missing_docs, reason = "the names are the manufacturer's")]
 pub mod kinova;
 mod lever;
-#[expect(missing_docs, reason = "the names are the manufacturer's")]
 pub mod ndi;
 #[cfg(unix)]
 pub mod os;

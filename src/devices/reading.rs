@@ -55,7 +55,6 @@ pub const ARM_JOINTS: usize = 7;
 
 /// One reading of an arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct ArmReading {
     /// Joint angles, rad, unwrapped: continuous from reading to reading.
     pub joint_rad: [f64; ARM_JOINTS],

@@ -5,7 +5,6 @@ use std::{io, path::Path};
 /// Why a device could not be opened.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, serde::Serialize)]
 #[serde(rename_all = "snake_case", tag = "trouble")]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum Trouble {
     #[error("{place} is not there")]
     Absent {

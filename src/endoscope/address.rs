@@ -50,7 +50,6 @@ pub struct Capture {
 
 /// A format in which a camera of this computer can give its pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "their names say it")]
 pub enum Pixels {
     Mjpeg,
     Yuyv,

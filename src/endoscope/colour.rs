@@ -42,7 +42,6 @@ pub enum Range {
 
 /// What the numbers of a picture mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "their types say it")]
 pub struct Colours {
     pub matrix: Matrix,
     pub range: Range,
@@ -64,7 +63,6 @@ pub struct Raw {
 /// One plane: its bytes, and how many of them one row takes.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane<'a> {
-    #[expect(missing_docs, reason = "its name says it")]
     pub bytes: &'a [u8],
     /// Bytes from one row to the next.
     pub stride: usize,

@@ -35,7 +35,6 @@ pub struct Picture {
 
 /// What is wrong with one picture, so that it cannot be shown.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum Damage {
     #[error("it is not a JPEG")]
     NotJpeg,

@@ -4,7 +4,6 @@ use std::io::{self, ErrorKind};
 
 /// Why there is no picture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum Trouble {
     #[error("nobody listens at {place}")]
     NobodyListens { place: String },

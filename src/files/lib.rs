@@ -2,7 +2,6 @@
 //! seen ([`write_atomically`]; [`write_private`] for keys), quoted in messages at a bounded length ([`quoted`]).
 //!
 //! Bad input is an `io::Error` that says what is wrong and what to do; the caller adds which file it was.
-#![warn(missing_docs)]
 
 mod input;
 mod output;

@@ -9,7 +9,6 @@
 //! | `ready` | the ready check before the first engagement of the day |
 //! | `teleop` | one tick of the whole loop for both arm pairs |
 //! | `runtime` | the real-time thread, its supervisor, the virtual clock |
-#![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod config;

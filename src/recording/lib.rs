@@ -3,7 +3,6 @@
 //! Converts between bytes and the checked types of `nima-core`. Every reader refuses what it does not understand and
 //! reports the position; every writer writes a temporary file first and renames it, but that of a session, whose file is valid at
 //! every moment while it grows.
-#![warn(missing_docs)]
 
 pub mod csv;
 pub mod messages;

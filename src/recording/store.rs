@@ -31,7 +31,6 @@ pub struct WristId {
 
 /// Why a calibration file could not be used or written: what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum StoreError {
     /// The folder for the user's data is not known.
     #[error("no folder for calibrations is known; set NIMA_DATA_DIR to one")]
@@ -84,7 +83,6 @@ pub enum Age {
 
 /// A loaded record and its age.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Loaded<R> {
     pub record: R,
     /// Its age; warn if it is not `Fresh`.

@@ -64,7 +64,6 @@ pub struct WholeFile {
 
 /// A channel, as [`Encoding`] describes it.
 #[derive(Clone, PartialEq, prost::Message)]
-#[expect(missing_docs, reason = "as those of Encoding")]
 pub struct NewChannel {
     #[prost(string, tag = "1")]
     pub topic: String,

@@ -21,7 +21,6 @@
 //! | `watched` | what a screen elsewhere is told of a loop while it runs |
 //! | `copied` | the file of a session, written elsewhere while it happens |
 //! | `replay` | the same loop, fed from them; and with one thing changed |
-#![warn(missing_docs)]
 
 pub mod anonymous;
 mod codec;

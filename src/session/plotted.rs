@@ -20,7 +20,6 @@ use crate::{
 
 /// Why the plots of a session cannot be read.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum PlottedError {
     #[error(transparent)]
     File(#[from] ReadError),
@@ -42,7 +41,6 @@ pub enum PlottedError {
 
 /// What is plotted of one arm in one tick.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(missing_docs, reason = "as in a tick")]
 pub struct PlottedTick {
     /// Time of its messages, ns since 1970 (UTC).
     pub time_ns: u64,

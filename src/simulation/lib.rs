@@ -2,7 +2,6 @@
 //!
 //! Takes the loop's outputs and returns what a rig would measure (m, N, workspace frame). A scene lists what a
 //! simulation contains; what it does not list is not computed. Values that are not finite are ignored.
-#![warn(missing_docs)]
 
 pub mod camera;
 mod carrying;

@@ -77,7 +77,6 @@ pub struct Progress {
 
 /// A trained ensemble and everything needed to use it.
 #[derive(Clone, Debug)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Trained {
     pub members: Vec<Member>,
     pub figures: Vec<MemberFigures>,

@@ -35,7 +35,6 @@ pub struct MethodFigures {
 
 /// Mean and standard deviation of a model's predictions without contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct NoContact {
     pub mean: f64,
     /// Standard deviation of the predictions.
@@ -58,7 +57,6 @@ pub struct Part {
 
 /// All errors of a model on a data set.
 #[derive(Clone, Debug, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Evaluation {
     /// Names of the outputs, which contain the unit.
     pub outputs: Vec<String>,

@@ -2,7 +2,6 @@
 //!
 //! Takes a data set; returns a [`Model`](nima_core::tip_force::Model) and its errors on held-out rows. For a
 //! background thread; nothing here runs in the loop.
-#![warn(missing_docs)]
 
 mod adamw;
 mod check;

@@ -233,7 +233,6 @@ impl Rendered {
 
 /// Standard deviation of the motion inside the window, per axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Excitation {
     pub position_m: Vector3<f64>,
     pub velocity_m_s: Vector3<f64>,

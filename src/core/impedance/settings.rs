@@ -219,7 +219,6 @@ impl Settings {
 
 /// A setting out of range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum SettingsError {
     /// Sampling rate out of range.
     #[error("the sampling rate is {rate_hz} Hz; give {RATE_HZ}")]

@@ -11,7 +11,6 @@ use crate::limits::SCALE;
 
 /// Why a mapping is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum MappingError {
     /// The rotation is not finite.
     #[error("the rotation from the leader to the arm's base is not finite: give the endoscope's pose again")]

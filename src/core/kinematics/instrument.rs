@@ -30,7 +30,6 @@ pub struct ArmSettings {
 
 /// Why the settings of an arm are invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum ArmError {
     /// A length or angle is not finite.
     #[error("the arm's {field} is not a finite number: measure it and write it into the rig file")]

@@ -27,7 +27,6 @@ pub struct RcmSettings {
 
 /// Why a position or the settings are refused.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum RcmError {
     /// A number is not finite.
     #[error("{what} is not a finite number: give it in metres in the frame of the arm's base")]

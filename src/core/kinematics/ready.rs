@@ -57,7 +57,6 @@ pub struct Ready {
 
 /// Why there is no pose for a position.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum ReadyError {
     /// The tip is outside the permitted space.
     #[error("the instrument cannot be there")]

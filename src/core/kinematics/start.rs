@@ -6,7 +6,6 @@ use super::gen3::{Joints, LIMIT_RAD};
 
 /// Why the arm cannot start from its present position.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum StartError {
     /// The loop's period is invalid.
     #[error("the period of the inverse kinematics is {period_s} s: it must be above 0 and at most 0.02 s")]

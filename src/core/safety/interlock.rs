@@ -74,7 +74,6 @@ impl<F: Copy> State<F> {
 /// What is seen of the machine in a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "independent facts, each with its own reader")]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Seen {
     /// Every device of the force path delivers.
     pub connected: bool,
@@ -122,7 +121,6 @@ pub enum Why {
 
 /// One change of state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Change<F> {
     pub from: State<F>,
     pub to: State<F>,

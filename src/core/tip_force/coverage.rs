@@ -37,7 +37,6 @@ impl Map {
 
 /// Smallest and largest value so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Span {
     pub low: f32,
     pub high: f32,
@@ -90,7 +89,6 @@ pub struct Goal {
 
 /// What a recording has to cover.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum GoalKind {
     Tilt,
     Depth,

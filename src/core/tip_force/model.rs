@@ -4,7 +4,6 @@ use super::{Baselines, Doubt, Expansion, Network, Normalisation, Origin};
 
 /// A trained network with everything that is needed to use it.
 #[derive(Clone, Debug)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Model {
     pub inputs: Vec<String>,
     pub outputs: Vec<String>,

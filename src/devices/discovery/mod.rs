@@ -69,7 +69,6 @@ pub trait Probe: Send {
 /// Result of a test.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "state")]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Outcome {
     /// The device works.
     Connected(Found),
@@ -93,7 +92,6 @@ impl From<Result<Found, Trouble>> for Outcome {
 
 /// The test of one device.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Diagnosis {
     pub name: String,
     /// Duration of the test, s.

@@ -11,7 +11,6 @@ use crate::hid;
 
 /// Identity of a USB device.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct UsbIds {
     pub vendor: u16,
     pub product: u16,
@@ -22,7 +21,6 @@ pub struct UsbIds {
 
 /// A serial port.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct SerialPort {
     pub path: PathBuf,
     pub usb: Option<UsbIds>,
@@ -30,7 +28,6 @@ pub struct SerialPort {
 
 /// A human interface device.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct HidNode {
     pub path: PathBuf,
     pub usb: UsbIds,

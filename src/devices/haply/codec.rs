@@ -24,7 +24,6 @@ const SPEED_MAX_M_S: f32 = 30.0;
 
 /// Identity of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct DeviceInfo {
     pub id: u16,
     pub model: u8,

@@ -21,7 +21,6 @@ mod follower;
 pub mod frame;
 pub mod kinematics;
 pub mod limits;
-#[expect(missing_docs, reason = "fields of the wire, named as in the manufacturer's documentation")]
 pub mod messages;
 mod opening;
 pub mod session;

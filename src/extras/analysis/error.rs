@@ -2,7 +2,6 @@
 
 /// Input that cannot be used, or a question that it cannot answer; its text is one sentence for the user.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[expect(missing_docs, reason = "the sentences say it")]
 pub enum AnalysisError {
     #[error("{what}: at least {needed} are needed, and there are {found}")]
     TooFew { what: &'static str, needed: usize, found: usize },

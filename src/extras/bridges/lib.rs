@@ -8,7 +8,6 @@
 //! A bridge is an `Audience` of the session's recorder, as the live viewers are. On the recorder's thread it only
 //! copies what is due into a bounded queue and never waits; threads of its own do the rest. What each of them sends, under which names and
 //! in which units, is in `docs/bridges.md`.
-#![warn(missing_docs)]
 
 pub mod igtl;
 #[cfg(feature = "loop")]

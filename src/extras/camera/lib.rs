@@ -5,7 +5,6 @@
 //! 2000, refined by Levenberg and Marquardt's method) with as many terms as pay on held-out views, and judges it. [`place`] finds where the
 //! camera is from corners of the board that the instrument's tip has touched. No file, thread,
 //! clock or window.
-#![warn(missing_docs)]
 
 mod calibrate;
 mod coverage;

@@ -15,7 +15,6 @@
 //! | `share` | the rig's end |
 //! | `watch` | the other end: finding rigs, their screens |
 //! | `record` | a rig's session in a file elsewhere |
-#![warn(missing_docs)]
 #![cfg(feature = "engine")]
 
 mod config;

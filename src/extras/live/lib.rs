@@ -3,7 +3,6 @@
 //! The protocol is Foxglove's over WebSocket (subprotocols `foxglove.sdk.v1` and `v1.1`), from their library. It runs on threads of
 //! its own. Who watches cannot act: the server offers nothing but channels. A viewer that is too slow loses the oldest messages; neither
 //! the loop nor the recording waits for it.
-#![warn(missing_docs)]
 #![cfg(feature = "engine")]
 
 use std::{

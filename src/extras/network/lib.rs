@@ -5,7 +5,6 @@
 //! purpose, for a study or, as a [`relay`], between two real ends.
 //!
 //! Design and figures: `docs/network.md`.
-#![warn(missing_docs)]
 
 pub mod clock;
 pub mod control;

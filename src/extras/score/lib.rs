@@ -28,7 +28,6 @@
 //! assert_eq!(score.of("path_length_m", Side::Left), None, "there is no left hand");
 //! # Ok::<(), nima_score::TaskError>(())
 //! ```
-#![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod applicable;

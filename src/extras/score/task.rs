@@ -74,7 +74,6 @@ pub struct Criterion {
 
 /// Why a task file was refused.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum TaskError {
     #[error("the task file cannot be read: {reason}")]
     Toml { reason: String },

@@ -34,7 +34,6 @@ pub enum Answers {
 
 /// The ratings of the NASA-TLX.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names are those of the questionnaire")]
 pub struct Ratings {
     pub mental: u8,
     pub physical: u8,

@@ -25,7 +25,6 @@ pub struct Entry {
 /// Practice or a trial that counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Phase {
     Practice,
     Trial,
@@ -45,7 +44,6 @@ pub struct TrialId {
 /// How a trial ended that has a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Ending {
     Completed,
     OutOfTime,
@@ -65,7 +63,6 @@ impl Ending {
 /// What happens in a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Event {
     /// The folder was made.
     StudyMade {

@@ -6,7 +6,6 @@ use crate::file::Mistakes;
 
 /// What is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum StudyError {
     #[error(transparent)]
     Mistakes(#[from] Mistakes),

@@ -35,7 +35,6 @@
 //! assert!(!public.contains("dfr") && public.contains(&study.plan().commitment));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-#![warn(missing_docs)]
 
 mod answers;
 mod condition;

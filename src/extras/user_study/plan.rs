@@ -56,7 +56,6 @@ pub struct Plan {
 /// Practice, without its condition.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(missing_docs, reason = "as in the study file")]
 pub struct Practising {
     pub not_reached: NotReached,
     pub criterion: Criterion,

@@ -45,7 +45,6 @@ impl Questionnaire {
 /// A scale of the NASA-TLX.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the names are those of the questionnaire")]
 pub enum TlxScale {
     Mental,
     Physical,

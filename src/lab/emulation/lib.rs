@@ -2,7 +2,6 @@
 //!
 //! [`emulators`] are fed by a closure, a test or a world with what a device would measure. [`emulated`] connects one for every device of a
 //! rig file to the worlds of `nima_simulation`. The loop reaches them through its drivers alone; nothing of the product names this crate.
-#![warn(missing_docs)]
 
 #[cfg(test)]
 #[cfg(target_os = "linux")]

@@ -2,7 +2,6 @@
 //!
 //! Each is an [`Experiment`], a struct of its options; its result implements [`Findings`]. One writer in the console
 //! turns findings into files and into text on a terminal.
-#![warn(missing_docs)]
 
 pub mod baselines;
 pub mod clocks;

@@ -28,7 +28,6 @@ use self::{leader::Leader, tally::Tally};
 
 /// Why a recording could not be replayed.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum ReplayError {
     #[error(transparent)]
     Settings(#[from] SettingsError),
@@ -64,7 +63,6 @@ const HOLE_PERIODS: f64 = 10.0;
 
 /// One row of the trace.
 #[derive(Clone, Copy, Debug)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Row {
     pub t_s: f64,
     pub measured: Vector3<f64>,
@@ -83,7 +81,6 @@ pub struct Row {
 
 /// How to replay.
 #[derive(Clone, Copy, Debug)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Options {
     pub mode: Mode,
     pub window_s: f64,

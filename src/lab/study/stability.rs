@@ -57,7 +57,6 @@ impl Options {
 
 /// Why the study could not be made.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum StabilityError {
     /// The number of ticks is out of range.
     #[error("{ticks} ticks were asked for; it must be 10000 to 1000000000")]
@@ -68,7 +67,6 @@ pub enum StabilityError {
 
 /// One solver and degree in one case; the worst of its windows.
 #[derive(Clone, Debug, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Entry {
     pub solver: Solver,
     /// Polynomial degree.

@@ -39,7 +39,6 @@ pub struct Endoscope {
 /// What is shown of a picture with two halves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-#[expect(missing_docs, reason = "their names say it")]
 pub enum StereoView {
     Left,
     Right,

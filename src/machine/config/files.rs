@@ -16,7 +16,6 @@ use crate::rig::Misread;
 
 /// Why a settings file cannot be used; the message says what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum ConfigError {
     /// The name is neither an embedded one nor a file.
     #[error("there is no {kind} \"{name}\": give one of {known} or the path of a TOML file")]

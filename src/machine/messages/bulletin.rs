@@ -30,7 +30,6 @@ pub struct Bulletin<'a> {
 
 /// Why the machine at the other end of the network is stopped: its fault without the details, which its own screen shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum FarStop {
     /// Somebody stopped it there.
     Stopped,

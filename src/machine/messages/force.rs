@@ -11,7 +11,6 @@ pub const UNKNOWN_N: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 
 /// Source of the tip force of a tick, or the reason why it is unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum ForceSource {
     /// Measured at the tip.
     AtTip,

@@ -107,7 +107,6 @@ impl Command {
 
 /// One tick of an arm pair as the screen and the recorder see it. Frame: workspace (z up, tissue at rest near z = 0).
 #[derive(Clone, Copy, Debug)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Tick {
     /// Counts executed ticks from 0.
     pub index: u64,
@@ -170,7 +169,6 @@ impl Tick {
 
 /// A fault: zero force, shown with its cause and cure. The first fault is kept until it is released.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Fault {
     /// The rig delivered no finite sample for longer than the age limit.
     SourceSilent,
@@ -222,7 +220,6 @@ pub const fn attention(state: LoopState) -> u8 {
 
 /// Something that happens once and is reported at that moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Event {
     /// The loop changed its state.
     StateChanged {

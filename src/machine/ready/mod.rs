@@ -136,7 +136,6 @@ impl Ask {
 
 /// Unit of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Unit {
     Count,
     Newton,
@@ -148,7 +147,6 @@ pub enum Unit {
 
 /// What was measured, and its limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Figure {
     pub value: f64,
     pub limit: f64,

@@ -26,7 +26,6 @@ const RELEASE_WITHIN_S: f64 = 60.0;
 
 /// A point of the list and where it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Entry {
     pub check: Check,
     pub state: State,

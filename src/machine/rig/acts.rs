@@ -13,7 +13,6 @@ pub enum Act {
 
 /// How often each was done. A simulation carries out what a count has moved on by, so that nothing is done twice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Acts {
     pub begins: u8,
     pub marks: u8,

@@ -30,7 +30,6 @@ const ACCELERATION: std::ops::Range<usize> = 6..9;
 
 /// Something to look at, with a cause and a cure on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Finding {
     /// No reading came.
     Silent,
@@ -62,7 +61,6 @@ pub enum Finding {
 
 /// One number of a device's readings during the test.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Measured {
     pub channel: usize,
     /// Standard deviation within tenths of a second: the noise, without slow motion.
@@ -88,7 +86,6 @@ pub const fn least(kind: PartKind, channel: usize) -> f64 {
 
 /// What a test has found.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Checkup {
     pub part: Part,
     /// Duration, s.
@@ -110,7 +107,6 @@ pub struct Checkup {
 
 /// What a test needs to know of a device.
 #[derive(Clone, Copy, Debug)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Subject<'a> {
     pub part: Part,
     /// Place in the roster.

@@ -18,7 +18,6 @@ pub const AGES: usize = 48;
 
 /// Count, mean, spread and range of one number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Spread {
     pub count: u32,
     pub mean: f64,

@@ -60,7 +60,6 @@ impl fmt::Display for DeviceName {
 
 /// Devices of one kind can take each other's places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum PartKind {
     Handle,
     Arm,

@@ -16,7 +16,6 @@ use crate::{
 
 /// Error of one mode over a run: rendered force minus the force at the follower at the same instant.
 #[derive(Clone, Copy, Debug, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct ModeError {
     pub side: Side,
     pub mode: Mode,

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 /// An invalid mapping.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum MappingError {
     /// Not of the form `NAME=COLUMN` or `NAME=COLUMN*SCALE`.
     #[error("--map {text}: write NAME=COLUMN or NAME=COLUMN*SCALE, for example x=px_mm*0.001")]

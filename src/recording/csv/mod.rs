@@ -26,7 +26,6 @@ pub const AXIS_NAMES: [&str; AXES] = ["x", "y", "z"];
 
 /// Why a recording could not be used: what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum RecordingError {
     /// The file could not be opened.
     #[error("cannot read recording {path}: {reason}")]

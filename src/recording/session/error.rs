@@ -7,7 +7,6 @@ use std::{
 
 /// Why a session file could not be written. Everything that was written before stays readable.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum WriteError {
     /// The file could not be created.
     #[error("cannot create session {path}: {reason}; {cure}")]
@@ -60,7 +59,6 @@ fn cure(kind: io::ErrorKind) -> &'static str {
 
 /// Why a session file could not be read.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum ReadError {
     /// It could not be opened or read.
     #[error("cannot read session {path}: {reason}")]

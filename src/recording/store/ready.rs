@@ -17,7 +17,6 @@ pub const VALID_S: u64 = 12 * 3600;
 /// A device as it was checked.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct CheckedDevice {
     /// Its name in the rig: `right sensor`.
     pub name: String,

@@ -6,7 +6,6 @@ use crate::store::StoreError;
 
 /// What happened, where, and what to do about it, in one line.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum TipForceError {
     /// A file could not be opened or read.
     #[error("cannot read {path}: {reason}")]

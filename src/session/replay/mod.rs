@@ -24,7 +24,6 @@ use crate::{digest::Stage, journal::JournalError};
 
 /// Why a session cannot be replayed.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum ReplayError {
     /// A message of the journal cannot be read.
     #[error("message {place} of its journal: {source}")]

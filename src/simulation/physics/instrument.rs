@@ -45,7 +45,6 @@ pub struct Loads {
 /// What an instrument touches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a thing that can be touched, in any combination")]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Touching {
     pub ring: bool,
     pub peg: bool,

@@ -146,7 +146,6 @@ pub struct View {
 /// Why a setting was refused.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("the objects of the scene have {key} = {value}: it must be {allowed}")]
-#[expect(missing_docs, reason = "the message says it")]
 pub struct SettingError {
     pub key: &'static str,
     pub value: f64,

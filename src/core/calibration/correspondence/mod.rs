@@ -136,7 +136,6 @@ impl Default for Limits {
 
 /// Input that cannot be fitted; the message says what, where, and what to do.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum CorrespondenceError {
     /// A number is missing or infinite.
     #[error("pair {index}: a force or rotation is not finite; remove the pair")]

@@ -21,7 +21,6 @@ pub enum CorrespondenceKind {
 /// A fitted correspondence with the figures of its quality.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct CorrespondenceRecord {
     pub kind: CorrespondenceKind,
     /// Sensor, tool and date.

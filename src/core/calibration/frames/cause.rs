@@ -9,7 +9,6 @@ use crate::calibration::Verdict;
 /// The reason for a verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "name", rename_all = "snake_case", deny_unknown_fields)]
-#[expect(missing_docs, reason = "the names of the fields say it")]
 pub enum Cause {
     /// Accurate on held-out data.
     Proven,
@@ -154,7 +153,6 @@ fn mirrored_z(turn: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
 /// An axis of a frame, with its sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum SignedAxis {
     PlusX,
     PlusY,

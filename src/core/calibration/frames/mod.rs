@@ -69,7 +69,6 @@ pub use view::{Move, View, ViewFound};
 
 /// Why samples could not be fitted. Messages count poses from 1.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum FrameError {
     #[error("pose {} lacks a source ({from:?}); remove it", index + 1)]
     Missing {

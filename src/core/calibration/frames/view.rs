@@ -27,7 +27,6 @@ const MIRROR_SHARE: f64 = 0.5;
 /// A move in the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Move {
     Right,
     Up,

@@ -43,7 +43,6 @@ pub use targets::{PoseTarget, TARGETS};
 
 /// Why poses could not be fitted. Messages count poses from 1.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum GravityError {
     #[error("there are no poses; record still poses of the tool first")]
     NoPoses,

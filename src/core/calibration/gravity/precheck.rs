@@ -51,7 +51,6 @@ pub enum CheckState {
 
 /// One check before the first pose.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Check {
     pub name: &'static str,
     /// Measured value, for the screen; empty if there is none.

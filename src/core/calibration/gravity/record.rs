@@ -17,7 +17,6 @@ pub enum GravityKind {
 /// A gravity calibration as written to a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct GravityRecord {
     pub kind: GravityKind,
     /// Sensor, tool and date.

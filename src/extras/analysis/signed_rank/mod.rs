@@ -51,7 +51,6 @@ impl Distribution {
 
 /// Choices of the signed-rank test.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the types say it")]
 pub struct Options {
     pub zeros: Zeros,
     pub distribution: Distribution,

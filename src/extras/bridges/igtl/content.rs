@@ -188,7 +188,6 @@ impl Text {
 
 /// What a message says.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the types say it")]
 pub enum Content {
     Transform(Matrix),
     Position(Position),

@@ -28,7 +28,6 @@ const SENSOR_FROM_S: f64 = 0.3e-3;
 
 /// Readings that are new in a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct ArmReadings {
     pub handle: Option<Stamped<HandleReading>>,
     pub arm: Option<Stamped<ArmReading>>,

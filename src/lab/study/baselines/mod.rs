@@ -51,7 +51,6 @@ impl Split {
 
 /// Why the study could not be run.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum BaselinesError {
     #[error("{name}: {source}")]
     Settings { name: String, source: SettingsError },
@@ -82,7 +81,6 @@ pub struct Options {
 
 /// One mode on one source at one delay.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Row {
     pub source: String,
     pub split: Split,
@@ -98,7 +96,6 @@ pub struct Row {
 
 /// One mode at one delay over all sources of one part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Mean {
     pub split: Split,
     pub delay_ms: f64,

@@ -5,7 +5,6 @@ use serde::Serialize;
 /// Where a fault is located.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Part {
     /// The force sensor.
     Force,
@@ -33,7 +32,6 @@ impl Part {
 /// A fault on the virtual clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "each is told by `Kind::words`, which is what a reader sees")]
 pub enum Kind {
     ForceSilent,
     ForceGaps,

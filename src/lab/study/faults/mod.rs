@@ -41,7 +41,6 @@ const MODES: [Mode; 2] = [Mode::Best, Mode::Dfr];
 
 /// Why the study could not be made.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum FaultsError {
     /// A scene or rig is invalid.
     #[error(transparent)]
@@ -157,7 +156,6 @@ pub enum Verdict {
 
 /// Result of one case.
 #[derive(Clone, Debug, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Outcome {
     pub kind: Kind,
     /// Where the fault is located.
@@ -214,7 +212,6 @@ pub struct Report {
 
 /// Counts and percentiles of a report.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Sums {
     /// Kinds of fault.
     pub kinds: usize,

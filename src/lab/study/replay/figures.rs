@@ -45,7 +45,6 @@ pub struct Reconstructions {
 
 /// Median, 95th percentile and maximum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Spread {
     pub p50: f64,
     pub p95: f64,
@@ -54,7 +53,6 @@ pub struct Spread {
 
 /// Time of one tick of identification, us.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct TickTime {
     pub p50: f64,
     pub p99: f64,
@@ -63,7 +61,6 @@ pub struct TickTime {
 
 /// All results of a replay; the JSON of `nima identify`.
 #[derive(Clone, Debug, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Figures {
     /// Samples in the recording.
     pub samples: usize,

@@ -6,7 +6,6 @@ use super::Figures;
 
 /// Spread of the ratio of both errors over the recordings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct RatioFigures {
     pub least: f64,
     pub median: f64,

@@ -39,7 +39,6 @@ impl Method {
 
 /// One value for every parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Choice {
     /// Mode or solver.
     pub method: Method,
@@ -101,7 +100,6 @@ pub struct Curve {
 
 /// The values to try.
 #[derive(Clone, Debug)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Plan {
     /// The base point, and settings that are not varied (scales, ridge). Rate and axes are those of the source.
     pub base: Settings,

@@ -10,7 +10,6 @@ use nima_simulation::{World, scene::Scene};
 
 /// Motion and force over time, and what to call them.
 #[derive(Clone, Debug)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Source {
     /// Name in tables and pictures.
     pub name: String,

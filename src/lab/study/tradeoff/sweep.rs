@@ -20,7 +20,6 @@ const LONGEST_SHARE: f64 = 0.25;
 
 /// Why a sweep failed.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
 pub enum SweepError {
     #[error("cancelled; nothing was saved")]
     Cancelled,
@@ -38,7 +37,6 @@ pub enum SweepError {
 
 /// Time of one tick, us.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct CostUs {
     pub p50: f64,
     pub p99: f64,
@@ -56,7 +54,6 @@ impl CostUs {
 
 /// A choice, its cost and its error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Point {
     #[serde(flatten)]
     pub choice: Choice,
@@ -83,7 +80,6 @@ pub struct Point {
 
 /// A choice that was left out, and the reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct Skipped {
     #[serde(flatten)]
     pub choice: Choice,
@@ -92,7 +88,6 @@ pub struct Skipped {
 
 /// Results of one source.
 #[derive(Clone, Debug, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct SourceFigures {
     pub source: String,
     pub unit: String,

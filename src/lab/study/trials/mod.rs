@@ -112,7 +112,6 @@ pub struct OfMeasure {
 
 /// A measure under one condition; of a participant with several trials their mean.
 #[derive(Clone, Debug, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct OfCondition {
     pub condition: String,
     pub participants: usize,

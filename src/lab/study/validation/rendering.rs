@@ -29,7 +29,6 @@ pub struct Figures {
 
 /// Figures of one mode.
 #[derive(Clone, Copy, Debug, Serialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct ModeFigures {
     pub mode: Mode,
     pub error: Figures,

@@ -63,7 +63,6 @@ pub struct Duration {
 
 /// A vector: a place in m, where nothing else is said.
 #[derive(Clone, Copy, PartialEq, Message)]
-#[expect(missing_docs, reason = "axes")]
 pub struct Vector3 {
     #[prost(double, tag = "1")]
     pub x: f64,
@@ -75,7 +74,6 @@ pub struct Vector3 {
 
 /// A rotation, of length 1.
 #[derive(Clone, Copy, PartialEq, Message)]
-#[expect(missing_docs, reason = "axes; w is the scalar")]
 pub struct Quaternion {
     #[prost(double, tag = "1")]
     pub x: f64,
@@ -100,7 +98,6 @@ pub struct Pose {
 
 /// A colour, each part from 0 to 1.
 #[derive(Clone, Copy, PartialEq, Message)]
-#[expect(missing_docs, reason = "red, green, blue, how opaque")]
 pub struct Color {
     #[prost(double, tag = "1")]
     pub r: f64,
@@ -143,7 +140,6 @@ pub struct FrameTransforms {
 /// How much a line of a log matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, prost::Enumeration)]
 #[repr(i32)]
-#[expect(missing_docs, reason = "their names say it")]
 pub enum Level {
     Unknown = 0,
     Debug = 1,

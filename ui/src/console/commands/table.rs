@@ -1,6 +1,6 @@
 //! The table.
 
-use std::{fmt::Write as _, sync::LazyLock};
+use std::sync::LazyLock;
 
 use egui::Key;
 
@@ -185,17 +185,6 @@ fn machine() -> Vec<Entry> {
     ]
 }
 
-/// The rows of the table in `docs/screen.md`.
-pub fn as_markdown() -> String {
-    let mut rows = String::new();
-    for entry in table() {
-        let does = entry.does.lines().next().unwrap_or_default();
-        // Writing into a String cannot fail.
-        let _ = writeln!(rows, "| {} | {} | {} | {does} |", entry.title, entry.keys_told(), entry.place.name());
-    }
-    rows
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -235,13 +224,31 @@ mod tests {
         }
     }
 
+    /// The page `docs/commands.md`.
+    fn page() -> String {
+        let commands = table().iter().map(|entry| {
+            let does = entry.does.lines().next().unwrap_or_default();
+            format!("| {} | {} | {} | {does} |\n", entry.title, entry.keys_told(), entry.place.name())
+        });
+        let by_hand = names::BY_HAND.map(|(keys, does)| format!("| {keys} | {does} |\n"));
+        format!(
+            "# All commands and keys\n\n\
+             Every command of the window. [Screen and keys](screen.md#find-a-command) says how to find one.\n\n\
+             | command | key | where | effect |\n|---|---|---|---|\n{}\n\
+             Keys and gestures that are not commands:\n\n| key | effect |\n|---|---|\n{}",
+            commands.collect::<String>(),
+            by_hand.concat()
+        )
+    }
+
+    /// `UPDATE_SNAPSHOTS=1` writes the page.
     #[test]
-    fn the_document_has_the_table() {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/screen.md");
-        let document = std::fs::read_to_string(path).unwrap();
-        assert!(document.contains(&as_markdown()), "docs/screen.md must contain:\n{}", as_markdown());
-        for (keys, does) in names::BY_HAND {
-            assert!(document.contains(&format!("| {keys} | {does} |")), "{keys}");
+    fn the_page_of_the_commands_is_up_to_date() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands.md");
+        if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
+            std::fs::write(&path, page()).unwrap();
         }
+        let written = std::fs::read_to_string(&path).unwrap_or_default();
+        assert_eq!(written, page(), "{}: run with UPDATE_SNAPSHOTS=1", path.display());
     }
 }

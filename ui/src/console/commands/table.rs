@@ -224,31 +224,34 @@ mod tests {
         }
     }
 
-    /// The page `docs/commands.md`.
+    /// `docs/reference/commands.md`, from the table.
     fn page() -> String {
-        let commands = table().iter().map(|entry| {
+        let row = |entry: &Entry| {
             let does = entry.does.lines().next().unwrap_or_default();
             format!("| {} | {} | {} | {does} |\n", entry.title, entry.keys_told(), entry.place.name())
-        });
+        };
+        let commands: Vec<String> = table().iter().map(row).collect();
         let by_hand = names::BY_HAND.map(|(keys, does)| format!("| {keys} | {does} |\n"));
         format!(
             "# All commands and keys\n\n\
-             Every command of the window. [Screen and keys](screen.md#find-a-command) says how to find one.\n\n\
+             Every command of the window. [Screen and keys](../screen.md#find-a-command) says how to find one.\n\n\
+             This page is generated: change `ui/src/console/commands/table.rs`, then run `NIMA_WRITE_DOCS=1 cargo test -p nima-console --lib \
+             the_page_of_the_commands`.\n\n\
              | command | key | where | effect |\n|---|---|---|---|\n{}\n\
              Keys and gestures that are not commands:\n\n| key | effect |\n|---|---|\n{}",
-            commands.collect::<String>(),
+            commands.concat(),
             by_hand.concat()
         )
     }
 
-    /// `UPDATE_SNAPSHOTS=1` writes the page.
+    /// `NIMA_WRITE_DOCS=1` writes the page.
     #[test]
     fn the_page_of_the_commands_is_up_to_date() {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands.md");
-        if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/reference/commands.md");
+        if std::env::var_os("NIMA_WRITE_DOCS").is_some() {
             std::fs::write(&path, page()).unwrap();
         }
         let written = std::fs::read_to_string(&path).unwrap_or_default();
-        assert_eq!(written, page(), "{}: run with UPDATE_SNAPSHOTS=1", path.display());
+        assert_eq!(written, page(), "{}: run with NIMA_WRITE_DOCS=1", path.display());
     }
 }

@@ -73,7 +73,10 @@ fn every_number_in_brief_is_that_of_its_table() {
 fn a_number_that_is_not_in_the_table_is_found() {
     let table = "The *best* mode:\n\n| mode | 10 ms | 100 ms |\n|---|---|---|\n| best | 0.519 [0.3, 0.7] | -11.0 / 0.5 |\n| best | 2 | 3 |\n";
     let judge = |page: &str| quoted(page).iter().filter_map(|quoted| wrong(quoted, |_| table.to_owned())).count();
-    assert_eq!(judge("0.52 <!-- = a.md / The *best* / best / 10 ms --> and -11 <!-- = a.md / The / best / 100 ms -->"), 0);
+    assert_eq!(
+        judge("0.52 <!-- = a.md / The *best* / best / 10 ms --> and -11 <!-- = a.md / The / best / 100 ms -->"),
+        0
+    );
     assert_eq!(judge("3 <!-- = a.md / The *best* / best#2 / 100 ms -->"), 0);
     for page in [
         "0.51 <!-- = a.md / The *best* / best / 10 ms -->",

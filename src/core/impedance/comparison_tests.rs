@@ -62,7 +62,7 @@ fn real_recordings() {
     }
 }
 
-/// The mean over the recordings that the constants were chosen on, and over the others, as in docs/matched.md with a small margin.
+/// The mean over the recordings that the constants were chosen on, and over the others, as in docs/results/recordings.md with a small margin.
 #[test]
 fn the_best_of_two_on_real_recordings() {
     for (runs, limits) in [

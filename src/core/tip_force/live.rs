@@ -58,7 +58,7 @@ pub struct TipForceReport {
 
 /// Doubt from which the fallback is used. On the emulated rig, whose task moves otherwise than its training, the mean
 /// error per axis at a doubt of 1.0 to 1.4 was 0.02 to 0.09 N, and at 1.8 to 2.0 it was 0.04 to 0.18 N; that of the
-/// wrist force was 0.3 to 0.9 N and 0.2 to 1.2 N (`docs/calibration.md`).
+/// wrist force was 0.3 to 0.9 N and 0.2 to 1.2 N (`docs/results/calibration.md`).
 pub(super) const FAR_OUTSIDE: f32 = 2.0;
 /// Number of uncertain samples among the last five that count.
 const DOUBTFUL_OF_FIVE: u32 = 3;

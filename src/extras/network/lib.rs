@@ -4,7 +4,7 @@
 //! it never lets wait. [`stream::Stream`] is the same without socket and handshake, for a virtual clock. [`impairment`] makes a line bad on
 //! purpose, for a study or, as a [`relay`], between two real ends.
 //!
-//! Design and figures: `docs/network.md`.
+//! Design: `docs/network.md`. Figures: `docs/results/stream.md`.
 
 pub mod clock;
 pub mod control;

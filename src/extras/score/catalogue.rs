@@ -1,4 +1,4 @@
-//! Every measure: id, unit, definition and source. `docs/score.md` says the same; a test compares them.
+//! Every measure: id, unit, definition and source. `docs/reference/measures.md` is generated from them.
 
 /// What a measure is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Simulated people: skill, learning, fatigue and answers, the same for the same seed.
 //!
 //! They test the whole way from a study file to its report before the first person comes. They feel: what is more than the force that a person
-//! means to use slows the hand down, and it gives way (`docs/studies.md`). They are no model of surgeons: the spread of skill and intended force is
+//! means to use slows the hand down, and it gives way (`docs/simulated.md`). They are no model of surgeons: the spread of skill and intended force is
 //! made up, and their answers do not depend on the condition.
 
 use fastrand::Rng;

@@ -2,7 +2,7 @@
 //!
 //! A [`JitterProfile`] is a model of two states, because late ticks come in clusters: a process that takes the processor
 //! once soon takes it again. In each state the lateness is drawn from the quantiles recorded in that state, linearly
-//! interpolated. `docs/timing.md` says how the tables were recorded and how a new one is made.
+//! interpolated. `docs/results/timing.md` says how the tables were recorded and how a new one is made.
 
 use nima_core::noise::Noise;
 
@@ -23,7 +23,7 @@ struct JitterState {
 }
 
 /// An ordinary thread while nothing else runs. The quantiles are recorded; the second state comes so often that as many periods
-/// are missed as in the quiet case of `docs/timing.md`, 0.2 %.
+/// are missed as in the quiet case of `docs/results/timing.md`, 0.2 %.
 pub(super) const QUIET: JitterProfile = JitterProfile {
     states: [
         JitterState {

@@ -125,7 +125,7 @@ fn three(value: &Value) -> [f64; 3] {
     [0, 1, 2].map(|axis| value[axis].as_f64().unwrap())
 }
 
-/// Checks the errors of both arms; prints them for docs/calibration.md.
+/// Checks the errors of both arms; prints them for docs/results/calibration.md.
 fn judge(figures: &Value) {
     let errors = figures["tip_error"].as_array().unwrap();
     for side in ["right", "left"] {

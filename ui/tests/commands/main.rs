@@ -22,6 +22,7 @@ mod packages;
 mod paper_rig;
 mod replay;
 mod report;
+mod results;
 mod rings;
 mod score;
 mod sessions;

@@ -13,7 +13,7 @@ use crate::{
     signal::{DelayLine, Lanes},
 };
 
-/// Taps, and how many of their spacings make a delay (chosen on recordings, see docs/baselines.md).
+/// Taps, and how many of their spacings make a delay (chosen on recordings, see docs/modes.md).
 const TAPS: usize = 6;
 const SPACINGS: usize = 10;
 /// Memory (s) and ridge (s) of the regression.

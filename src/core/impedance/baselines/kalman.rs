@@ -11,7 +11,7 @@ use super::BaselineModel;
 use crate::signal::Lanes;
 
 /// How long a rate lasts (s), and the bandwidth of the filter (Hz): `w^4` is the spectral density of the noise over that of the
-/// measurement (chosen on recordings, see docs/baselines.md).
+/// measurement (chosen on recordings, see docs/modes.md).
 const LASTING_S: f64 = 0.005;
 const BANDWIDTH_HZ: f64 = 100.0;
 

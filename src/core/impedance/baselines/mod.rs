@@ -2,7 +2,7 @@
 //!
 //! At most one is computed, and only where it is asked for by name; [`Follower`] makes what crosses the link, [`Leader`] makes
 //! the force. Every axis is taken for a channel of its own, as in the publications, which have one degree of freedom.
-//! Sources, constants, figures, and what was left out: docs/baselines.md.
+//! Sources, constants, figures, and what was left out: docs/modes.md.
 
 mod autoregressive;
 mod kalman;

@@ -20,7 +20,7 @@ use crate::{
     signal::{Lanes, Motion},
 };
 
-/// Memory (s) and ridge (s) of the regression, and memory of the errors (s) (chosen on recordings, see docs/baselines.md).
+/// Memory (s) and ridge (s) of the regression, and memory of the errors (s) (chosen on recordings, see docs/modes.md).
 const MEMORY_S: f64 = 1.0;
 const RIDGE_S: f64 = 0.01;
 const ERROR_S: f64 = 1.0;

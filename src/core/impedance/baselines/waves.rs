@@ -11,7 +11,7 @@ use super::kept;
 use crate::signal::{Lanes, Motion};
 
 /// Wave impedance as a share of the force over the speed in motion, `sum |(f - mean f) v| / sum v^2`: the publication leaves it to the
-/// task, and a number in N s/m would fit one device and one unit only (chosen on recordings, see docs/baselines.md).
+/// task, and a number in N s/m would fit one device and one unit only (chosen on recordings, see docs/modes.md).
 const SHARE: f64 = 0.4;
 /// Memory of the sums, and of the mean force (s).
 const MEMORY_S: f64 = 20.0;

@@ -7,7 +7,7 @@
 //! Numbers that are not finite must be kept away before.
 //!
 //! What no look can tell: a bias that creeps, a gain that is wrong from the start, axes that are exchanged before a first
-//! contact. `docs/faults.md` says how large those errors become.
+//! contact. `docs/results/faults.md` says how large those errors become.
 
 mod channel;
 mod device;

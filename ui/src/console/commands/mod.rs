@@ -1,4 +1,4 @@
-//! The one table of the commands of the window: menus, keys, the list of keys, the palette and `docs/screen.md` are made from it.
+//! The one table of the commands of the window: menus, keys, the list of keys, the palette and `docs/reference/commands.md` are made from it.
 //!
 //! A command has a name, keys, a place and a meaning here; whether it is possible now, and what it does, is decided in
 //! one place too (`app/reaching.rs`, `app/acting.rs`), whoever asks for it.
@@ -12,7 +12,7 @@ use crate::language::Language;
 pub(in crate::console) use self::keys::{SIZE, UNDO};
 pub use self::{
     keys::{Stroke, With},
-    table::{as_markdown, table},
+    table::table,
 };
 
 /// Sizes in the menu, percent.

@@ -1,4 +1,4 @@
-//! Errors against the true frames, on poses that no fit has seen. `--nocapture` prints the tables of docs/frames.md.
+//! Errors against the true frames, on poses that no fit has seen. `--nocapture` prints the tables of docs/results/frames.md.
 
 use nalgebra::{Point3, Rotation3, UnitQuaternion, Vector3};
 

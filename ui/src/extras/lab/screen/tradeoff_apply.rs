@@ -166,7 +166,7 @@ mod tests {
 
     /// Prints the times; it judges nothing.
     #[test]
-    #[ignore = "prints the times of docs/tradeoff.md: `./dev figures` runs it"]
+    #[ignore = "prints the times of docs/results/tradeoff.md: `./dev figures` runs it"]
     fn figures_of_what_apply_costs() {
         let rig = RigConfig::load("simulated").unwrap();
         let live = Live::new(rig, Scene::load("peg_transfer").unwrap());

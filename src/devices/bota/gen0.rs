@@ -21,23 +21,23 @@ pub const BAUDS: [u32; 6] = [9_600, 57_600, 115_200, 230_400, 460_800, 921_600];
 /// Averaging lengths that the sensor accepts.
 pub const SINC: std::ops::RangeInclusive<u16> = 64..=2047;
 
-/// Rate with this averaging length, Hz.
+/// Returns the rate with this averaging length, Hz.
 pub fn rate_hz(sinc: u16) -> f64 {
     51_200.0 / f64::from(sinc)
 }
 
-/// Command for: no temperature compensation, calibration matrix applied, binary frames, line speed `baud_index` of
-/// [`BAUDS`].
+/// Returns the command for no temperature compensation, the calibration matrix, binary frames, and line speed
+/// `baud_index` of [`BAUDS`].
 pub fn communication(baud_index: usize) -> String {
     format!("c,0,1,0,{baud_index}\n")
 }
 
-/// Command for averaging over `sinc` samples, without chopping, fast mode and second filter.
+/// Returns the command for averaging over `sinc` samples, without chopping, fast mode and second filter.
 pub fn filter(sinc: u16) -> String {
     format!("f,{sinc},0,0,1\n")
 }
 
-/// Code of the newest acknowledgement `r,0,<letter>,<code>` of this command in `bytes`; 0 is success.
+/// Returns the code of the newest acknowledgement `r,0,<letter>,<code>` of this command in `bytes`; 0 is success.
 pub fn acknowledged(bytes: &[u8], letter: u8) -> Option<u32> {
     let head = [b'r', b',', b'0', b',', letter, b','];
     bytes.windows(head.len()).enumerate().rev().filter(|(_, window)| *window == head).find_map(|(at, _)| {
@@ -53,7 +53,7 @@ fn number(digits: &[u8]) -> u32 {
     digits.iter().fold(0, |sum, digit| sum * 10 + u32::from(digit - b'0'))
 }
 
-/// Serial number and product name in the answer `p,0,<serial>,<x>,<x>,<product>` to [`PRODUCT`].
+/// Returns serial number and product name from the answer `p,0,<serial>,<x>,<x>,<product>` to [`PRODUCT`].
 pub fn product(bytes: &[u8]) -> Option<(String, String)> {
     let text = String::from_utf8_lossy(bytes);
     let begin = text.rfind("p,0,")?;

@@ -16,14 +16,12 @@ use crate::{
 /// The two types of connection.
 #[derive(Debug)]
 pub(super) enum Wire {
-    /// Network connection.
     Tcp(Tcp),
-    /// Serial line.
     Serial(Serial),
 }
 
 impl Wire {
-    /// Whether the serial port no longer exists. A closed network connection is noticed when it is read.
+    /// Returns whether the serial port no longer exists. A closed network connection is detected when it is read.
     pub(super) fn is_gone(&mut self) -> bool {
         match self {
             Self::Tcp(_) => false,
@@ -48,10 +46,8 @@ impl Bytes for Wire {
     }
 }
 
-/// Why a command failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Failure {
-    /// No reply.
     Silent,
     /// Bytes that are not a reply.
     Garbled,
@@ -84,7 +80,7 @@ impl Session {
         self.wait(timeout)
     }
 
-    /// The same for a command that may safely be repeated, if its reply is missing or damaged.
+    /// Sends a command that may safely be repeated, and repeats it if its reply is missing or damaged.
     pub(super) fn ask_again(&mut self, command: &Command<'_>, timeout: Duration) -> Result<String, Failure> {
         match self.ask(command, timeout) {
             Err(Failure::Silent | Failure::Garbled) => self.ask(command, timeout),
@@ -92,7 +88,6 @@ impl Session {
         }
     }
 
-    /// Waits for an ASCII reply.
     pub(super) fn wait(&mut self, timeout: Duration) -> Result<String, Failure> {
         let begin = Instant::now();
         let mut heard = begin;
@@ -133,7 +128,7 @@ impl Session {
         }
     }
 
-    /// Discards what has arrived.
+    /// Discards the data that have arrived.
     pub(super) fn drain(&mut self) -> Result<(), Failure> {
         let mut old = [0; COMMAND_MAX];
         for _ in 0..64 {

@@ -8,11 +8,8 @@ use serde::Serialize;
 pub enum Loss {
     Disconnected,
     Silent,
-    /// Too many damaged frames in a row.
     Corrupt,
-    /// Numbers that are not finite or impossible.
     Implausible,
-    /// The device itself reports a fault.
     Device {
         /// The manufacturer's code.
         code: u32,
@@ -84,7 +81,6 @@ impl Health {
         Self { standing: Standing::Opening, ..Self::default() }
     }
 
-    /// Counts an accepted reading that arrived at `now_s`.
     pub fn accept(&mut self, now_s: f64) {
         let begin_s = *self.window_s.get_or_insert(now_s);
         if now_s - begin_s >= RATE_WINDOW_S {

@@ -64,7 +64,6 @@ pub trait Device: Send {
 pub struct ClearFaults(std::sync::Arc<dyn Fn() + Send + Sync>);
 
 impl ClearFaults {
-    /// Creates a request that calls this function.
     pub fn by(command: impl Fn() + Send + Sync + 'static) -> Self {
         Self(std::sync::Arc::new(command))
     }

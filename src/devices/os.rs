@@ -27,7 +27,6 @@ pub fn bytes_of(port: &impl AsRawFd) -> io::Result<File> {
     }
 }
 
-/// Returns the effective user id of this process.
 pub fn user_id() -> u32 {
     // SAFETY: no arguments, and it cannot fail.
     unsafe { libc::geteuid() }

@@ -33,7 +33,6 @@ pub trait Follower: Device<Reading = ArmReading> {
     /// arm has entered it.
     fn enter_servoing(&mut self);
 
-    /// Brakes the arm, then ends servoing.
     fn leave_servoing(&mut self);
 
     /// Returns the commanded joint angles, rad; valid only while servoing.

@@ -44,7 +44,6 @@ pub struct ForceReading {
     pub angular_velocity_rad_s: Option<Vector3<f64>>,
     /// Temperature of the sensor's electronics, degrees Celsius.
     pub temperature_c: f64,
-    /// Reasons why it must not be used.
     pub status: ForceStatus,
 }
 
@@ -97,7 +96,6 @@ pub enum Tracked {
     /// No tool is assigned to this index.
     #[default]
     Absent,
-    /// The tracker detects the tool.
     Seen {
         /// Orientation of the tool in the camera's frame.
         c_from_tool: UnitQuaternion<f64>,
@@ -113,7 +111,6 @@ pub enum Tracked {
         /// Whether the tool is outside the measurement volume; otherwise it is hidden.
         out_of_volume: bool,
     },
-    /// Tracking of the tool is switched off.
     Disabled,
 }
 

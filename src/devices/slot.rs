@@ -111,7 +111,6 @@ impl<D: Device + 'static> Slot<D> {
         self.shared.wanted.store(connected, Ordering::Release);
     }
 
-    /// Returns a view for other threads.
     pub fn view(&self) -> SlotView {
         SlotView { shared: self.shared.clone() }
     }
@@ -171,7 +170,6 @@ impl SlotView {
     }
 }
 
-/// The thread that opens and closes the device.
 struct Keeper<D> {
     give: Sender<D>,
     take: Receiver<D>,

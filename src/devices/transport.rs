@@ -30,7 +30,6 @@ pub trait Bytes: Send {
     fn send(&mut self, bytes: &[u8]) -> Result<(), Loss>;
 }
 
-/// Datagrams to and from one peer.
 pub trait Datagrams: Send {
     /// Reads the next datagram; returns `None` if none has arrived.
     ///

@@ -10,7 +10,6 @@ pub enum Trouble {
         /// Port, path or identity searched for.
         place: String,
     },
-    /// The user has no permission for the device.
     #[error("this user has no permission to open {place}")]
     Permission {
         place: String,
@@ -22,10 +21,8 @@ pub enum Trouble {
         /// Port, path or address.
         place: String,
     },
-    /// Another device answers at this address.
     #[error("{place} is a {found}, not a {expected}")]
     WrongProduct { place: String, expected: String, found: String },
-    /// The device has the right type, but another serial number than the one in the rig file.
     #[error("{place} has the serial number {found}, not {expected}")]
     OtherSerial {
         place: String,
@@ -34,14 +31,12 @@ pub enum Trouble {
         /// Serial number that the device reports; `unknown` if it reports none.
         found: String,
     },
-    /// A handle for the other hand.
     #[error("{place} is for the {hand} hand")]
     OtherHand {
         place: String,
         /// `right` or `left`.
         hand: String,
     },
-    /// The device of another part of the rig answers at this part's address.
     #[error("the device connected as the {part} is the {other} ({serial}){}", since(.checked.as_deref()))]
     Exchanged {
         /// Part at whose address the device answers: `right sensor`.
@@ -55,16 +50,13 @@ pub enum Trouble {
     /// Bytes arrive that are not valid frames, as with a wrong line speed.
     #[error("{place} sends unreadable data at {baud} baud")]
     WrongBaud { place: String, baud: u32 },
-    /// The port is open, but no bytes arrive.
     #[error("{place} is open but sends nothing")]
     Silent { place: String },
-    /// The program of an external device has not sent anything.
     #[error("no device program sends to {place}")]
     NobodySends { place: String },
     /// The program sends, but its datagrams show that it receives no answer.
     #[error("the device program that sends to {place} receives no answers")]
     Unheard { place: String },
-    /// There is no route to the address.
     #[error("{place} cannot be reached")]
     Unreachable { place: String },
     /// The computer at the address answers, but no program listens on the port.
@@ -73,7 +65,6 @@ pub enum Trouble {
         /// Address with port.
         place: String,
     },
-    /// The device sends its readings to another computer.
     #[error("{place} sends its readings to {to} instead of this computer ({here})")]
     SendsElsewhere {
         place: String,
@@ -82,23 +73,18 @@ pub enum Trouble {
         /// This computer's address as seen by the device.
         here: String,
     },
-    /// User name or password is wrong.
     #[error("{place} refuses user \"{user}\"")]
     RefusedLogin { place: String, user: String },
-    /// A library of the manufacturer is required and not installed.
     #[error("the {name} is not installed")]
     SdkMissing {
         name: String,
         /// Locations that were searched.
         searched: String,
     },
-    /// The library is installed but not usable.
     #[error("the {name} at {path} cannot be used: {reason}")]
     SdkUnusable { name: String, path: String, reason: String },
-    /// The device is in calibration, reset or boot mode.
     #[error("{place} is in {mode} mode")]
     NotReady { place: String, mode: String, cure: String },
-    /// The device itself reports a fault.
     #[error("{place} reports a fault: {words}")]
     DeviceFault {
         place: String,
@@ -106,15 +92,12 @@ pub enum Trouble {
         words: String,
         cure: String,
     },
-    /// The device refused a command or setting.
     #[error("{place} refused {command}: {answer}")]
     Refused { place: String, command: String, answer: String },
     #[error("{key} = {value} is not possible: {allowed}")]
     Setting { key: String, value: String, allowed: String },
-    /// A file that the rig file names cannot be used.
     #[error("{key} = {path}: {reason}")]
     File { key: String, path: String, reason: String },
-    /// Any other error of the operating system.
     #[error("{place}: {reason}")]
     Other { place: String, reason: String },
 }
@@ -124,7 +107,6 @@ fn since(checked: Option<&str>) -> String {
 }
 
 impl Trouble {
-    /// Returns the remedy, in one sentence.
     pub fn cure(&self) -> String {
         match self {
             Self::Absent { .. } => {

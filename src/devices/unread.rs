@@ -39,7 +39,6 @@ impl Unread {
         count
     }
 
-    /// Returns all unread bytes, the oldest first.
     pub(crate) fn bytes(&self) -> &[u8] {
         &self.memory[self.begin..self.end]
     }
@@ -48,7 +47,6 @@ impl Unread {
         self.begin == self.end
     }
 
-    /// Returns whether another byte does not fit.
     pub(crate) fn is_full(&self) -> bool {
         self.bytes().len() == self.memory.len()
     }
@@ -60,7 +58,6 @@ impl Unread {
         &self.memory[from..self.begin]
     }
 
-    /// Discards all bytes and returns their number.
     pub(crate) const fn clear(&mut self) -> usize {
         let count = self.end - self.begin;
         self.begin = 0;

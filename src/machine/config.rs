@@ -55,10 +55,8 @@ pub struct RigConfig {
     /// Scheduling to request for the loop's thread; a refusal is reported.
     #[serde(default)]
     pub scheduling: SchedulingClass,
-    /// Ready check required before an engagement.
     #[serde(default)]
     pub ready_check: ReadyCheck,
-    /// Mapping from the hand's motion to the tip's.
     #[serde(default)]
     pub teleoperation: Teleoperation,
     /// A six-axis cap and pedals that control a simulated rig.
@@ -75,7 +73,6 @@ pub struct RigConfig {
     pub devices: Option<rig::Settings>,
 }
 
-/// Ready check required before an engagement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ReadyCheck {

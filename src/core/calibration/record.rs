@@ -7,9 +7,7 @@ use super::Verdict;
 /// Sensor, tool, date and program version of a calibration: the first lines of its file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RecordHead {
-    /// Serial number of the wrist sensor.
     pub sensor: String,
-    /// Name of the tool on it.
     pub tool: String,
     /// Date of the calibration, UTC, ISO 8601 (`2026-08-21T10:20:30Z`).
     pub date: String,

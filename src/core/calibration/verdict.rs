@@ -3,7 +3,6 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Whether a calibration may be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -61,7 +60,6 @@ impl AxisStats {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Residuals {
-    /// On the data used for the fit.
     pub fitted: AxisStats,
     pub held_out: AxisStats,
 }

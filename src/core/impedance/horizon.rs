@@ -11,7 +11,7 @@ use crate::signal::{DelayLine, Lanes, settled};
 
 /// Time constant of the running errors (s). Chosen as in `anchored.rs`.
 const MEMORY_S: f64 = 0.5;
-/// A correction may be at most this many times the recent change of force over the delay.
+/// A correction may be at most this many times the recent change of force over the delay. Chosen as in `anchored.rs`.
 const BOUND: f64 = 1.5;
 /// A candidate must achieve less than this fraction of the plain reflection's error.
 const MARGIN: f64 = 0.98;

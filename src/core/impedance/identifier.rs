@@ -230,7 +230,6 @@ impl Identifier {
         self.methods.each().for_each(|method| method.set_delay(self.delay_ticks));
     }
 
-    /// Resets everything, including the counters, without allocating.
     pub fn reset(&mut self) {
         self.track.reset();
         self.last_t_s = f64::NEG_INFINITY;

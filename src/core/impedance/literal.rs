@@ -111,7 +111,6 @@ impl LiteralSolver {
         self.failures
     }
 
-    /// Discards all solutions and the count of failures.
     pub fn reset(&mut self) {
         self.models = [LiteralModel::NONE; MAX_DEGREE];
         self.error_n = [f64::INFINITY; MAX_DEGREE];

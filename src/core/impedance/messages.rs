@@ -13,7 +13,6 @@ use super::{
 };
 use crate::signal::{LANES, Lanes};
 
-/// Measurements of one tick at the follower.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Time (s); must increase from sample to sample. The samples are assumed to be evenly spaced at the rate of the
@@ -78,7 +77,6 @@ pub struct AnchoredModel {
 }
 
 impl AnchoredModel {
-    /// No correction.
     pub const NONE: Self = Self {
         motion: [Lanes::ZERO; 9],
         constant_n: Lanes::ZERO,
@@ -149,7 +147,6 @@ pub struct Parcel {
     pub matched: MatchedModel,
     /// Matched rendering's parameters in the paper's columns.
     pub nima: MatchedModel,
-    /// Data of the baseline, if one is computed.
     pub baseline: BaselineModel,
 }
 
@@ -240,7 +237,6 @@ pub struct Report {
     pub modes: ModeSet,
     /// Whether the identification rests, because there is no contact and nothing to learn.
     pub resting: bool,
-    /// Number of samples used for learning so far.
     pub learnt: u64,
     /// Force of each mode (N) for this time, computed from data up to `t - D` and the follower's motion at `t`.
     pub prediction_n: [Vector3<f64>; SLOTS],

@@ -41,7 +41,6 @@ pub(super) trait Method {
 
     fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, report: &mut Report);
 
-    /// Learns over another delay from now on.
     fn set_delay(&mut self, _delay_ticks: usize) {}
 
     fn reset(&mut self);

@@ -39,9 +39,7 @@ pub enum Choice {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Recipe {
-    /// The quantity to regress on.
     pub reading: Reading,
-    /// How the literal mode chooses its degree.
     pub choice: Choice,
     /// Whether a free constant force is part of the fit.
     pub constant: bool,

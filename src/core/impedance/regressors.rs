@@ -37,7 +37,6 @@ pub(super) mod at {
     pub(in super::super) const MOTION_TREND: usize = 18;
 }
 
-/// Regressors of one instant, one lane per axis.
 pub(super) type Regressors = [Lanes; REGRESSORS];
 
 /// Position and its differences from the low-pass bank; the follower uses its tip, the leader its own motion.
@@ -62,7 +61,6 @@ impl Stance {
 pub(super) struct Background {
     pub(super) force_n: Lanes,
     force_trend: [Lanes; BANK],
-    /// Slow mean of the position.
     pub(super) centre: Lanes,
     /// Half of the mean size of the second difference: where friction saturates.
     pub(super) knee: Lanes,

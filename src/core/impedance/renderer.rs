@@ -40,7 +40,6 @@ pub struct Renderer {
     /// Damping for forces that are rendered from the handle's own motion, which must not drive the hand.
     dampers: Option<[(Mode, Damper); 2]>,
     parcel_t_s: f64,
-    /// Ticks since the newest packet arrived.
     waiting: usize,
 }
 

@@ -107,7 +107,6 @@ pub struct Settings {
     pub max_degree: usize,
     /// Axes in use, 1 to 3 (x; x, y; x, y, z).
     pub axes: usize,
-    /// Physical scales of the columns.
     pub scales: Scales,
     /// The modes to compute; [`Identifier::compute`](super::Identifier::compute) can switch some of them off for a
     /// while.
@@ -118,9 +117,7 @@ pub struct Settings {
     /// Whether the force on each axis may depend on the motion of the others (the full `M`) in matched rendering, and so in the best
     /// of both.
     pub cross_talk: bool,
-    /// The motion that the leader uses.
     pub own_motion: OwnMotion,
-    /// Method by which velocity and acceleration are computed.
     pub differentiator: DifferentiatorKind,
     /// Ridge of the anchored fit, per row of the window and in scaled columns: a coefficient costs as much as one more
     /// row with this mean square and no force. 0 switches it off.
@@ -230,7 +227,6 @@ pub enum SettingsError {
     Degree { degree: usize },
     #[error("{axes} axes are not possible: use 1, 2 or 3")]
     Axes { axes: usize },
-    /// A scale is not a positive normal number.
     #[error("the scale {name} = {value} is out of range: use 1e-9 to 1e9")]
     Scale {
         /// Field of [`Scales`].

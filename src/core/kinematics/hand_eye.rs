@@ -137,11 +137,9 @@ impl Hand {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
     pub tip_m: Vector3<f64>,
-    /// Orientation of the instrument's jaws.
     pub world_from_jaws: UnitQuaternion<f64>,
 }
 
-/// State of the coupling between hand and tip.
 #[derive(Clone, Copy, Debug)]
 pub struct HandEye {
     mapping: Mapping,

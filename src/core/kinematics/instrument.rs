@@ -33,7 +33,6 @@ pub struct ArmSettings {
 pub enum ArmError {
     #[error("the arm's {field} is not a finite number: measure it and enter it in the rig file")]
     NotFinite { field: &'static str },
-    /// The shaft's length is zero, or longer than any instrument.
     #[error(
         "the shaft length of {shaft_m} m is out of range: use more than 0 and at most 1 m, from the sensor to the tip"
     )]

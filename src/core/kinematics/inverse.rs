@@ -42,7 +42,6 @@ const POSTURE_SHARE: f64 = 0.2;
 /// If the shaft misses the trocar by more than this at the start, m, the instrument is not in the trocar.
 pub const START_MISS_M: f64 = 5e-3;
 
-/// Quality of the pose after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measures {
     /// Distance of the shaft's axis from the trocar, m.
@@ -58,11 +57,9 @@ pub struct Measures {
     pub granted: f64,
 }
 
-/// Result of one period.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     pub joint_rad: Joints,
-    /// Violation of the permitted space by the target.
     pub confined: Confined,
     pub measures: Measures,
 }
@@ -176,7 +173,6 @@ impl Inverse {
         &self.joint_rad
     }
 
-    /// Returns the pose at the commanded angles.
     pub const fn pose(&self) -> &Pose {
         &self.pose
     }

@@ -31,20 +31,10 @@ pub enum RcmError {
     NotFinite { what: &'static str },
     #[error("the trocar's {setting} is {value}: {wanted}")]
     Setting { setting: &'static str, value: f64, wanted: &'static str },
-    /// The tip is too close to the trocar, or outside the body.
     #[error("the tip is {insertion_m:.4} m beyond the trocar (minimum {least_m} m): push the instrument in")]
-    TooNear {
-        /// Distance of the tip from the trocar, m.
-        insertion_m: f64,
-        least_m: f64,
-    },
+    TooNear { insertion_m: f64, least_m: f64 },
     #[error("the tip is {insertion_m:.4} m beyond the trocar (limit {most_m} m): pull the instrument back")]
-    TooDeep {
-        /// Distance of the tip from the trocar, m.
-        insertion_m: f64,
-        most_m: f64,
-    },
-    /// The shaft is tilted outside the cone.
+    TooDeep { insertion_m: f64, most_m: f64 },
     #[error("the shaft is tilted by {tilt_deg:.1} degrees (limit {cone_deg} degrees): straighten it or widen the cone")]
     OutsideCone {
         /// Angle from the axis of the cone, degrees.
@@ -54,7 +44,6 @@ pub enum RcmError {
     },
 }
 
-/// A shaft through the trocar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shaft {
     /// Direction from the trocar to the tip, unit length.
@@ -65,7 +54,6 @@ pub struct Shaft {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Confined {
-    /// The target was too close to the trocar.
     pub too_near: bool,
     pub too_deep: bool,
     pub outside_cone: bool,

@@ -24,7 +24,8 @@ use super::{
 const STARTS: usize = 600;
 /// Newton steps from each start.
 const STEPS: usize = 80;
-/// Number of poses that are tested over the permitted space.
+/// Number of poses that are tested over the permitted space. , because each test moves the arm over the whole space,
+/// which takes most of the time.
 const CANDIDATES: usize = 8;
 /// A pose below these values is not tested: distance from a joint limit (rad), dexterity (m/rad). Chosen.
 const LEAST_MARGIN_RAD: f64 = 0.1;
@@ -38,7 +39,7 @@ const ARRIVED_M: f64 = 1e-4;
 /// Time limit for one goal of the test, periods: 6 s at [`TRY_PERIOD_S`], enough to cross the permitted space several
 /// times at the speed limit of the tip.
 const TRY_PERIODS: usize = 1500;
-/// Number of directions around the cone that are tested.
+/// Number of directions around the cone that are tested. , so that the largest gap between two is 45 degrees.
 const AROUND: usize = 8;
 
 #[derive(Clone, Copy, Debug)]
@@ -57,18 +58,14 @@ pub struct Ready {
 
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ReadyError {
-    /// The tip is outside the permitted space.
     #[error("the position of the instrument is not permitted")]
     Place(#[source] RcmError),
-    /// Arm and trocar do not fit together.
     #[error("the arm cannot start from the ready pose")]
     Start(#[source] StartError),
-    /// The sensor would be beyond the arm's reach.
     #[error(
         "the flange is out of reach: {needed_m:.3} m from the arm's shoulder, the limit is {reach_m:.3} m; move the arm nearer"
     )]
     TooFar { needed_m: f64, reach_m: f64 },
-    /// The search did not converge from any start.
     #[error(
         "no pose reaches this tip and shaft (best miss {best_miss_m:.4} m in {starts} starts): the trocar is too near to the arm's base; move the arm"
     )]
@@ -77,7 +74,6 @@ pub enum ReadyError {
         best_miss_m: f64,
         starts: usize,
     },
-    /// Poses exist, but none is usable.
     #[error(
         "none of the {found} poses found is usable: {at_limits} at a joint limit, {singular} nearly singular, {low} with elbow or wrist too low; \
          move the arm or the trocar"
@@ -132,7 +128,6 @@ fn check_reach(arm: &Arm, tip_m: &Vector3<f64>, shaft: &Shaft) -> Result<(), Rea
     if needed_m > REACH_M { Err(ReadyError::TooFar { needed_m, reach_m: REACH_M }) } else { Ok(()) }
 }
 
-/// Returns the best few distinct poses, best first.
 fn candidates(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, shaft: &Shaft) -> Result<Vec<Joints>, ReadyError> {
     let mut random = fastrand::Rng::with_seed(0x6e33);
     let mut good: Vec<(f64, Joints)> = Vec::new();

@@ -7,19 +7,13 @@ use super::gen3::{Joints, LIMIT_RAD};
 pub enum StartError {
     #[error("the period of the inverse kinematics, {period_s} s, is out of range: use more than 0 and at most 0.02 s")]
     Period { period_s: f64 },
-    /// The instrument is shorter than the largest insertion.
     #[error("the shaft of {shaft_m} m is too short for an insertion of {insertion_max_m} m: correct one of them")]
-    ShortShaft {
-        /// Distance from the sensor to the tip, m.
-        shaft_m: f64,
-        insertion_max_m: f64,
-    },
+    ShortShaft { shaft_m: f64, insertion_max_m: f64 },
     #[error("joint {joint} of the arm reports a non-finite angle: check the arm's connection")]
     NotFinite {
         /// Counted from 1.
         joint: usize,
     },
-    /// A joint is at its limit.
     #[error(
         "joint {joint} is at {angle_deg:.1} degrees, beyond its limit of {limit_deg:.1} degrees: move the arm off the limit by hand"
     )]
@@ -35,7 +29,6 @@ pub enum StartError {
         miss_m: f64,
         most_m: f64,
     },
-    /// The tip is not inside the body.
     #[error("the instrument is inserted {insertion_m:.4} m beyond the trocar: insert it into the body before starting")]
     NotInserted {
         /// Along the shaft, m; negative outside the body.

@@ -29,7 +29,6 @@ const DAMPING: f64 = 0.02;
 /// Added to denominators to keep divisions finite; negligible otherwise.
 const TINY: f64 = 1e-12;
 
-/// Effect of the joint speeds on the shaft.
 #[derive(Clone, Copy)]
 pub(super) struct Task {
     /// Velocity of the shaft at the trocar along `Pose::across`, m/s per rad/s.
@@ -38,7 +37,6 @@ pub(super) struct Task {
     motion: Rows3,
 }
 
-/// Components of a joint step, rad.
 pub(super) struct Parts {
     /// Brings the axis back to the trocar.
     pub correction: Joints,
@@ -56,7 +54,6 @@ pub(super) struct Parts {
     pub dexterity: f64,
 }
 
-/// The motion wanted in a step.
 #[derive(Default)]
 pub(super) struct Wish {
     /// Displacement of the axis at the trocar along `Pose::across`, m.
@@ -65,7 +62,6 @@ pub(super) struct Wish {
     pub motion_m: Vector3<f64>,
     /// The same for the target's own motion in this period.
     pub carried_m: Vector3<f64>,
-    /// The joints' step in the last period, rad.
     pub moved_rad: Joints,
     /// Change of the joints that improves the posture, rad.
     pub posture_rad: Joints,

@@ -30,7 +30,6 @@ pub enum State<F> {
     Engaged,
     /// The hand moves freely, the follower is at rest, without force.
     Clutched,
-    /// Stopped by the operator; latched.
     Stopped,
     /// Stopped by a fault; latched.
     Faulted(F),
@@ -73,7 +72,6 @@ impl<F: Copy> State<F> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "independent facts, each with its own reader")]
 pub struct Seen {
-    /// Every device of the force path delivers data.
     pub connected: bool,
     pub powered: bool,
     /// Hand and tip agree, and the force at the tip is known.
@@ -102,9 +100,7 @@ pub enum Why {
     /// The drives respond, and hand and tip agree.
     Agreed,
     Clutch,
-    /// The drives did not respond in time.
     Late,
-    /// No hand holds the handle.
     Absent,
     /// A check or a device failed; the new state names the cause.
     Fault,

@@ -61,20 +61,16 @@ pub enum Reason {
     /// The force passed.
     #[default]
     Open,
-    /// The loop is not engaged.
     NotPermitted,
     /// The mode has no valid force to render.
     NothingAsked,
     NotFinite,
-    /// The requested force is larger than any contact.
     Implausible,
     /// The data are older than the link's delay: the force fades.
     Ageing,
     /// The data are too old, or of unknown age.
     TooOld,
-    /// The hand is slower than the dead band.
     HandSlow,
-    /// The speed of the hand is not known.
     SpeedUnknown,
     GainZero,
     /// The gain is still ramping to the value that was set.

@@ -8,7 +8,6 @@ use crate::limits::{DEAD_BAND_M_S, GAIN_ABOVE_ONE, OMEGA7_FORCE_N, OMEGA7_GRIPPE
 pub enum EnergyMode {
     /// No observation, no limit.
     Off,
-    /// Observes the energy, removes no force.
     Observe,
     /// Removes the force that would give the hand more energy than it put in.
     #[default]
@@ -41,7 +40,6 @@ pub struct ChainSettings {
     pub ceiling_n: f64,
     /// Maximum force of the device itself, N; the ceiling is never above it.
     pub device_limit_n: f64,
-    /// Maximum rate of change of the force, N/s.
     pub slew_n_per_s: f64,
     /// Age beyond the link's own delay at which the force begins to fade, s.
     pub fade_after_s: f64,

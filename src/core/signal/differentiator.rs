@@ -2,7 +2,6 @@ use serde::{Deserialize, Serialize};
 
 use super::{Lanes, Motion, foaw::Foaw, kalman::Kalman, savitzky_golay::SavitzkyGolay};
 
-/// Method by which velocity and acceleration are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DifferentiatorKind {

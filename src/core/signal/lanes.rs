@@ -77,7 +77,6 @@ impl Lanes {
         self.map(settled)
     }
 
-    /// Returns whether no lane is infinite or NaN.
     #[inline(always)]
     pub fn is_finite(self) -> bool {
         self.0.iter().all(|value| value.is_finite())
@@ -90,7 +89,6 @@ impl Lanes {
         Vector3::new(x, y, z)
     }
 
-    /// Returns the Euclidean norm of the three axes.
     #[inline(always)]
     pub fn norm(self) -> f64 {
         let [x, y, z, _] = self.0;

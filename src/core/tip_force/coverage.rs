@@ -75,7 +75,6 @@ const BRISK_M_S: f32 = 0.10;
 const BRISK_ROWS: usize = 60;
 const CONTACT_SHARE: [f64; 2] = [0.15, 0.85];
 
-/// One requirement and its progress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
     pub what: GoalKind,
@@ -83,7 +82,6 @@ pub struct Goal {
     pub share: f64,
 }
 
-/// Requirements on a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GoalKind {
     Tilt,

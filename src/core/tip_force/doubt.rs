@@ -8,7 +8,8 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// Fraction of the samples of unseen trajectories that a limit may flag.
+/// Fraction of the samples of unseen trajectories that a limit may flag: fewer would let the limit depend on a few
+/// samples, more would render the fallback too often. Chosen.
 pub const FALSE_ALARMS: f64 = 0.01;
 /// Margin beyond the calibrated limits if the folds are parts of one session, because another session covers a wider
 /// range: in simulation, the 99th percentile of three unseen sessions was 2 to 14 % beyond the limits.

@@ -14,7 +14,6 @@ pub struct Estimate {
     pub in_doubt: bool,
 }
 
-/// A model with its work buffers.
 #[derive(Clone, Debug)]
 pub struct Estimator {
     model: Model,

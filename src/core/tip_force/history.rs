@@ -12,7 +12,6 @@
 //! used, which is the second number in the name. The midline is smoothed over four widths of travel and is held during
 //! a reversal. It follows a slow load; use the load itself as another input for fast changes.
 
-/// An input computed from other columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derived {
     /// The load column; `None` for `presliding`.

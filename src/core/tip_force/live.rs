@@ -71,7 +71,6 @@ const HANDOVER_S: f64 = 0.050;
 /// step. Chosen.
 const HOLD_S: f64 = 0.300;
 
-/// A network in the loop.
 #[derive(Clone, Debug)]
 pub struct TipForce {
     estimator: Estimator,

@@ -5,10 +5,8 @@ use super::{Baselines, Doubt, Expansion, Network, Normalisation, Origin};
 pub struct Model {
     pub inputs: Vec<String>,
     pub outputs: Vec<String>,
-    /// Conversion of inputs to features.
     pub expansion: Expansion,
     pub features: Normalisation,
-    /// Normalisation of the outputs.
     pub scale: Normalisation,
     pub network: Network,
     pub doubt: Doubt,

@@ -15,7 +15,6 @@ pub struct TrainingSettings {
     pub hidden: Vec<usize>,
     /// Maximum number of epochs of a member; `None` chooses the number that gives about 5000 steps.
     pub epochs: Option<usize>,
-    /// Rows per mini-batch.
     pub batch: usize,
     /// Learning rate at the start; it falls along a half cosine to a fiftieth.
     pub learning_rate: f64,
@@ -68,7 +67,6 @@ pub struct Check {
     /// Date of the check, UTC, ISO 8601.
     pub date: String,
     pub rows: usize,
-    /// Mean absolute error per axis, N (`shaft`).
     pub mae_n: [f64; 3],
     /// Standard deviation of the error per axis, N.
     pub sd_n: [f64; 3],

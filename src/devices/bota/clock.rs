@@ -33,7 +33,6 @@ impl Clock {
         Self { period_us, newest: None, total_us: 0, gap: None }
     }
 
-    /// Adds the time stamp of the next reading.
     pub fn step(&mut self, timestamp_us: u32) -> Step {
         let Some(newest) = self.newest else {
             self.newest = Some(timestamp_us);

@@ -206,7 +206,6 @@ impl Decoder {
         self.skipped
     }
 
-    /// Discards the buffer's content; the counters are kept.
     pub const fn clear(&mut self) {
         self.unread.clear();
     }

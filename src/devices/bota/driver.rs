@@ -112,7 +112,6 @@ impl Driver {
         Self { link, judge, identity, rate_hz, low_latency, silence_s, stop, begun: false, base: (0, 0) }
     }
 
-    /// Returns the configured rate of the readings, Hz.
     pub const fn rate_hz(&self) -> f64 {
         self.rate_hz
     }
@@ -133,7 +132,6 @@ impl Driver {
         self.silence_s
     }
 
-    /// Stops the measurement and closes the line.
     pub fn close(self) {}
 
     /// Handles the data that have arrived; damage is counted from the first reading on.

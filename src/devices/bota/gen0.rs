@@ -10,7 +10,6 @@ pub const CONFIG: &[u8] = b"C\n";
 pub const RUN: &[u8] = b"R\n";
 /// Restarts the firmware, which can fix a calibration matrix that was not loaded.
 pub const INIT: &[u8] = b"I\n";
-/// Requests product and serial number.
 pub const PRODUCT: &[u8] = b"p?\n";
 /// Sets the offsets that are saved in the sensor to zero.
 pub const NO_OFFSET: &[u8] = b"b,0.000000,0.000000,0.000000,0.000000,0.000000,0.000000\n";

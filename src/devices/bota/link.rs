@@ -64,7 +64,6 @@ impl Link {
         Ok(())
     }
 
-    /// Discards the data that have arrived.
     pub(super) fn discard(&mut self) -> Result<(), Loss> {
         self.receive(|_| {})?;
         self.decoder.clear();
@@ -83,7 +82,6 @@ impl Link {
         self.control.send(command)
     }
 
-    /// Returns the connections, for further commands.
     pub(super) fn into_lines(self) -> (Box<dyn Bytes>, Option<Box<dyn Datagrams>>) {
         (self.control, self.stream)
     }

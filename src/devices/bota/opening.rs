@@ -19,7 +19,6 @@ use crate::{
     transport::{Datagrams, Serial, SerialSettings, Tcp, Udp},
 };
 
-/// A sensor that is open and measuring.
 pub(super) struct Opened {
     pub(super) link: Link,
     pub(super) identity: Identity,

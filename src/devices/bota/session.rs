@@ -11,7 +11,6 @@ pub struct Timeouts {
     pub boot: Duration,
     /// Time for one answer.
     pub answer: Duration,
-    /// Number of attempts to send the first command.
     pub tries: u32,
     /// First generation: time for a restart of the firmware by command.
     pub init: Duration,
@@ -58,9 +57,7 @@ pub(super) struct Session {
     pub(super) timeouts: Timeouts,
     heard: Vec<u8>,
     decoder: Decoder,
-    /// Bytes received since the line was opened.
     bytes: u64,
-    /// Number of complete frames among them.
     frames: u64,
 }
 

@@ -79,7 +79,6 @@ impl Settings {
         }
     }
 
-    /// Returns whether frames contain the inertial unit.
     pub const fn is_inertial(&self) -> bool {
         !matches!(self.transport, Transport::Gen0) && self.mode >= gen_a::MODE_INERTIAL
     }

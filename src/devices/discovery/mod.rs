@@ -37,7 +37,6 @@ pub struct Found {
     pub identity: Identity,
     /// Connected, or lost again while listening.
     pub standing: Standing,
-    /// Readings received while listening.
     pub readings: u64,
     /// Rate of the readings, Hz; `None` for a device that sends only changes or answers.
     pub rate_hz: Option<f64>,
@@ -87,7 +86,6 @@ impl From<Result<Found, Trouble>> for Outcome {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Diagnosis {
     pub name: String,
-    /// Duration of the test, s.
     pub took_s: f64,
     #[serde(flatten)]
     pub outcome: Outcome,

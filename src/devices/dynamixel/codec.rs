@@ -38,7 +38,6 @@ impl Outgoing {
         Self { bytes: Vec::with_capacity(room), begin: 0 }
     }
 
-    /// Returns all packets since [`Outgoing::clear`].
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -67,7 +66,6 @@ impl Outgoing {
         self
     }
 
-    /// Appends a 16-bit number.
     pub fn put_u16(&mut self, number: u16) -> &mut Self {
         self.put(&number.to_le_bytes())
     }

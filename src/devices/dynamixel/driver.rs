@@ -47,10 +47,8 @@ const POSITION_MAX: i32 = 2_100_000;
 /// Maximum plausible current, units.
 const CURRENT_MAX: i16 = 4095;
 
-/// State of a servo other than its motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Condition {
-    /// Whether the motor is driven.
     pub torque_on: bool,
     /// Hardware errors, and the state of the watchdog.
     pub error: HardwareError,

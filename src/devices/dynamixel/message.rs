@@ -31,13 +31,11 @@ pub enum Instruction<'a> {
         address: u16,
         data: &'a [u8],
     },
-    /// Store a write until [`Instruction::Action`].
     RegWrite {
         address: u16,
         data: &'a [u8],
     },
     Action,
-    /// Restore the factory values.
     FactoryReset {
         keep: Keep,
     },
@@ -203,7 +201,6 @@ impl<'a> Instruction<'a> {
         }
     }
 
-    /// Returns the instruction byte.
     pub const fn code(&self) -> u8 {
         match self {
             Self::Ping => 0x01,
@@ -278,7 +275,6 @@ pub fn bulk_writes(mut items: &[u8]) -> impl Iterator<Item = (u8, u16, &[u8])> {
     })
 }
 
-/// Appends a status packet.
 pub fn encode_status(id: u8, error: u8, parameters: &[u8], out: &mut Outgoing) {
     out.begin(id, STATUS).put(&[error]).put(parameters).end();
 }

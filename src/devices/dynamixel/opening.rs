@@ -84,7 +84,6 @@ impl Pace for Wall {
     }
 }
 
-/// Properties of the servos that the driver needs.
 #[derive(Debug)]
 pub(super) struct Opened {
     pub(super) models: [&'static Model; SERVOS],
@@ -92,7 +91,6 @@ pub(super) struct Opened {
     pub(super) fast: bool,
 }
 
-/// A serial line during opening.
 pub(super) struct Session<'a, T, P> {
     line: &'a mut T,
     pace: &'a mut P,
@@ -115,7 +113,6 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         Self { line, pace, place, incoming, outgoing, heard: 0, timeouts }
     }
 
-    /// Returns whether any bytes have arrived.
     pub(super) const fn heard_anything(&self) -> bool {
         self.heard > 0
     }

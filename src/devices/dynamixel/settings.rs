@@ -98,7 +98,6 @@ pub struct Settings {
     pub port: String,
     /// Line speed, bit/s, as supported by the servos.
     pub baud: u32,
-    /// The servos, in the order of the readings.
     pub servos: [ServoSettings; SERVOS],
     /// Requests one common answer from all servos; if a firmware refuses this, each answers separately.
     #[serde(default = "yes")]
@@ -244,7 +243,6 @@ impl ServoSettings {
         }
     }
 
-    /// Returns lowest and highest goal, ticks.
     pub(super) fn limits_ticks(&self) -> (f64, f64) {
         let low = ticks_from_rad(self.position_min_rad).ceil();
         let high = ticks_from_rad(self.position_max_rad).floor();

@@ -129,7 +129,6 @@ pub fn rad_from_ticks(ticks: f64) -> f64 {
     (ticks - TICKS_AT_ZERO) / TICKS_PER_TURN * TAU
 }
 
-/// A model with current measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
     /// Model number in the answer to a ping.
@@ -145,7 +144,6 @@ const fn model(number: u16, name: &'static str, current_unit_a: f64, current_max
     Model { number, name, current_unit_a, current_max }
 }
 
-/// Models that the driver supports.
 pub const MODELS: [Model; 8] = [
     model(1000, "XH430-W350", 2.69e-3, 648),
     model(1010, "XH430-W210", 2.69e-3, 648),

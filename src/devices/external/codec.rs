@@ -127,7 +127,6 @@ pub struct Datagram {
 pub enum NoDatagram {
     /// The first bytes are wrong, or the length does not match the type.
     Shape,
-    /// A datagram of another version of this format.
     Version(u8),
     Checksum,
 }

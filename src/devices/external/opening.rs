@@ -34,7 +34,6 @@ fn begins_us() -> u64 {
     since_1970.map_or(0, |time| time.as_micros() as u64)
 }
 
-/// Finds the device's program over an open socket.
 pub(super) fn meet(
     mut datagrams: Box<dyn Datagrams>,
     kind: Kind,

@@ -16,7 +16,6 @@ pub enum Kind {
 impl Kind {
     pub const ALL: [Self; 3] = [Self::Handle, Self::Arm, Self::Sensor];
 
-    /// Returns the number in the protocol.
     pub(super) const fn code(self) -> u8 {
         match self {
             Self::Handle => 1,
@@ -125,7 +124,6 @@ impl Settings {
         self.inertial.unwrap_or(false)
     }
 
-    /// Returns the address, for messages.
     pub fn place(&self) -> String {
         format!("UDP {}", self.listen)
     }

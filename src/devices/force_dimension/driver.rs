@@ -35,13 +35,16 @@ const JOIN_MAX: Duration = Duration::from_secs(2);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "handle")]
 pub enum HandleEvent {
-    /// Force is on, as requested.
     ForceOn,
     /// Force is off; the cause is [`ForceOffCause::Software`] if this was requested. It stays off until it is enabled
     /// again.
-    ForceOff { cause: ForceOffCause },
+    ForceOff {
+        cause: ForceOffCause,
+    },
     /// Force was requested and did not come on.
-    ForceRefused { cause: ForceOffCause },
+    ForceRefused {
+        cause: ForceOffCause,
+    },
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -57,7 +60,6 @@ pub struct Counters {
     pub saturated: u64,
     /// Cycles in which zero was applied because the newest force command was too old.
     pub stale_commands: u64,
-    /// Cycles that started too late.
     pub late_cycles: u64,
     /// Number of times that the device switched its force off by itself.
     pub force_cut: u64,
@@ -66,9 +68,7 @@ pub struct Counters {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForceAnswer {
     Taken,
-    /// Reduced to the limits.
     Clamped,
-    /// Not finite: zero is applied.
     NotFinite,
     /// The queue is full because the device's thread hangs; the force ends when the last command expires, or by the
     /// watchdog.

@@ -20,7 +20,6 @@ pub(super) struct Opened {
     pub(super) velocity_threshold: Option<u32>,
 }
 
-/// Returns the name for messages.
 pub(super) fn place(settings: &Settings) -> String {
     match settings.serial {
         Some(serial) => format!("omega.7 with serial number {serial}"),
@@ -96,7 +95,6 @@ pub fn attached(settings: &Settings) -> Result<Vec<(u16, Identity)>, Trouble> {
     thread.join().map_err(|_| failed())
 }
 
-/// Checks that the status permits using the device.
 fn check(place: &str, status: &Status) -> Result<(), Trouble> {
     if status.reset {
         let place = place.to_owned();

@@ -141,9 +141,7 @@ impl Kind {
 pub enum ForceOffCause {
     #[default]
     None,
-    /// The force button on its base was pressed.
     Button,
-    /// The hand was faster than the velocity threshold.
     Velocity,
     /// No force command arrived within the watchdog's time.
     Watchdog,
@@ -151,7 +149,6 @@ pub enum ForceOffCause {
     Software,
     /// Error on USB.
     Usb,
-    /// No hand holds the handle.
     DeadMan,
     /// A number that this program does not support.
     Unknown,
@@ -211,10 +208,8 @@ pub struct Status {
     pub force: bool,
     /// The brakes are on: the motors damp every motion.
     pub brake: bool,
-    /// Torque is on (active wrists only).
     pub torque: bool,
     pub wrist: bool,
-    /// The device's error indicator.
     pub error: bool,
     pub gravity: bool,
     pub time_guard: bool,

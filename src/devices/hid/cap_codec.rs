@@ -33,13 +33,11 @@ pub enum CapReport {
     Motion([i16; 6]),
     /// Pressed buttons, one per bit, the first button in the lowest bit.
     Buttons(u32),
-    /// Battery of a wireless model.
     Battery {
         percent: u8,
         /// Whether the cable charges it.
         charging: bool,
     },
-    /// A report that this program does not use.
     Other,
 }
 

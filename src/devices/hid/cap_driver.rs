@@ -67,7 +67,6 @@ impl CapDriver {
         Ok(Self::on(datagrams, identity, wire, settings))
     }
 
-    /// Uses an open source of reports.
     pub fn over(datagrams: Box<dyn Datagrams>, identity: &HidIdentity, settings: &CapSettings) -> Self {
         Self::on(datagrams, identity.identity(), Wire::Reports, settings)
     }

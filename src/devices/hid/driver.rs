@@ -10,7 +10,6 @@ const BAD_MAX: u32 = 8;
 /// Maximum length of a full-speed device's report, with its id.
 const BUFFER: usize = 65;
 
-/// An open source of reports, with its counters.
 pub(super) struct Line {
     pub(super) source: Box<dyn Datagrams>,
     pub(super) health: Health,

@@ -56,7 +56,6 @@ pub const MODELS: [Model; 18] = [
     model(0x05f3, 0x00ff, "VEC Infinity IN-USB-2", Kind::SwitchPedal),
 ];
 
-/// Returns the known device with these ids.
 pub fn known(vendor: u16, product: u16) -> Option<&'static Model> {
     MODELS.iter().find(|model| (model.vendor, model.product) == (vendor, product))
 }

@@ -35,7 +35,6 @@ pub enum Source {
 pub struct HidIdentity {
     pub vendor: u16,
     pub product: u16,
-    /// Serial number, often empty.
     pub serial: String,
     pub name: String,
 }

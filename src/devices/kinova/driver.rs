@@ -168,7 +168,6 @@ impl Driver {
         }
     }
 
-    /// Sends a keep-alive message on both connections.
     fn keep_alive(&mut self, now_s: f64) {
         if self.alive_s.is_some_and(|alive_s| now_s - alive_s < KEEP_ALIVE_S) {
             return;

@@ -50,7 +50,6 @@ const AHEAD_OF_TIME_S: f64 = 0.025;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Beyond {
-    /// The angle is outside the joint's range.
     #[error("outside of its range")]
     Range,
     /// Further from the last command than the speed limit allows.

@@ -5,7 +5,6 @@
 
 use prost::Message;
 
-/// A call: service and function id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rpc {
     /// Service (`@PROXY_ID`).
@@ -71,7 +70,6 @@ pub struct ArmState(pub u32);
 
 impl ArmState {
     pub const IN_FAULT: Self = Self(4);
-    /// Follows cyclic commands.
     pub const SERVOING_LOW_LEVEL: Self = Self(6);
     /// Ready for high-level commands.
     pub const SERVOING_READY: Self = Self(7);

@@ -72,11 +72,8 @@ impl Caller {
 pub enum Failure {
     /// Refused with this error and sub error.
     Refused(u8, u16),
-    /// No answer in time.
     Silent,
-    /// The answer was not a frame.
     Nonsense,
-    /// The connection broke.
     Lost,
 }
 

@@ -31,7 +31,6 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// The factory settings of the arm.
     fn default() -> Self {
         Self {
             host: "192.168.1.10".to_owned(),

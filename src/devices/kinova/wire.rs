@@ -3,7 +3,6 @@
 //! `prost` encodes all messages and decodes the rare ones. Messages that arrive a thousand times per second are decoded
 //! here, because `prost` allocates for repeated fields and for errors.
 
-/// Bytes that are not a valid message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Damaged;
 

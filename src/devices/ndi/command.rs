@@ -30,11 +30,9 @@ pub const OUTSIDE_TOO: u16 = 0x0800;
 /// Reply option: stray passive markers (markers that belong to no tool).
 pub const STRAYS: u16 = 0x1000;
 
-/// Selection of the handles that `PHSR` lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filter {
     All,
-    /// Handles to be freed.
     ToFree,
     /// Occupied, not initialised.
     ToInitialise,
@@ -47,7 +45,6 @@ impl Filter {
     const ALL: [Self; 5] = [Self::All, Self::ToFree, Self::ToInitialise, Self::ToEnable, Self::Enabled];
 }
 
-/// Expected motion of a tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Priority {
     /// Fixed in the scene.
@@ -125,17 +122,13 @@ pub enum Command<'a> {
     /// `PHINF`: information about a handle, selected by option bits.
     Information { handle: u8, options: u16 },
     /// `TSTART`: starts tracking; with option 80 the frame counter is reset.
-    Start {
-        /// Resets the frame counter.
-        anew: bool,
-    },
+    Start { anew: bool },
     /// `TSTOP`: stops tracking.
     Stop,
     /// `TX` or `BX`: requests tracking data, with reply options.
     Track(Form, u16),
 }
 
-/// An encoded command, including CR.
 #[derive(Clone, Copy, Debug)]
 pub struct CommandLine {
     bytes: [u8; COMMAND_MAX],
@@ -190,7 +183,6 @@ impl<'a> Command<'a> {
         }
     }
 
-    /// Encodes the command with checksum and CR.
     pub fn encode(&self) -> CommandLine {
         let mut line = self.written(b':');
         let crc = crc16(line.as_bytes());
@@ -308,7 +300,6 @@ impl<'a> Command<'a> {
         })
     }
 
-    /// Parses the commands about handles.
     fn of_port(name: &[u8], arguments: &[u8]) -> Result<Self, ErrorCode> {
         let handle = || Ok(hex(arguments, 0, 2)? as u8);
         Ok(match name {

@@ -31,7 +31,6 @@ impl Definition {
         Ok(Self(bytes))
     }
 
-    /// Returns the pieces with their addresses.
     pub fn chunks(&self) -> impl Iterator<Item = (u16, [u8; CHUNK])> + '_ {
         let (chunks, _) = self.0.as_chunks::<CHUNK>();
         chunks.iter().enumerate().map(|(k, data)| ((k * CHUNK) as u16, *data))

@@ -73,7 +73,6 @@ pub struct Driver {
     frame: Option<u32>,
     frames_since_open: u64,
     beeps: u8,
-    /// Whether the last command was a beep.
     beeped: bool,
     system: SystemStatus,
     status: [PortStatus; TRACKED_TOOLS],
@@ -129,7 +128,6 @@ impl Driver {
         })
     }
 
-    /// Returns the format of tracking replies in use.
     pub const fn form(&self) -> Form {
         self.form
     }

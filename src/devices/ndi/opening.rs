@@ -24,9 +24,7 @@ pub(super) const OPTIONS: u16 = TRANSFORMS | OUTSIDE_TOO;
 pub(super) const FIRST_BAUD: u32 = 9600;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Timeouts {
-    /// For commands that are answered immediately.
     quick: Duration,
-    /// For commands that take the unit some time.
     slow: Duration,
 }
 
@@ -125,7 +123,6 @@ fn reset(session: &mut Session, timeouts: Timeouts) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Translates a failure for the user.
 fn trouble(place: &str, baud: Option<u32>, command: &str, failure: Failure) -> Trouble {
     let place = place.to_owned();
     match (failure, baud) {

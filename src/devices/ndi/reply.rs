@@ -16,7 +16,6 @@ const BINARY_START: [u8; 2] = [0xC4, 0xA5];
 pub const REPLY_MAX: usize = 4096;
 const HEADER: usize = 6;
 
-/// Format of the reply that the host expects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     Line,
@@ -24,7 +23,6 @@ pub enum Expected {
     Block,
 }
 
-/// A reply found in the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival<'a> {
     /// An ASCII reply with a correct checksum; checksum and CR are removed.
@@ -53,7 +51,6 @@ impl Inbox {
         Self { unread: Unread::with_room(REPLY_MAX), skipped: 0 }
     }
 
-    /// Returns space for new bytes; never empty.
     pub fn room(&mut self) -> &mut [u8] {
         if self.unread.is_full() {
             // These bytes never became a reply.
@@ -127,9 +124,7 @@ fn checked(line: &[u8]) -> Option<&[u8]> {
 /// Start of the buffer when a block is expected.
 enum Found {
     Nothing,
-    /// Possibly an incomplete reply.
     Part,
-    /// A reply with a wrong checksum.
     Bad,
     /// A block with a body of this length, bytes.
     Block(usize),

@@ -13,7 +13,6 @@ use crate::{
     transport::{Bytes, Serial, Tcp},
 };
 
-/// The two types of connection.
 #[derive(Debug)]
 pub(super) enum Wire {
     Tcp(Tcp),
@@ -49,11 +48,8 @@ impl Bytes for Wire {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Failure {
     Silent,
-    /// Bytes that are not a reply.
     Garbled,
-    /// The connection is closed.
     Gone,
-    /// The unit refused the command.
     Refused(ErrorCode),
 }
 
@@ -61,7 +57,6 @@ pub(super) enum Failure {
 const QUIET: Duration = Duration::from_millis(50);
 const NAP: Duration = Duration::from_micros(500);
 
-/// A connection and the bytes received over it.
 #[derive(Debug)]
 pub(super) struct Session {
     pub(super) wire: Wire,
@@ -128,7 +123,6 @@ impl Session {
         }
     }
 
-    /// Discards the data that have arrived.
     pub(super) fn drain(&mut self) -> Result<(), Failure> {
         let mut old = [0; COMMAND_MAX];
         for _ in 0..64 {

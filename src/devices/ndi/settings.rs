@@ -12,7 +12,6 @@ const SPEEDS: [u32; 6] = [38_400, 57_600, 115_200, 230_400, 921_600, 1_228_739];
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Replies {
-    /// The best format that the firmware supports.
     #[default]
     Auto,
     Text,

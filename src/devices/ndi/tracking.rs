@@ -25,11 +25,9 @@ pub struct Transform {
     pub error_mm: f64,
 }
 
-/// Visibility of one tool.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Sight {
     Valid(Transform),
-    /// Not visible to the camera.
     #[default]
     Missing,
     Disabled,
@@ -38,7 +36,6 @@ pub enum Sight {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HandleFrame {
     pub handle: u8,
-    /// Visibility and pose of the tool.
     pub sight: Sight,
     /// Its status; 0 if it is disabled.
     pub status: PortStatus,

@@ -11,7 +11,6 @@ impl ErrorCode {
     pub const INVALID_COMMAND: Self = Self(0x01);
     pub const TOO_LONG: Self = Self(0x02);
     pub const TOO_SHORT: Self = Self(0x03);
-    /// Wrong checksum of the command.
     pub const BAD_CRC: Self = Self(0x04);
     /// Invalid line parameters.
     pub const COMM_PARAMETERS: Self = Self(0x06);
@@ -22,14 +21,11 @@ impl ErrorCode {
     pub const INVALID_PRIORITY: Self = Self(0x09);
     /// Not possible in this mode (tracking or not tracking).
     pub const INVALID_MODE: Self = Self(0x0C);
-    /// The handle has no tool.
     pub const NO_TOOL: Self = Self(0x0D);
-    /// The handle is not initialised.
     pub const NOT_INITIALISED: Self = Self(0x0E);
     pub const NOT_ENABLED: Self = Self(0x0F);
     /// `INIT` was not sent.
     pub const SYSTEM_NOT_INITIALISED: Self = Self(0x10);
-    /// A parameter is outside its range.
     pub const OUT_OF_RANGE: Self = Self(0x23);
     pub const NO_HANDLES_LEFT: Self = Self(0x2D);
     pub const NO_SUCH_PARAMETER: Self = Self(0x34);
@@ -113,7 +109,6 @@ impl PortStatus {
     /// Some markers are outside the measurement volume.
     pub const PARTLY_OUT: u32 = 1 << 7;
 
-    /// Returns whether any of these bits is set.
     pub const fn has(self, bits: u32) -> bool {
         self.0 & bits != 0
     }

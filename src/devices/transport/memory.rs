@@ -50,13 +50,11 @@ fn with<T, R>(line: &Shared<T>, work: impl FnOnce(&mut Line<T>) -> R) -> R {
 }
 
 impl MemoryBytes {
-    /// Creates two connected ends.
     pub fn pair() -> [Self; 2] {
         let [one, other]: [Shared<u8>; 2] = Default::default();
         [Self { incoming: Arc::clone(&one), outgoing: Arc::clone(&other) }, Self { incoming: other, outgoing: one }]
     }
 
-    /// Disconnects both ends.
     pub fn cut(&self) {
         with(&self.incoming, |line| line.cut = true);
         with(&self.outgoing, |line| line.cut = true);
@@ -64,13 +62,11 @@ impl MemoryBytes {
 }
 
 impl MemoryDatagrams {
-    /// Creates two connected ends.
     pub fn pair() -> [Self; 2] {
         let [one, other]: [Shared<Vec<u8>>; 2] = Default::default();
         [Self { incoming: Arc::clone(&one), outgoing: Arc::clone(&other) }, Self { incoming: other, outgoing: one }]
     }
 
-    /// Disconnects both ends.
     pub fn cut(&self) {
         with(&self.incoming, |line| line.cut = true);
         with(&self.outgoing, |line| line.cut = true);

@@ -25,7 +25,6 @@ pub struct SerialSettings {
     pub baud: u32,
 }
 
-/// An open line with exclusive access.
 pub struct Serial {
     /// Used for the settings of the line.
     port: Port,

@@ -37,7 +37,6 @@ pub struct Endoscope {
     pub camera: Option<EndoscopeCamera>,
 }
 
-/// View of an image with two halves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StereoView {
@@ -47,7 +46,6 @@ pub enum StereoView {
 }
 
 impl Default for Endoscope {
-    /// The default has no address.
     fn default() -> Self {
         Self {
             url: String::new(),

@@ -16,7 +16,6 @@ use crate::rig::Misread;
 
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
-    /// The name is neither an embedded name nor a file.
     #[error("unknown {kind} \"{name}\": use one of {known} or the path of a TOML file")]
     Unknown {
         /// `rig` or `scene`.
@@ -31,7 +30,6 @@ pub enum ConfigError {
         path: PathBuf,
         source: std::io::Error,
     },
-    /// The file is not valid TOML for its kind.
     #[error("{kind} file {path}: {message}")]
     Parse {
         /// `rig` or `scene`.

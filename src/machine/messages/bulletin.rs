@@ -11,7 +11,6 @@ pub struct Bulletin<'a> {
     pub side: Side,
     pub state: LoopState,
     pub mode: Mode,
-    /// Whether every mode is computed for comparison.
     pub compares: bool,
     /// Delay over which the force is rendered, s.
     pub delay_s: f64,

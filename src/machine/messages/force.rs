@@ -13,7 +13,6 @@ pub const UNKNOWN_N: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 /// Source of the tip force of a tick, or the reason why it is unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForceSource {
-    /// Measured at the tip.
     AtTip,
     /// Measured at the wrist, with weight and bias removed; friction in the trocar is still included.
     Wrist,
@@ -22,7 +21,10 @@ pub enum ForceSource {
     /// Like `Network`, but outside the training data: only the network's linear path contributes.
     Extrapolated,
     /// The network is uncertain about this sample; the force of the fallback is used.
-    InDoubt { unsure: Unsure, fallback: Fallback },
+    InDoubt {
+        unsure: Unsure,
+        fallback: Fallback,
+    },
     /// Measured at the wrist without a calibration; no force is rendered.
     Uncalibrated,
     /// Calibrated, but the sample lacks the orientation that the calibration needs.
@@ -40,7 +42,6 @@ impl ForceSource {
     pub const UNUSABLE: [Self; 5] =
         [Self::Uncalibrated, Self::NoOrientation, Self::Poisoned, Self::NoSample, Self::Unidentified];
 
-    /// Returns whether the tip force may be rendered.
     pub const fn is_usable(self) -> bool {
         !matches!(self, Self::Uncalibrated | Self::NoOrientation | Self::Poisoned | Self::NoSample | Self::Unidentified)
     }

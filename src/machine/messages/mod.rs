@@ -111,7 +111,6 @@ impl Command {
 /// One tick of an arm pair, for the screen and the recorder. Frame: workspace (z up, tissue at rest near z = 0).
 #[derive(Clone, Copy, Debug)]
 pub struct Tick {
-    /// Number of the executed tick, from 0.
     pub index: u64,
     pub side: Side,
     /// Time of the tick on the loop's clock, seconds since its start.
@@ -122,7 +121,6 @@ pub struct Tick {
     pub delay_s: f64,
     /// Commanded tip position of the hand, m (workspace); while not engaged, the position of the tip.
     pub leader_m: Vector3<f64>,
-    /// Instrument tip (follower), m.
     pub tip_m: Vector3<f64>,
     /// Current tip force measured at the follower, N (on the instrument); [`UNKNOWN_N`] while it is unknown.
     pub measured_n: Vector3<f64>,
@@ -217,7 +215,6 @@ pub const fn attention(state: LoopState) -> u8 {
     }
 }
 
-/// An event, reported once when it occurs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     StateChanged {

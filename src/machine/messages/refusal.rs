@@ -14,13 +14,11 @@ pub enum Refusal {
     StillPresent(Fault),
     /// The force at the tip is unknown, for this reason.
     ForceUnknown(ForceSource),
-    /// A measurement is not plausible.
     Implausible(Implausible),
     /// The arm cannot be engaged from its current position.
     Obstacle(Obstacle),
     /// The tracker does not detect the endoscope.
     EndoscopeUnseen,
-    /// The drives did not switch on in time.
     DrivesOff,
     /// The arm was still moving at the time limit.
     Moving,

@@ -1,6 +1,5 @@
 //! Real-time privileges that the operating system granted.
 
-/// Privileges granted to the loop's thread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Scheduling {
     /// `SCHED_FIFO` was granted.
@@ -36,14 +35,11 @@ impl Scheduling {
 pub enum Lack {
     /// This program does not use real-time functions of this operating system.
     NotLinux,
-    /// A priority above other programs.
     Priority,
-    /// Memory that is never paged out.
     Memory,
 }
 
 impl Lack {
-    /// Returns the missing privilege and the remedy.
     pub const fn words(self) -> [&'static str; 2] {
         match self {
             Self::NotLinux => ["real-time scheduling is used on Linux only", "expect more missed ticks here"],

@@ -31,7 +31,6 @@ impl Arms {
         self.ticks().is_some_and(|ticks| ticks.iter().all(|tick| is(tick.state)))
     }
 
-    /// Returns the first arm whose state satisfies `is`.
     pub(super) fn find(&self, is: impl Fn(LoopState) -> bool) -> Option<&Tick> {
         self.ticks.iter().flatten().find(|tick| is(tick.state))
     }

@@ -76,10 +76,8 @@ impl Check {
     }
 }
 
-/// Action required from a person.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ask {
-    /// No action: wait.
     Nothing,
     /// Move the instrument by 10 cm, outside its trocar.
     Move(Side),
@@ -153,7 +151,6 @@ pub enum Lacks {
     Devices,
     /// The force is measured at the tip: there is no weight and no calibrated bias.
     WristSensor,
-    /// The simulated arm has no person.
     Person,
     /// There is only one arm: nothing can be swapped.
     OtherArm,
@@ -173,7 +170,6 @@ pub enum Cause {
     /// The deliveries of the devices were not published.
     NoGauges,
     NoTicks,
-    /// Too many periods were missed.
     Missed {
         /// Fraction of missed periods, 0 to 1.
         share: f64,
@@ -183,7 +179,6 @@ pub enum Cause {
         /// Difference between the clocks within the check, s.
         by_s: f64,
     },
-    /// A calibration is dated in the future.
     DateBehind,
     /// No gravity calibration exists for this sensor and tool.
     Uncalibrated,
@@ -196,15 +191,12 @@ pub enum Cause {
         limit_n: f64,
     },
     BiasUnseen(NotChecked),
-    /// Right and left are swapped.
     Exchanged(Exchange),
     ArmStuck {
-        /// Distance that it moved, m.
         by_m: f64,
     },
     /// The tracker does not detect the marker on the instrument, or the marker does not move with the instrument.
     MarkerStuck {
-        /// Distance that it moved, m.
         by_m: f64,
     },
     NoPush {
@@ -215,7 +207,6 @@ pub enum Cause {
         /// Angle of the deviation, degrees; near 180 the sign is wrong.
         by_deg: f64,
     },
-    /// The handle moves by itself.
     HandlePulls {
         by_m: f64,
     },
@@ -224,7 +215,6 @@ pub enum Cause {
         force_n: f64,
     },
     HandleStuck {
-        /// Distance that it moved, m.
         by_m: f64,
     },
     /// The handle's reading moved in a different direction than the hand.
@@ -240,7 +230,6 @@ pub enum Cause {
         /// Distance across the shaft, m.
         by_m: f64,
     },
-    /// The rig file can no longer be read.
     NoRigFile,
     /// The loop has a different limit than the rig file.
     OtherCeiling {
@@ -249,9 +238,7 @@ pub enum Cause {
         /// Limit in the rig file, N.
         in_file_n: f64,
     },
-    /// No stop was detected.
     NoStop,
-    /// Only one of the arms has stopped.
     HalfStop(Side),
     /// There was a force in a state that permits none.
     Force {
@@ -267,7 +254,6 @@ pub enum Cause {
     },
     OtherFault(Fault),
     Refused(Refusal),
-    /// An arm was engaged during the check.
     Engaged(Side),
 }
 
@@ -276,17 +262,13 @@ pub enum State {
     Waiting,
     /// In progress; the required action.
     Asking(Ask),
-    /// In order.
     Passed(Figure),
-    /// Not in order.
     Failed(Cause),
-    /// The rig has no such part.
     LeftOut(Lacks),
 }
 
 #[derive(Clone, Debug)]
 pub struct Arm {
-    /// The force is measured at the wrist.
     pub at_wrist: bool,
     /// Its gravity calibration, and the limit of the force that remains at rest, N.
     pub gravity: Option<(GravityModel, f64)>,
@@ -294,7 +276,6 @@ pub struct Arm {
     pub has_person: bool,
 }
 
-/// Subject of the check.
 #[derive(Clone, Debug)]
 pub struct Subject {
     /// The rig as the loop runs it.

@@ -18,7 +18,6 @@ const MOVED_M: f64 = 0.05;
 /// A resting part moves by less than this, m.
 const RESTS_M: f64 = 0.010;
 
-/// Farthest displacement of a point, m.
 #[derive(Clone, Copy, Debug, Default)]
 struct Way {
     from_m: Option<Vector3<f64>>,

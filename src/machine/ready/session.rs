@@ -21,7 +21,8 @@ use crate::{
     rig::{Gauges, Healths, Side},
 };
 
-/// A stop or a fault that is unrelated to a check must be released within this time, s.
+/// A stop or a fault that is unrelated to a check must be released within this time, s. , because the check cannot go
+/// on before, and a person may have to go to the device first. Chosen.
 const RELEASE_WITHIN_S: f64 = 60.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +48,6 @@ pub struct Session {
 }
 
 impl Session {
-    /// Creates the whole list for this rig.
     pub fn new(subject: Subject) -> Self {
         let list = subject.list();
         let arms = Arms::of(&subject);
@@ -71,17 +71,14 @@ impl Session {
         self.list.iter().position(|entry| matches!(entry.state, State::Waiting | State::Asking(_)))
     }
 
-    /// Returns whether every check has its result.
     pub fn is_finished(&self) -> bool {
         self.place().is_none()
     }
 
-    /// Returns whether the session is finished without failures.
     pub fn has_passed(&self) -> bool {
         self.is_finished() && !self.list.iter().any(|entry| matches!(entry.state, State::Failed(_)))
     }
 
-    /// Returns the action required from a person now.
     pub fn ask(&self) -> Ask {
         match self.place().map(|place| self.list[place].state) {
             Some(State::Asking(ask)) => ask,
@@ -89,7 +86,6 @@ impl Session {
         }
     }
 
-    /// Repeats every failed check.
     pub fn again(&mut self) {
         for entry in self.list.iter_mut().filter(|entry| matches!(entry.state, State::Failed(_))) {
             entry.state = State::Waiting;

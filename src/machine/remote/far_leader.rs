@@ -51,9 +51,7 @@ pub struct FarLeader<R, W> {
     wire: W,
     rate_hz: f64,
     heard: Option<Heard>,
-    /// The hands, as used by the loop here.
     hands: [FarHand; SIDES],
-    /// Last states of this machine's pairs.
     states: [Option<LoopState>; SIDES],
     inputs: [Option<Inputs>; SIDES],
     commands: [Option<Command>; COMMANDS_MAX],

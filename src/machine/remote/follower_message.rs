@@ -21,7 +21,6 @@ pub(super) struct FollowerSide {
     pub(super) tip_m: Vector3<f64>,
     pub(super) world_from_jaws: Option<UnitQuaternion<f64>>,
     pub(super) grip_n: Option<f64>,
-    /// The arm follows its commands.
     pub(super) powered: bool,
     /// The arm cannot be engaged from its current position.
     pub(super) is_obstructed: bool,

@@ -98,7 +98,6 @@ impl<'a> Packer<'a> {
         self.bytes(&bits.to_le_bytes());
     }
 
-    /// Returns the message, if everything fitted.
     pub(super) fn done(self) -> Option<&'a [u8]> {
         let Self { buffer, len, fits } = self;
         let buffer: &'a [u8] = buffer;

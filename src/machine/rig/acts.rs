@@ -26,7 +26,6 @@ impl Act {
 impl Acts {
     pub const NONE: Self = Self { begins: 0, marks: 0, ends: 0 };
 
-    /// Counts one more act.
     pub const fn note(&mut self, act: Act) {
         let count = match act {
             Act::Begin => &mut self.begins,
@@ -36,7 +35,6 @@ impl Acts {
         *count = count.wrapping_add(1);
     }
 
-    /// Returns the number of times of this act.
     pub const fn of(&self, act: Act) -> u8 {
         match act {
             Act::Begin => self.begins,
@@ -45,7 +43,6 @@ impl Acts {
         }
     }
 
-    /// Returns the sum of both counts.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         Self {

@@ -19,7 +19,6 @@ use crate::rig::{Inputs, Outputs, Roster, Side, View};
 
 pub use measured::{Delivering, Measured};
 
-/// Readings of the devices that both sides share.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shared {
     pub(super) tissue_n: Option<Vector3<f64>>,
@@ -110,7 +109,6 @@ impl ArmPair {
         })
     }
 
-    /// Reads the data that the devices have sent.
     pub(super) fn poll(&mut self, now_s: f64) {
         let [of_handle, of_arm, of_sensor, of_servos] = &mut self.gauges;
         if let Some(reading) = self.handle.as_mut().and_then(|slot| slot.poll(now_s)) {
@@ -180,7 +178,6 @@ impl ArmPair {
         self.measured.obstacle = Some(obstacle);
     }
 
-    /// Sends the loop's commands to the devices.
     pub(super) fn write(&mut self, now_s: f64, outputs: &Outputs) {
         if outputs.drives != self.driven {
             self.driven = outputs.drives;

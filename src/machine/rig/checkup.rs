@@ -8,9 +8,10 @@ use crate::config::RigConfig;
 
 /// Number of 0.1 s blocks in a test; the counters of the first block are the starting values.
 pub const BLOCKS: usize = 21;
-/// Maximum deviation of the rate from the nominal one, as a fraction.
+/// Maximum deviation of the rate from the nominal one, as a fraction. , because devices differ from their nominal rate
+/// by a clock's tolerance only, and a wrong setting differs by far more. Chosen.
 pub const RATE_OFF: f64 = 0.05;
-/// Maximum fraction of lost readings.
+/// Maximum fraction of lost readings: ten of the 2000 readings at 1 kHz. Chosen.
 const LOST_MAX: f64 = 0.005;
 /// Maximum fraction of damaged frames: one late call in 2 s on a busy computer is not a finding, because the device is
 /// in order.
@@ -22,7 +23,8 @@ const AGE_TICKS: f64 = 2.0;
 const AGE_MAX_S: f64 = 0.010;
 /// Maximum deviation of an accelerometer at rest, m/s^2: 3 % of gravity.
 const GRAVITY_OFF_M_S2: f64 = 0.3;
-/// Fraction of a range above which its end is near.
+/// Fraction of a range above which its end is near. , because a reading at the end itself is clipped and no longer
+/// true.
 const NEAR_END: f64 = 0.95;
 /// Minimum fraction of the frames that contain a marker.
 const SEEN_MIN: f64 = 0.95;
@@ -33,9 +35,7 @@ const ACCELERATION: std::ops::Range<usize> = 6..9;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Finding {
     Silent,
-    /// The device was reopened during the test.
     Reopened,
-    /// Fewer or more readings than the nominal rate.
     Rate {
         hz: f64,
         nominal_hz: f64,
@@ -46,7 +46,6 @@ pub enum Finding {
     Damaged {
         count: u64,
     },
-    /// Readings were refused for their content.
     Refused {
         count: u64,
     },
@@ -115,7 +114,6 @@ pub struct Checkup {
     pub took_s: f64,
     pub rate_hz: f64,
     pub nominal_hz: Option<f64>,
-    /// Each number that the device delivered.
     pub measured: Vec<Measured>,
     /// Age of the newest reading in a tick, s: median and 99th percentile; `None` without any reading.
     pub age_s: Option<[f64; 2]>,

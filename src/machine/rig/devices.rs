@@ -72,17 +72,14 @@ impl std::fmt::Debug for Pedal {
 pub enum RigError {
     #[error("cannot start a thread for a device")]
     Thread(#[from] io::Error),
-    /// A setting of a device is invalid.
     #[error("rig file, {device}: {trouble}")]
     Setting {
         device: String,
         /// The fault of the setting.
         trouble: Trouble,
     },
-    /// The mounting of an arm is invalid.
     #[error("rig file, {side} mount")]
     Mount { side: &'static str, source: nima_core::kinematics::ArmError },
-    /// The trocar (RCM) is invalid.
     #[error("rig file, {side} rcm")]
     Rcm { side: &'static str, source: nima_core::kinematics::RcmError },
 }
@@ -320,7 +317,6 @@ pub(super) fn enrol<D: Device + 'static>(roster: &mut Roster, part: Part, driver
     roster.push(RosterEntry::of(part, driver, slot.view()));
 }
 
-/// Returns whether the device delivers data now.
 pub(super) fn is_there<D: Device + 'static>(slot: &Slot<D>) -> bool {
     slot.health().standing == Standing::Connected
 }

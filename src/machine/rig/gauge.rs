@@ -85,7 +85,6 @@ pub struct Gauge {
 }
 
 impl Gauge {
-    /// A device that has not delivered anything.
     pub const NONE: Self =
         Self { channels: [Spread::NONE; CHANNELS], ages: [0; AGES], readings: 0, lost: 0, damaged: 0, refused: 0 };
 

@@ -18,13 +18,11 @@ pub struct Identified {
     pub source: ForceSource,
     pub fresh: bool,
     pub resting: bool,
-    /// The modes computed there.
     pub modes: ModeSet,
     /// Parameters of one of these modes.
     pub packed: Packed,
     /// Running mean of each mode's error at the prediction horizon, N, if the message contains it.
     pub errors_n: Option<[f32; SLOTS]>,
-    /// Reason why the other machine is stopped.
     pub stop: Option<FarStop>,
 }
 

@@ -20,7 +20,6 @@ pub struct Checked {
 }
 
 impl Checked {
-    /// Extracts the parts of a record.
     pub fn of(record: &ReadyRecord) -> Self {
         let part = |name: &str| Part::ALL.into_iter().find(|part| part.name() == name);
         let told = record.devices.iter().filter(|device| !device.serial.trim().is_empty());
@@ -29,7 +28,6 @@ impl Checked {
     }
 }
 
-/// Expected devices of a rig.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Known {
     has_both_sides: bool,

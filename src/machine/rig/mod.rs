@@ -128,13 +128,11 @@ impl View {
 /// The measurements of an arm pair at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
-    /// The hand as measured by its device.
     pub hand: Hand,
     /// Opening of the gripper, rad, if the handle has one.
     pub gripper_rad: Option<f64>,
     /// Force that opens the jaws, N at the finger, if known.
     pub grip_n: Option<f64>,
-    /// Position of the instrument's tip, m.
     pub tip_m: Vector3<f64>,
     /// Orientation of the instrument's jaws, if known.
     pub world_from_jaws: Option<UnitQuaternion<f64>>,
@@ -213,7 +211,6 @@ pub const GUIDE_MAX_M: f64 = 0.1;
 /// Maximum opening at which the screen may hold a gripper ([`Outputs::grip_rad`]), rad.
 pub const GRIP_MAX_RAD: f64 = 1.2;
 
-/// Commands of the loop to an arm pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outputs {
     /// Drives and motors may be on. If false, the arm brakes to rest and the handle has no force.
@@ -357,14 +354,12 @@ pub struct Healths {
     pub obstacles: [Option<Obstacle>; SIDES],
 }
 
-/// A device connected or was lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceEvent {
     /// Time of detection, s on the loop's clock.
     pub t_s: f64,
     /// Index into the roster.
     pub device: u8,
-    /// Its new state.
     pub standing: Standing,
     /// Sides whose force path needs the device.
     pub of_side: [bool; SIDES],

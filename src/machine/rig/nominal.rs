@@ -14,7 +14,6 @@ const GRIPPER_RAD: f64 = PI / 6.0;
 /// Channel of the gripper.
 const GRIPPER: usize = 6;
 
-/// Expected deliveries of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nominal {
     /// Rate of the readings, Hz; `None` for a device that is queried as often as its connection allows, or sends only

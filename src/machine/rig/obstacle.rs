@@ -13,7 +13,6 @@ pub enum Obstacle {
     /// A device has not reported yet, so it is unknown whether it belongs to this side.
     #[error("{}", .0.words())]
     Waiting(Awaited),
-    /// Right and left are swapped.
     #[error("{}", .0.words())]
     Exchanged(Exchange),
     /// An obstacle at the other end of a network; the screen there shows it.
@@ -47,9 +46,7 @@ pub enum Exchange {
     /// The arms or their mounts.
     Arms,
     Sensors,
-    /// The servos of the instruments.
     Servos,
-    /// The markers on the instruments.
     Markers,
     Trocars,
 }

@@ -11,7 +11,6 @@ pub enum Part {
     /// The force sensor on the arm of this side: calibrations are bound to it.
     Sensor(Side),
     Servos(Side),
-    /// The force sensor under the tissue.
     TissueSensor,
     Tracker,
     Pedal,
@@ -105,7 +104,6 @@ impl Part {
         }
     }
 
-    /// Returns the side; `None` for a shared part.
     pub const fn side(self) -> Option<Side> {
         match self {
             Self::Handle(side) | Self::Arm(side) | Self::Sensor(side) | Self::Servos(side) => Some(side),

@@ -7,7 +7,6 @@ use nima_core::calibration::frames::Move;
 /// simulated person follows it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Prompt {
-    /// Leave the instrument alone.
     #[default]
     Rest,
     /// Turn the tool to this orientation, touch nothing, hold still.

@@ -24,10 +24,8 @@ pub struct Offer {
     pub(crate) changes: Vec<(&'static str, Value)>,
 }
 
-/// One location that was searched.
 #[derive(Clone, Debug)]
 pub struct Sought {
-    /// Port or address.
     pub place: String,
     /// The device there, or the reason why there is none.
     pub found: Result<Offer, Trouble>,

@@ -54,12 +54,10 @@ pub enum Ends {
 }
 
 impl Ends {
-    /// Returns whether handles and pedals are here.
     pub const fn have_leader(self) -> bool {
         matches!(self, Self::Both | Self::Leader)
     }
 
-    /// Returns whether arms and sensors are here.
     pub const fn have_follower(self) -> bool {
         matches!(self, Self::Both | Self::Follower)
     }
@@ -91,7 +89,6 @@ pub struct ArmSet {
     pub mount: ArmSettings,
     /// Trocar point, where the instrument enters the body.
     pub rcm: RcmSettings,
-    /// The force sensor between arm and instrument.
     pub sensor: SensorSettings,
     /// Orientation of the tracker's marker on the instrument: roll, pitch, yaw of `s1_from_m`, degrees; only with a
     /// marker.
@@ -165,11 +162,9 @@ impl DeskSettings {
     }
 }
 
-/// Location of a force sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SensorPlace {
-    /// Between arm and instrument.
     #[default]
     Wrist,
     /// At the tip, beyond the trocar: it measures only the tissue's force.

@@ -37,7 +37,6 @@ impl Watch {
         }
     }
 
-    /// Returns the oldest event not yet reported.
     pub const fn take(&mut self) -> Option<DeviceEvent> {
         if self.count == 0 {
             return None;

@@ -44,7 +44,6 @@ pub enum Clock {
     },
 }
 
-/// A loop and its rig, ready to start.
 pub struct Assembly {
     pub control: Loop,
     pub rig: Box<dyn Rig>,
@@ -52,7 +51,6 @@ pub struct Assembly {
     pub rate_hz: f64,
     /// Source of time, if the loop runs in its own thread.
     pub clock: Clock,
-    /// Scheduling to request from the operating system.
     pub scheduling: SchedulingClass,
     /// Whether to engage as soon as every device delivers data.
     pub engage: bool,

@@ -19,11 +19,8 @@ use crate::{
 pub struct ModeError {
     pub side: Side,
     pub mode: Mode,
-    /// Mean 3-D error, N.
     pub mae_n: f64,
-    /// Standard deviation of the 3-D error, N.
     pub sd_n: f64,
-    /// Largest 3-D error, N.
     pub max_n: f64,
     /// Ticks in which the mode had no valid force.
     pub invalid: u64,
@@ -49,11 +46,9 @@ pub struct DeviceFigures {
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CauseAndCure {
-    /// The device concerned, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub device: Option<String>,
     pub cause: String,
-    /// Remedy for the operator.
     pub cure: String,
 }
 
@@ -95,9 +90,7 @@ fn by_key<S: serde::Serializer>(state: &LoopState, serializer: S) -> Result<S::O
 pub struct Histograms {
     pub wake: Vec<Bar>,
     pub work: Vec<Bar>,
-    /// Exchange with the rig.
     pub rig: Vec<Bar>,
-    /// Time from measurement to force.
     pub sample_to_force: Vec<Bar>,
 }
 
@@ -113,7 +106,6 @@ pub struct Summary {
     pub missed: u64,
     /// Ticks dropped because the queue to the screen was full.
     pub dropped: u64,
-    /// Loop time at the end, s.
     pub seconds: f64,
     /// Loop time per wall time: above 1 is faster than real time.
     pub speed: f64,

@@ -24,7 +24,6 @@ use super::os;
 pub const STALL_MAX_S: f64 = 0.020;
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 
-/// State shared by the loop and the supervisor.
 #[derive(Debug, Default)]
 pub(super) struct Pulse {
     beat_ns: AtomicU64,

@@ -55,11 +55,8 @@ pub enum Operation {
 #[derive(Clone, Debug)]
 pub struct Stepped {
     pub timing: Timing,
-    /// The measurements of each side.
     pub inputs: [Option<Inputs>; SIDES],
-    /// The commands to each side.
     pub outputs: [Outputs; SIDES],
-    /// The displayed data of each side.
     pub ticks: [Option<Tick>; SIDES],
 }
 
@@ -88,7 +85,6 @@ pub struct Entry {
     pub passed: Passed,
 }
 
-/// The loop's end of the tap.
 #[derive(Debug)]
 pub struct Tap {
     entries: Sender<Entry>,
@@ -112,7 +108,6 @@ pub(super) struct Filing {
 
 #[derive(Debug)]
 pub struct TapEnd {
-    /// The entries, oldest first.
     pub entries: Receiver<Entry>,
     calibrations: Receiver<(u64, Calibrations)>,
     spare: Sender<Box<Stepped>>,
@@ -215,7 +210,6 @@ impl Filing {
 #[derive(Debug)]
 pub enum Next {
     Entry(Entry),
-    /// The loop is silent.
     Nothing,
     End,
 }
@@ -237,7 +231,6 @@ impl TapEnd {
         }
     }
 
-    /// Returns a tick's box to the loop.
     pub fn give_back(&self, stepped: Box<Stepped>) {
         self.spare.try_send(stepped).ok();
     }

@@ -84,7 +84,6 @@ pub(super) fn ends(roster: &[RosterEntry], period_s: f64, filing: Option<Filing>
 }
 
 impl Wrists {
-    /// Handles the connection or loss of a device.
     pub(super) fn notice(&self, event: &DeviceEvent, control: &mut Loop, tap: &mut Option<Tap>) {
         if let Some(side) = self.of_device.get(usize::from(event.device)).copied().flatten() {
             tell(tap, Operation::Suspend(side));

@@ -22,7 +22,6 @@ pub fn deadlines(timing: &Timing, period_s: f64) -> impl Iterator<Item = f64> + 
     (oldest..=newest).map(move |k| first_s + k as f64 * period_s)
 }
 
-/// Interpolates between the values of two ticks.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Between<const N: usize> {
     last: Option<(f64, SVector<f64, N>)>,

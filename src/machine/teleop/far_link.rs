@@ -117,7 +117,6 @@ impl Link for FarLink {
 /// One of two links: the pair's own, or the far link once a message has arrived over it.
 #[derive(Clone, Debug)]
 pub(super) struct PairLink<L> {
-    /// The link within this process.
     pub(super) own: L,
     far: Box<FarLink>,
     is_far: bool,

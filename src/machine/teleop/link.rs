@@ -25,7 +25,6 @@ pub struct ProgrammedLink {
     ring: Vec<Parcel>,
     /// Number of packets sent; the newest is at `sent - 1` modulo the length of the ring.
     sent: usize,
-    /// Number of packets delivered.
     delivered: usize,
     delay_s: f64,
     half_period_s: f64,

@@ -151,7 +151,6 @@ impl<L: Link> Loop<L> {
         })
     }
 
-    /// Handles the connection or loss of a device.
     pub fn notice(&mut self, event: &DeviceEvent) {
         for pair in self.pairs.iter_mut().flatten().filter(|pair| event.of_side[pair.side().index()]) {
             pair.notice(event);

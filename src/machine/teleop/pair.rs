@@ -48,7 +48,6 @@ pub struct Pair<L: Link = ProgrammedLink> {
     accuracy: Accuracy,
     /// Whether a ready check has passed; `None` if none is required.
     checked: Option<bool>,
-    /// Number of times that a stop was released.
     releases: u8,
     watchdog_test: Option<WatchdogTest>,
     events: [Option<Event>; EVENTS_PER_TICK_MAX],
@@ -137,7 +136,6 @@ impl<L: Link> Pair<L> {
         self.interlock.state()
     }
 
-    /// Returns the follower's end of the identification.
     pub const fn identifier(&self) -> &Identifier {
         &self.follower.identifier
     }
@@ -146,12 +144,10 @@ impl<L: Link> Pair<L> {
         &self.accuracy
     }
 
-    /// Returns the number of periods missed since construction.
     pub const fn missed(&self) -> u64 {
         self.ticks.missed
     }
 
-    /// Returns the link within this process.
     pub(super) const fn link_mut(&mut self) -> &mut L {
         &mut self.link.own
     }

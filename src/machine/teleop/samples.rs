@@ -39,7 +39,6 @@ impl Samples {
         self.last_s = now_s;
     }
 
-    /// Returns whether the newest sample is too old.
     pub(super) fn are_silent(&self, now_s: f64) -> bool {
         now_s - self.last_s > SILENT_AFTER_S - 0.5 / self.rate_hz
     }

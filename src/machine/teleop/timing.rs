@@ -11,14 +11,12 @@ const DRIFT_MAX: f64 = 2.5;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timing {
     pub now_s: f64,
-    /// Delay of the wake-up after its deadline, s.
     pub wake_s: f64,
     /// Duration of the work of the previous tick, s.
     pub work_s: f64,
     /// Time from the arrival of the oldest measurement of the previous tick until its force was sent to the device, s;
     /// `None` without a measurement.
     pub sample_to_force_s: Option<f64>,
-    /// Number of periods missed just before this tick.
     pub missed_now: u64,
 }
 

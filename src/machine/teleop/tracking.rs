@@ -14,12 +14,13 @@ use nima_core::impedance::MAX_DELAY_S;
 const CANDIDATES: usize = 64;
 /// Maximum lag that can be found, s.
 const LAG_MAX_S: f64 = 0.128;
-/// Averaging time of the comparison, s of motion.
+/// Averaging time of the comparison, s of motion: long enough for some changes of direction, which a lag shows in.
+/// Chosen.
 const MEMORY_S: f64 = 2.0;
-/// Speed below which the shifts cannot be distinguished, m/s.
+/// Speed below which the shifts cannot be distinguished, m/s. , because the noise of the tip's position would decide.
+/// Chosen.
 const MOVING_M_S: f64 = 0.005;
 
-/// Lag of a follower behind its command.
 #[derive(Clone, Debug)]
 pub struct Tracking {
     ring: Vec<Vector3<f64>>,
@@ -58,7 +59,6 @@ impl Tracking {
         self.filled = 0;
     }
 
-    /// Returns the lag in use, in ticks.
     pub const fn lag_samples(&self) -> f64 {
         self.lag_samples
     }

@@ -24,7 +24,6 @@ pub struct Diagnosis {
     pub gain: f64,
     pub gain_se: f64,
     pub offset_n: [f64; 3],
-    /// Standard error of the offset's worst axis, N.
     pub offset_se_n: f64,
     /// Sensor whose axes the offset refers to.
     pub offset_frame: OffsetFrame,

@@ -35,7 +35,6 @@ pub use record::{CorrespondenceKind, CorrespondenceRecord};
 pub use report::{Agreement, CorrespondenceReport, Solution, Target};
 pub use session::{CorrespondenceSession, Missing, Phase, PushTarget, Refusal, SessionSettings, TARGETS};
 
-/// Measurements of both sensors in one push.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     /// Gravity-free force at the wrist, N (`s1`).
@@ -86,7 +85,6 @@ pub struct Options {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Limits {
-    /// Minimum number of usable pushes.
     pub least_pairs: usize,
     /// Pushes weaker than this on either sensor are left out, N.
     pub least_force_n: f64,
@@ -104,7 +102,6 @@ pub struct Limits {
     pub least_r2: f64,
     /// Maximum deviation of the ratio of both sensors' forces from one.
     pub gain_error: f64,
-    /// Maximum offset between both sensors, N.
     pub offset_n: f64,
     /// Maximum angle between the results of both solvers, degrees.
     pub cross_check_deg: f64,
@@ -128,7 +125,6 @@ impl Default for Limits {
     }
 }
 
-/// Input that cannot be fitted.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CorrespondenceError {
     #[error("pair {index}: a force or rotation is not finite; remove the pair")]

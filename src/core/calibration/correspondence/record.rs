@@ -33,9 +33,7 @@ pub struct CorrespondenceRecord {
     /// The rotation as roll, pitch, yaw, degrees; for readers of the file, ignored on loading.
     pub roll_pitch_yaw_deg: [f64; 3],
     pub uncertainty_deg: f64,
-    /// Errors, fitted and held out, N.
     pub agreement: Agreement,
-    /// Gain and offset between the sensors.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub diagnosis: Option<Diagnosis>,
 }

@@ -31,7 +31,6 @@ impl Target {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Agreement {
-    /// Errors per axis, N.
     pub residuals: Residuals,
     /// Coefficient of determination per axis of the fit, `1 - sum e^2 / sum (f - mean)^2`.
     pub r2_fitted: [f64; 3],
@@ -66,7 +65,6 @@ fn determination(force_n: &[Vector3<f64>], error_n: &[Vector3<f64>]) -> ([f64; 3
     (unexplained.zip_map(&varied, share).into(), share(unexplained.sum(), varied.sum()))
 }
 
-/// The rotation and its quality.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solution {
     pub target: Target,
@@ -91,7 +89,6 @@ impl Solution {
     }
 }
 
-/// Returns a normalised quaternion from its components.
 pub(super) fn from_wxyz(wxyz: &[f64; 4]) -> UnitQuaternion<f64> {
     let [w, x, y, z] = *wxyz;
     UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z))

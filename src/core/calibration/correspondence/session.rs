@@ -60,25 +60,21 @@ pub enum Missing {
 /// Reason why a push was not stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
-    /// It ended before the interval was complete.
     TooShort,
     /// The force was not steady.
     Moved {
         /// Standard deviation of the stillest interval, N.
         by_n: f64,
     },
-    /// The sensor under the tissue measured almost nothing.
     MissedTissue,
     Full,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// A source is missing; the session is paused.
     Missing(Missing),
     /// Waiting for both sensors to be at rest without contact, before the first push.
     Resting {
-        /// Fraction of the required time, 0 to 1.
         share: f64,
         /// Reading of the wrist sensor, N; it must be zeroed if this stays above the limit.
         f1_n: f64,
@@ -93,7 +89,6 @@ pub enum Phase {
     },
     /// The push that just ended was stored with this index.
     Recorded(usize),
-    /// The push that just ended was refused.
     Refused(Refusal),
 }
 
@@ -125,7 +120,6 @@ pub const TARGETS: [PushTarget; 9] = [
 
 /// Cosine of the angle within which a push counts for a target: 30 degrees.
 const NEAR_TARGET: f64 = 0.866;
-/// Maximum number of pushes in a session.
 const MOST_PUSHES: usize = 64;
 
 #[derive(Clone, Copy, Debug)]

@@ -45,7 +45,6 @@ pub(super) fn wahba<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Rotation3<f6
 /// Result of the robust estimation; the rotation is the result of [`wahba`] on the agreeing rows.
 #[derive(Clone, Debug)]
 pub(super) struct Consensus {
-    /// Whether the row agrees, per row.
     pub(super) inlier: Vec<bool>,
     /// Median length of the residuals of all rows, N.
     pub(super) median_n: f64,

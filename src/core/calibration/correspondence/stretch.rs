@@ -16,7 +16,6 @@ pub(super) struct Reading {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Best {
-    /// Means over the interval.
     pub(super) pair: Pair,
     /// Standard deviation of the worst axis of either sensor, N.
     pub(super) deviation_n: f64,

@@ -41,7 +41,6 @@ pub enum Cause {
         spread: f64,
         least: f64,
     },
-    /// The force does not follow gravity.
     Weightless {
         weight_n: f64,
         least_n: f64,
@@ -66,7 +65,6 @@ pub enum Cause {
         by_deg: f64,
         most_deg: f64,
     },
-    /// Too many poses contradict the others.
     Outliers {
         share: f64,
         most: f64,
@@ -98,7 +96,6 @@ impl Cause {
     }
 }
 
-/// A mistake that the data can reveal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mistake {

@@ -45,9 +45,7 @@ pub struct FrameRecord<F> {
     pub cause: Cause,
     /// Root mean square error of the poses in the fit.
     pub fitted: Sizes,
-    /// Root mean square error on held-out poses.
     pub held_out: Sizes,
-    /// Largest error on a held-out pose.
     pub held_out_max: Sizes,
     /// Half the length of the 95 % interval.
     pub uncertainty: Sizes,
@@ -157,7 +155,6 @@ pub(super) fn wxyz(rotation: &UnitQuaternion<f64>) -> [f64; 4] {
     [rotation.w, rotation.i, rotation.j, rotation.k].map(|part| part * sign)
 }
 
-/// Returns a normalised rotation from its components.
 pub(super) fn rotation(wxyz: &[f64; 4]) -> UnitQuaternion<f64> {
     let [w, x, y, z] = *wxyz;
     UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z))

@@ -54,13 +54,10 @@ impl Sizes {
 /// Limits for a verdict; `None` for a size that the calibration does not have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Minimum number of poses, lines, points or moves.
     pub least: usize,
-    /// Maximum root mean square error on held-out data.
     pub held_out: Sizes,
     /// Maximum half length of the 95 % interval.
     pub uncertainty: Sizes,
-    /// Maximum fraction of outliers.
     pub outliers: f64,
 }
 
@@ -76,7 +73,6 @@ pub struct FrameReport<F> {
     /// Root mean square error on held-out poses. Each pose (beyond 20: each tenth of them) is compared with a fit to the
     /// others; outliers are not counted.
     pub held_out: Sizes,
-    /// Largest error on a held-out pose.
     pub held_out_max: Sizes,
     /// Half the length of the 95 % interval: for the position along the longest axis of its ellipsoid, for the angle
     /// about any axis.
@@ -178,7 +174,6 @@ fn above(value: Option<f64>, most: Option<f64>) -> Option<(f64, f64)> {
 pub trait Calibration {
     type Found: Found;
 
-    /// Sources that every sample must have.
     fn needs(&self) -> Vec<Source>;
 
     /// Returns the carrier that moves while the calibration is recorded.
@@ -201,7 +196,6 @@ pub trait Calibration {
     /// Returns the mistakes to look for, the likeliest first, and the carrier whose poses they concern.
     fn mistakes(&self) -> Vec<(Mistake, Carrier)>;
 
-    /// Returns the fault that makes these settings unusable.
     fn fault(&self) -> Option<&'static str> {
         None
     }

@@ -40,7 +40,6 @@ pub enum Carrier {
     Handle,
 }
 
-/// A source that a calibration needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     Flange,

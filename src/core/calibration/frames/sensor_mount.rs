@@ -84,7 +84,6 @@ impl SensorMountFound {
         rotation(&self.flange_from_s1_wxyz)
     }
 
-    /// Returns whether the active mount is correct.
     pub fn agrees(&self) -> bool {
         self.from_in_force_deg <= Self::AGREES_DEG
     }
@@ -175,7 +174,6 @@ impl Calibration for SensorMount {
         Carrier::Flange
     }
 
-    /// Only the direction of gravity counts.
     fn differs(&self, sample: &FrameSample, taken: &[FrameSample]) -> bool {
         let Some(down) = self.down_in_flange(sample) else { return false };
         taken.iter().filter_map(|sample| self.down_in_flange(sample)).all(|other| other.angle(&down) >= APART_RAD)

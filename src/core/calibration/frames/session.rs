@@ -10,7 +10,6 @@ use super::{
     hold::{Held, Hold},
 };
 
-/// Maximum number of poses in a session.
 pub const MOST_POSES: usize = 400;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,9 +24,7 @@ pub enum Phase {
     },
     /// Still, but not different enough from the poses that were recorded.
     TakenHere,
-    /// Still, but not long enough yet.
     Recording {
-        /// Fraction of the required time, 0 to 1.
         share: f64,
     },
     Recorded {
@@ -50,7 +47,6 @@ pub enum Missing {
     Move(super::view::Move),
 }
 
-/// Completed fraction of the required motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coverage {
     /// 0 to 1; at 1 the data suffice, unless they are poor.
@@ -60,7 +56,6 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Returns the smallest of these fractions.
     pub(super) fn least<const N: usize>(shares: [(f64, Missing); N]) -> Self {
         let least = shares.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
         // Written so that NaN counts as zero.
@@ -132,12 +127,10 @@ impl<C: Calibration> FrameSession<C> {
         self.calibration.coverage(&self.taken)
     }
 
-    /// Returns the recorded poses: the means.
     pub fn samples(&self) -> &[FrameSample] {
         &self.taken
     }
 
-    /// Adds a pose that was captured elsewhere.
     pub fn add(&mut self, sample: FrameSample) {
         if self.taken.len() < MOST_POSES {
             self.taken.push(sample);

@@ -31,11 +31,9 @@ const MIRROR_SHARE: f64 = 0.5;
 pub enum Move {
     Right,
     Up,
-    /// Away from the endoscope, into the image.
     Deeper,
     Left,
     Down,
-    /// Towards the endoscope.
     Back,
 }
 
@@ -79,7 +77,6 @@ impl View {
         Self::of(Carrier::Marker, tip_in_m_m)
     }
 
-    /// Creates the settings for the handle: finds `leader_from_view`.
     pub fn by_handle() -> Self {
         Self::of(Carrier::Handle, Vector3::zeros())
     }

@@ -42,7 +42,6 @@ impl Compensator {
         &self.model
     }
 
-    /// Resets the filter; the next sample initialises it.
     pub const fn reset(&mut self) {
         self.field_m_s2 = None;
     }

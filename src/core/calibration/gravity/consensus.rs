@@ -13,7 +13,7 @@ const AGREEING_SHARE: f64 = 0.7;
 const SET: usize = 5;
 /// Number of random sets: with 30 % bad poses, all of them contain a bad pose once in 1700 cases.
 const SETS: usize = 40;
-/// With fewer poses it cannot be determined which of them is wrong.
+/// With fewer poses it cannot be determined which of them is wrong: a random set of five must leave some to judge by.
 const LEAST_POSES: usize = 8;
 /// Number of standard deviations beyond which a pose is an outlier: 1 in 900 by chance for three axes.
 const DEVIATIONS: f64 = 4.0;

@@ -31,7 +31,6 @@ pub enum NotChecked {
     Touched,
     /// The body wall touches the instrument.
     InTrocar,
-    /// The loop was engaged before a verdict.
     Engaged,
 }
 
@@ -41,12 +40,10 @@ pub enum Drift {
     Waiting,
     NotChecked(NotChecked),
     Fine {
-        /// Force remaining at rest, N.
         by_n: f64,
     },
     /// The bias has changed, unless something rests on the tool.
     Moved {
-        /// Force remaining at rest, N.
         by_n: f64,
     },
 }

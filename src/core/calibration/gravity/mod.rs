@@ -52,11 +52,7 @@ pub enum GravityError {
     #[error("pose {} has a different source of orientation than the first pose; use one source for all", index + 1)]
     MixedSources { index: usize },
     #[error("pose {}: the accelerometer reads {norm_m_s2:.2} m/s^2 instead of 9.81; check the sensor and its units", index + 1)]
-    DeadAccelerometer {
-        index: usize,
-        /// Magnitude of its reading, m/s^2.
-        norm_m_s2: f64,
-    },
+    DeadAccelerometer { index: usize, norm_m_s2: f64 },
     #[error("the accelerometer's sign {sign} is invalid; use 1 or -1")]
     BadSign { sign: i8 },
 }

@@ -79,7 +79,6 @@ pub enum Parameters {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GravityModel {
-    /// Source of its orientation.
     pub source: Source,
     /// +1 if the accelerometer points away from the ground at rest (as most do), -1 if it points towards it.
     pub imu_sign: i8,

@@ -8,13 +8,10 @@ use crate::calibration::{Judgement, RecordHead, Residuals, Verdict};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Limits {
-    /// Minimum number of poses after removing outliers.
     pub least_poses: usize,
-    /// Minimum coverage, 0 to 1.
     pub least_coverage: f64,
     /// Maximum condition number of the design. 30 corresponds to a shaft tilted by about 30 degrees in all directions.
     pub most_condition: f64,
-    /// Maximum fraction of outliers.
     pub most_outliers: f64,
     /// Maximum mean absolute error of the force on held-out poses, N; `mae_share` may allow more.
     pub mae_n: f64,
@@ -26,7 +23,6 @@ pub struct Limits {
     pub max_share: f64,
     /// Maximum mean absolute error of the torque on held-out poses, Nm.
     pub torque_mae_nm: f64,
-    /// Minimum weight of the tool, N.
     pub least_weight_n: f64,
     /// Minimum weight as a multiple of the poses' disagreement: a sensor that delivers no readings shows no weight.
     pub least_signal: f64,
@@ -86,7 +82,6 @@ pub struct GravityReport {
     /// The chosen model; `None` if there are too few poses.
     pub chosen: Option<ModelKind>,
     pub poses: usize,
-    /// Source of their orientation.
     pub source: Source,
     /// Indices of poses that do not agree with the others, from 0; not used in the fit.
     pub outliers: Vec<usize>,
@@ -98,7 +93,6 @@ pub struct GravityReport {
     pub mass_kg: Option<f64>,
     /// Centre of mass of the tool in `s1`, m.
     pub com_m: Option<[f64; 3]>,
-    /// Number of folds of the cross-validation.
     pub folds: usize,
     pub fits: Vec<ModelFit>,
 }

@@ -8,7 +8,8 @@ use super::{
 };
 use crate::frames::GRAVITY_M_S2;
 
-/// Singular values below this fraction of the largest are dropped as noise.
+/// Singular values below this fraction of the largest are dropped as noise: far above the rounding of 64-bit numbers
+/// (1e-16), and far below what poses of any use have.
 const RANK_SHARE: f64 = 1e-10;
 
 /// Fits one model to these rows; returns `None` if there are too few rows or the solution is not finite.
@@ -92,7 +93,6 @@ fn gain(rows: &[Row], has_torque: bool) -> Option<Parameters> {
     Some(Parameters::Gain { gain_kg, bias_n, torque })
 }
 
-/// Returns the rows `(u / g, 1)`.
 pub(super) fn design(rows: &[Row]) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), 4, |i, j| if j < 3 { rows[i].field_m_s2[j] / GRAVITY_M_S2 } else { 1.0 })
 }

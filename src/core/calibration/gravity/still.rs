@@ -9,7 +9,6 @@ use crate::{
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StillSettings {
-    /// Duration, s.
     pub time_s: f64,
     /// Maximum deviation of a 20 ms mean of the force from the mean of the interval, N.
     pub force_n: f64,

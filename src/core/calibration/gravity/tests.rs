@@ -242,7 +242,6 @@ fn forces_that_have_nothing_to_do_with_gravity_are_poor_data() {
     }
 }
 
-/// Reading of a sensor, N.
 type Force = fn(&mut Tool) -> Vector3<f64>;
 
 #[test]

@@ -38,9 +38,7 @@ use crate::signal::{Lanes, Motion};
 pub enum BaselineModel {
     /// No baseline is computed, or it has no data yet.
     Nothing,
-    /// Model-mediated teleoperation: the contact.
     Contact(Contact),
-    /// Wave variables: the returning wave.
     Wave(Wave),
     /// Time-domain passivity: the energy that the tissue has returned so far (J).
     Returned {
@@ -48,9 +46,14 @@ pub enum BaselineModel {
         energy_j: Lanes,
     },
     /// Kalman: the filtered force and its rate, which the leader extrapolates.
-    Trend { force_n: Lanes, rate_n_s: Lanes },
+    Trend {
+        force_n: Lanes,
+        rate_n_s: Lanes,
+    },
     /// Autoregressive: the force predicted for one delay later.
-    Forecast { force_n: Lanes },
+    Forecast {
+        force_n: Lanes,
+    },
 }
 
 #[derive(Clone, Debug)]
@@ -93,7 +96,6 @@ impl Follower {
         }
     }
 
-    /// Predicts over another delay from now on.
     pub(super) fn set_delay(&mut self, delay_ticks: usize) {
         if let Method::Autoregressive(method) = &mut self.method {
             method.set_delay(delay_ticks);
@@ -169,7 +171,6 @@ impl Ends {
 }
 
 impl method::Method for Ends {
-    /// All baselines share the memory of one.
     fn serves(&self, modes: ModeSet) -> bool {
         modes.baseline().is_some()
     }

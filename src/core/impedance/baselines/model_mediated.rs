@@ -116,7 +116,6 @@ pub(super) struct ModelMediated {
     every: usize,
     tick: usize,
     candidates: [Candidate; CANDIDATES],
-    /// Minimum and maximum position (m).
     range_m: [Lanes; 2],
     envelope: Envelope,
     contact: Contact,

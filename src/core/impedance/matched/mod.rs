@@ -54,7 +54,8 @@ const RIDGES: [Ridge; 3] =
 /// Solves per second of every expert (at most one per tick); the paper's form, whose memory is short, uses the second
 /// value.
 const SOLVE_HZ: [f64; 2] = [150.0, 200.0];
-/// Number of renewals of the other experts per renewal of an expert with the long memory.
+/// Number of renewals of the other experts per renewal of an expert with the long memory: its parameters change ten
+/// times more slowly, so that it needs less of the processor's time.
 const LONG_RENEWALS: usize = 2;
 /// Memory of the experts' errors (s by the clock; the softmin's exponent is eight), and the error below which experts
 /// count as equal (N).
@@ -69,7 +70,6 @@ pub(super) struct Matched {
     every: usize,
     tick: usize,
     one: Lanes,
-    /// One entry per memory.
     sums: Vec<Sums>,
     ridges: &'static [Ridge],
     experts: Vec<Expert>,
@@ -89,14 +89,12 @@ pub(super) struct Matched {
     model: MatchedModel,
 }
 
-/// A ridge and its memory.
 #[derive(Debug)]
 struct Ridge {
     s: f64,
     memory: usize,
 }
 
-/// A ridge and a nested set of columns.
 #[derive(Clone, Debug)]
 struct Expert {
     ridge: usize,

@@ -10,7 +10,6 @@ pub const ARM_CHANNELS: usize = 7;
 /// Numbers of a force sensor: force (N), torque (Nm), acceleration (m/s^2).
 pub const CHANNELS: usize = 9;
 
-/// One reading of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Raw<const N: usize> {
     /// The numbers of the reading; NaN for a number that the device lacks.

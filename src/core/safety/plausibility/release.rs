@@ -13,16 +13,15 @@ const FALLS_N: f64 = 0.1;
 /// A fall with more than this fraction in one sample is a step. Rings that snap away have 0.38 to 0.6 at 1 kHz.
 /// (`docs/faults.md`); a sensor that steps has 1.
 const SHARPEST: f64 = 0.65;
-/// A fall begins at most this many samples before the first sample that is too far away.
+/// A fall begins at most this many samples before the first sample that is too far away. Chosen on the study of faults
+/// (`docs/faults.md`).
 const BEFORE: usize = 4;
 /// Maximum number of samples until a fall must have ended. Chosen on the study of faults: with it, every case there
 /// keeps its verdict, and rings that snap away are excused (`docs/faults.md`).
 const LONGEST: u32 = 6;
 
-/// State of a force that changes too fast.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Fall {
-    /// The force does not fall.
     #[default]
     No,
     /// The force falls and has not reached zero yet.

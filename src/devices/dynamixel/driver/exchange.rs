@@ -190,7 +190,6 @@ impl<T: Bytes> Driver<T> {
         }
     }
 
-    /// Starts the next exchange.
     fn ask(&mut self, now_s: f64) -> Result<(), Loss> {
         if self.reboots.is_any() {
             return Err(Loss::Silent);

@@ -18,13 +18,10 @@ use crate::{
 pub enum Refusal {
     #[error("the connection to the arm is lost: reconnect it")]
     Lost,
-    /// Joint targets need low-level servoing.
     #[error("the arm does not accept joint targets now: enter low-level servoing first")]
     NotServoing,
-    /// A twist needs single-level servoing.
     #[error("the arm does not accept a twist in low-level servoing: leave low-level servoing first")]
     NotSingleLevel,
-    /// The arm is moving with a twist.
     #[error("a twist is moving the arm: stop it first")]
     Moving,
     #[error("the command contains a non-finite number: send finite numbers")]
@@ -109,7 +106,6 @@ impl Driver {
         Ok(())
     }
 
-    /// Brakes, then returns to single-level servoing.
     pub fn leave_low_level(&mut self) {
         match self.mode {
             Mode::Single | Mode::Braking | Mode::Leaving { .. } => {}
@@ -200,7 +196,6 @@ impl Driver {
         Ok(())
     }
 
-    /// Returns the faults in the latest answer.
     pub fn faults(&self) -> Faults {
         Faults::of(&self.feedback)
     }

@@ -43,7 +43,6 @@ impl Driver {
     }
 }
 
-/// Closes both sessions if the arm still answers.
 pub(in crate::kinova) fn close_sessions(lines: &mut Lines) {
     let (_, bytes) = lines.cyclic.request(Rpc::CLOSE_SESSION, &());
     lines.udp.send(bytes).ok();

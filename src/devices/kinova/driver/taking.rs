@@ -151,7 +151,6 @@ impl Driver {
         }
     }
 
-    /// Handles the answers to calls.
     pub(super) fn take_answers(&mut self, now_s: f64) {
         for _ in 0..READS {
             match self.lines.tcp.receive(self.lines.packets.room()) {

@@ -147,7 +147,6 @@ impl Bench {
         }
     }
 
-    /// Returns any tick of the loop.
     pub(super) fn some_tick(&mut self) -> Tick {
         let inputs = self.inputs();
         self.control.step([Some(inputs), None], &Timing::default()).1[0].unwrap()

@@ -45,7 +45,6 @@ pub struct Measured {
     pub(super) pose: Option<Pose>,
     /// Reason why the arm cannot be engaged from its current position.
     pub obstacle: Option<Obstacle>,
-    /// The handle's motors are on.
     pub force_is_on: bool,
 }
 
@@ -139,7 +138,6 @@ impl Measured {
         })
     }
 
-    /// Returns the measurements of arm and sensor.
     fn follower_inputs(&self, now_s: f64, jaws: Option<(&JawsControl, bool)>, shared: &Shared) -> Option<Inputs> {
         let joints = self.joints?;
         let force = self.force?;

@@ -99,7 +99,6 @@ impl SensorSettings {
         }
     }
 
-    /// Returns the rate of the readings, Hz.
     pub(in crate::rig) fn expected_hz(&self) -> f64 {
         match self {
             Self::Bota(settings) => settings.expected_hz(),
@@ -107,7 +106,6 @@ impl SensorSettings {
         }
     }
 
-    /// Returns whether the readings contain an acceleration.
     pub(in crate::rig) fn is_inertial(&self) -> bool {
         match self {
             Self::Bota(settings) => settings.is_inertial(),

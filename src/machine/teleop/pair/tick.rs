@@ -30,7 +30,6 @@ struct Delivery {
     delayed_n: Vector3<f64>,
 }
 
-/// Forces on the hand in a tick.
 #[derive(Clone, Copy, Debug)]
 struct Felt {
     /// Force after the gates, N, in the workspace.

@@ -39,7 +39,6 @@ impl<L: Link> Pair<L> {
         self.watchdog_test.is_some_and(|test| test.watchdog == watchdog)
     }
 
-    /// Returns whether the current test expects this fault.
     pub(super) fn is_tested(&self, fault: Fault) -> bool {
         self.watchdog_test.is_some_and(|test| test.watchdog.raises(fault))
     }

@@ -27,7 +27,6 @@ impl Figures {
         self.angle_deg.extend(error.angle_deg);
     }
 
-    /// Returns the 95th percentiles: mm and degrees.
     fn p95(&self, name: &str) -> [f64; 2] {
         let of = |values: &[f64]| if values.is_empty() { 0.0 } else { p95(values.to_vec()) };
         let [place_mm, angle_deg] = [of(&self.place_mm), of(&self.angle_deg)];

@@ -22,7 +22,8 @@ const LEAST_TILT_DEG: f64 = 4.0;
 /// Minimum angle between two lines, rad: 2 degrees, so that a shaft that hardly moves does not fill the session with
 /// equal lines. Chosen.
 const APART_RAD: f64 = 0.035;
-/// A session is complete with this number of lines.
+/// A session is complete with this number of lines. With 40, 95 % of 200 simulated calibrations by a tracker err by at
+/// most 0.36 mm (`docs/frames.md`).
 const PLENTY: usize = 40;
 const PLENTY_TILT_DEG: f64 = 10.0;
 
@@ -68,7 +69,6 @@ pub struct Trocar {
 }
 
 impl Trocar {
-    /// Creates the settings for the arm's joints.
     pub fn by_arm(arm: &Arm) -> Self {
         Self::of(Carrier::Flange, ShaftLine::of_arm(arm))
     }

@@ -28,7 +28,7 @@ pub struct SlotReport {
     pub opened: u64,
 }
 
-/// Time between two attempts to open the device. , so that a device that is absent does not keep the bus busy.
+/// Time between two attempts to open the device, so that a device that is absent does not keep the bus busy.
 const RETRY: Duration = Duration::from_millis(500);
 /// Polling interval of the thread for closing, opening and ending; the loop determines the time of a wake-up.
 const NAP: Duration = Duration::from_millis(20);

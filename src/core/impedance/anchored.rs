@@ -23,8 +23,7 @@ use crate::signal::{DelayLine, Lanes, settled};
 /// A correction may be at most this many times the recent change of force over the delay. This and the other constants
 /// were chosen by hand on the recordings of both rigs, and on simulated palpation, reaching, sudden contact and loss of contact.
 const BOUND: f64 = 1.5;
-/// An expert's prediction is evaluated after limiting it to this many times that change. Chosen as [`BOUND`]; larger,
-/// so that an expert that is nearly right is not judged by its limit.
+/// An expert's prediction is evaluated after limiting it to this many times that change. Chosen as [`BOUND`].
 const EXPERT_BOUND: f64 = 2.0;
 /// Solves per second of every ridge (at most one per tick). The ridges are solved in turn, and each solution is active
 /// at once. Half as many cost 1 % of accuracy at 10 ms; more have no benefit.

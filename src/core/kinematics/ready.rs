@@ -24,7 +24,7 @@ use super::{
 const STARTS: usize = 600;
 /// Newton steps from each start.
 const STEPS: usize = 80;
-/// Number of poses that are tested over the permitted space. , because each test moves the arm over the whole space,
+/// Number of poses that are tested over the permitted space, because each test moves the arm over the whole space,
 /// which takes most of the time.
 const CANDIDATES: usize = 8;
 /// A pose below these values is not tested: distance from a joint limit (rad), dexterity (m/rad). Chosen.
@@ -39,7 +39,7 @@ const ARRIVED_M: f64 = 1e-4;
 /// Time limit for one goal of the test, periods: 6 s at [`TRY_PERIOD_S`], enough to cross the permitted space several
 /// times at the speed limit of the tip.
 const TRY_PERIODS: usize = 1500;
-/// Number of directions around the cone that are tested. , so that the largest gap between two is 45 degrees.
+/// Number of directions around the cone that are tested, so that the largest gap between two is 45 degrees.
 const AROUND: usize = 8;
 
 #[derive(Clone, Copy, Debug)]

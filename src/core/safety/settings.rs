@@ -55,7 +55,7 @@ pub struct ChainSettings {
     pub handle_kg: f64,
     /// Viscous friction of the handle's bearings and cables, N s/m.
     pub handle_n_s_m: f64,
-    /// Step of the handle's reading, m, from which the accuracy of the hand's speed follows.
+    /// Step of the handle's reading, m; it determines the accuracy of the hand's speed.
     pub handle_step_m: f64,
     /// Maximum viscous damping that the device can render without oscillating, N s/m: the governor's brake.
     pub brake_n_s_m: f64,

@@ -16,7 +16,7 @@ use crate::{Device, ForceReading, ForceStatus, Health, Identity, Loss, Stamped, 
 /// The sensor is lost if nothing usable has arrived for this time, s, at rates that give at least five readings in it;
 /// 2 ms remain of the 20 ms after which the loop takes the force away, so that the sensor is named as the cause.
 const SILENCE_S: f64 = 0.018;
-/// At lower rates it is lost after this many periods. , because a sensor at a low rate would otherwise be lost between
+/// At lower rates it is lost after this many periods, because a sensor at a low rate would otherwise be lost between
 /// two readings.
 const SILENCE_READINGS: f64 = 5.0;
 /// Maximum force, N, larger than the range of any sensor of the family: a larger number is not a force.

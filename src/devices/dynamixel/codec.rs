@@ -14,9 +14,9 @@ const HEADER: [u8; 4] = [0xFF, 0xFF, 0xFD, 0x00];
 const MARK: [u8; 3] = [0xFF, 0xFF, 0xFD];
 const STUFFING: u8 = 0xFD;
 
-/// Address of all servos at once. (ROBOTIS e-manual, protocol 2.0).
+/// Address of all servos at once (ROBOTIS e-manual, protocol 2.0).
 pub const BROADCAST: u8 = 0xFE;
-/// Instruction byte of a status packet. (ROBOTIS e-manual, protocol 2.0).
+/// Instruction byte of a status packet (ROBOTIS e-manual, protocol 2.0).
 pub const STATUS: u8 = 0x55;
 /// Bytes of a packet in addition to its parameters.
 pub const OVERHEAD: usize = 10;

@@ -137,7 +137,7 @@ impl Refusal {
     }
 }
 
-/// Bit of the error byte that is set if there is a hardware error. (ROBOTIS e-manual, protocol 2.0).
+/// Bit of the error byte that is set if there is a hardware error (ROBOTIS e-manual, protocol 2.0).
 pub const ALERT: u8 = 0x80;
 
 /// Key that [`Instruction::ClearTurns`] must carry: 1, "DXL" and 0x22.

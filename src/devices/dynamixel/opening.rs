@@ -36,7 +36,7 @@ impl Timeouts {
     pub(super) const SHORT: Self = Self { answer_s: 0.04, tries: 2 };
 }
 
-/// Maximum number of reads to discard old bytes. , so that a line that sends without pause cannot hold up the opening.
+/// Maximum number of reads to discard old bytes, so that a line that sends without pause cannot hold up the opening.
 pub(super) const REST_READS: usize = 64;
 /// Time for a servo to answer again after a reboot, s.
 const REBOOT_S: f64 = 2.0;

@@ -124,10 +124,10 @@ const fn silence_s() -> f64 {
 
 /// Highest id (ROBOTIS e-manual, protocol 2.0).
 const ID_MAX: u8 = 252;
-/// Highest profile velocity and acceleration, units. (ROBOTIS e-manual, X series).
+/// Highest profile velocity and acceleration, units (ROBOTIS e-manual, X series).
 const PROFILE_MAX: f64 = 32_767.0;
 const GAIN_MAX: u16 = 16_383;
-/// Maximum turns of an extended position in each direction. (ROBOTIS e-manual, X series: -256 to 256 revolutions); one
+/// Maximum turns of an extended position in each direction (ROBOTIS e-manual, X series: -256 to 256 revolutions); one
 /// turn is kept, so that the homing offset fits too.
 const TURNS_MAX: f64 = 255.0;
 

@@ -101,9 +101,9 @@ pub const VOLTAGE: Register = register(144, 2);
 /// Degrees Celsius.
 pub const TEMPERATURE: Register = register(146, 1);
 
-/// Value at which [`TICK`] overflows, ms. (ROBOTIS e-manual, X series).
+/// Value at which [`TICK`] overflows, ms (ROBOTIS e-manual, X series).
 pub const TICK_WRAP: i32 = 32_768;
-/// Encoder steps of one turn. (ROBOTIS e-manual, X series).
+/// Encoder steps of one turn (ROBOTIS e-manual, X series).
 pub const TICKS_PER_TURN: f64 = 4096.0;
 /// Ticks at zero radians: the middle of the range.
 pub const TICKS_AT_ZERO: f64 = 2048.0;
@@ -111,7 +111,7 @@ pub const TICKS_AT_ZERO: f64 = 2048.0;
 pub const VELOCITY_UNIT_RAD_S: f64 = 0.229 * TAU / 60.0;
 /// One unit of acceleration, 214.577 rev/min^2, in rad/s^2.
 pub const ACCELERATION_UNIT_RAD_S2: f64 = 214.577 * TAU / 3600.0;
-/// One unit of the bus watchdog, s. (ROBOTIS e-manual, X series).
+/// One unit of the bus watchdog, s (ROBOTIS e-manual, X series).
 pub const WATCHDOG_UNIT_S: f64 = 0.020;
 /// Value of the bus watchdog once it has expired: -1 in eight bits (ROBOTIS e-manual, X series).
 pub const WATCHDOG_EXPIRED: u8 = 0xFF;

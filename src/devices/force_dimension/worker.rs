@@ -30,12 +30,12 @@ pub(super) const COMMAND_AGE_MAX: Duration = Duration::from_millis(10);
 /// Time without a new reading after which the device is lost. The remaining time to the specified 20 ms is for the
 /// report to reach the loop.
 const SILENCE_MAX: Duration = Duration::from_millis(14);
-/// Number of consecutive impossible readings after which the device is lost. , so that a single one does no harm.
+/// Number of consecutive impossible readings after which the device is lost, so that a single one does no harm.
 const IMPLAUSIBLE_MAX: u32 = 10;
 /// If force is not on this long after it was requested, the device has refused it.
 const ENABLE_MAX: Duration = Duration::from_millis(50);
-/// The status is read once in this many cycles. , because it costs a call to the library, and what it tells does not
-/// change within a millisecond.
+/// The status is read once in this many cycles, because it costs a call to the library, and none of its values changes
+/// within a millisecond.
 const STATUS_EVERY: u64 = 4;
 /// Maximum plausible distance of a handle from its base, m; the workspace of an omega.7 is 160 mm wide (manufacturer's
 /// data sheet).

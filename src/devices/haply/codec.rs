@@ -1,7 +1,7 @@
 //! Requests and answers of the protocol: little-endian, a code and its values, no checksum (reference `haply.md`,
 //! section 4.2). No input or output, no clock, no allocation.
 //!
-//! Codes and layouts are those of the manufacturer's closed client (`HaplyHardwareAPI` 0.1.13), observed on a
+//! Source of codes and layouts: the manufacturer's closed client (`HaplyHardwareAPI` 0.1.13), observed on a
 //! pseudo-terminal.
 
 use crate::unread::Unread;

@@ -34,7 +34,7 @@ const BAD_MAX: u32 = 10;
 /// Number of bytes skipped since the last answer after which the handle is lost: as much as [`BAD_MAX`] answers,
 /// because damaged answers are skipped byte by byte.
 const SKIPPED_MAX: u64 = 10 * STATE_BYTES as u64;
-/// Maximum number of reads in one tick. , so that a device that sends without pause cannot hold up the loop.
+/// Maximum number of reads in one tick, so that a device that sends without pause cannot hold up the loop.
 const READS_MAX: usize = 8;
 /// A serial port on USB ignores the speed; the manufacturer's client sets none.
 const BAUD: u32 = 115_200;

@@ -22,8 +22,8 @@ use crate::{
 /// Maximum size of a datagram: of UDP over IPv4, 65 535 bytes less 8 and 20 bytes of headers (RFC 768, RFC 791).
 pub const DATAGRAM_MAX: usize = 65_507;
 
-/// Time without messages after which the arm closes a session, ms. , as in the manufacturer's Python examples, so that
-/// a program that crashed does not block the arm for the minute of the other examples.
+/// Time without messages after which the arm closes a session, ms, as in the manufacturer's Python examples, so that a
+/// program that crashed does not block the arm for the minute of the other examples.
 const SESSION_INACTIVITY_MS: u32 = 10_000;
 /// High-level motion stops when its session has been silent for this time, ms; the shortest value in the manufacturer's
 /// examples.

@@ -28,7 +28,7 @@ use crate::{
 
 /// Time limit for a new frame, and for the reply to a command, s: six frames at 60 Hz.
 pub const SILENT_S: f64 = 0.100;
-/// Number of consecutive damaged replies after which the unit counts as lost. , so that a disturbance on a serial line
+/// Number of consecutive damaged replies after which the unit counts as lost, so that a disturbance on a serial line
 /// does not end the tracking.
 pub const DAMAGED_MAX: u32 = 5;
 /// Code of [`Loss::Device`] for a unit that was switched off and on while tracking.
@@ -39,7 +39,7 @@ pub const SYSTEM_FAULT: u32 = 0x1_0000;
 const PACE_S: f64 = 0.002;
 /// Pause after a damaged reply, s: its remainder may still be arriving.
 const QUIET_S: f64 = 0.010;
-/// Maximum number of reads in one poll. , so that a unit that sends without pause cannot hold up the loop.
+/// Maximum number of reads in one poll, so that a unit that sends without pause cannot hold up the loop.
 const READS_MAX: usize = 16;
 /// Maximum plausible distance, mm; the largest measurement volume ends at 3 m.
 const FARTHEST_MM: f64 = 6_000.0;

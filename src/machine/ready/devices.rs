@@ -8,7 +8,7 @@ use super::{
 };
 use crate::rig::Healths;
 
-/// A device counts as steady after this time, s. , because a loose plug connects and is lost again within less. Chosen.
+/// A device counts as steady after this time, s. Chosen.
 const STEADY_S: f64 = 1.0;
 
 #[derive(Debug)]

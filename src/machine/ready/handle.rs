@@ -15,8 +15,8 @@ use crate::{
 /// A released handle rests within this distance, m, for this time, s.
 const RESTS_M: f64 = 1e-3;
 const RESTS_S: f64 = 0.6;
-/// Travel after which its direction is evaluated, m: far more than a tremor (0.2 mm), so that its direction is that of
-/// the hand's motion.
+/// Travel after which its direction is evaluated, m: far more than a tremor (0.2 mm), so that the direction shows the
+/// hand's motion.
 const WAY_M: f64 = 0.010;
 /// Maximum angle between the requested and the measured direction, degrees: allows for a person's hand, and is nearer
 /// to this axis than to any other.

@@ -21,8 +21,8 @@ use crate::{
     rig::{Gauges, Healths, Side},
 };
 
-/// A stop or a fault that is unrelated to a check must be released within this time, s. , because the check cannot go
-/// on before, and a person may have to go to the device first. Chosen.
+/// A stop or a fault that is unrelated to a check must be released within this time, s, because the check cannot go on
+/// before, and a person may have to go to the device first. Chosen.
 const RELEASE_WITHIN_S: f64 = 60.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

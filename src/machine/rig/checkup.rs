@@ -8,8 +8,8 @@ use crate::config::RigConfig;
 
 /// Number of 0.1 s blocks in a test; the counters of the first block are the starting values.
 pub const BLOCKS: usize = 21;
-/// Maximum deviation of the rate from the nominal one, as a fraction. , because devices differ from their nominal rate
-/// by a clock's tolerance only, and a wrong setting differs by far more. Chosen.
+/// Maximum deviation of the rate from the nominal one, as a fraction, because devices differ from their nominal rate by
+/// a clock's tolerance only, and a wrong setting differs by far more. Chosen.
 pub const RATE_OFF: f64 = 0.05;
 /// Maximum fraction of lost readings: ten of the 2000 readings at 1 kHz. Chosen.
 const LOST_MAX: f64 = 0.005;
@@ -23,8 +23,7 @@ const AGE_TICKS: f64 = 2.0;
 const AGE_MAX_S: f64 = 0.010;
 /// Maximum deviation of an accelerometer at rest, m/s^2: 3 % of gravity.
 const GRAVITY_OFF_M_S2: f64 = 0.3;
-/// Fraction of a range above which its end is near. , because a reading at the end itself is clipped and no longer
-/// true.
+/// Fraction of a range above which its end is near, because a reading at the end itself is clipped and no longer true.
 const NEAR_END: f64 = 0.95;
 /// Minimum fraction of the frames that contain a marker.
 const SEEN_MIN: f64 = 0.95;

@@ -17,7 +17,7 @@ const LAG_MAX_S: f64 = 0.128;
 /// Averaging time of the comparison, s of motion: long enough for some changes of direction, which a lag shows in.
 /// Chosen.
 const MEMORY_S: f64 = 2.0;
-/// Speed below which the shifts cannot be distinguished, m/s. , because the noise of the tip's position would decide.
+/// Speed below which the shifts cannot be distinguished, m/s, because the noise of the tip's position would decide.
 /// Chosen.
 const MOVING_M_S: f64 = 0.005;
 

@@ -23,8 +23,8 @@ pub(super) struct Best {
 
 /// Maximum number of samples in an interval (0.1 s at 10 kHz, with a margin); a faster source gets a shorter interval.
 const CAPACITY: usize = 2048;
-/// Minimum number of samples for a mean: with fewer, the standard deviation, by which rest is judged, would be known
-/// only within more than 22 % (`1 / sqrt(2 n)`).
+/// Minimum number of samples for a mean: with fewer, the error of the standard deviation would be above 22 %
+/// (`1 / sqrt(2 n)`), and rest is judged by it.
 const LEAST_SAMPLES: usize = 10;
 /// An interval weaker than this fraction of the strongest one is not near the peak.
 const NEAR_PEAK: f64 = 0.8;

@@ -17,7 +17,7 @@ use crate::{
 
 /// Up to this number of poses each is held out alone; above it, every tenth together.
 const LEAVE_ONE_OUT: usize = 20;
-/// The gain model is chosen automatically only with at least this many poses. , because it has twelve unknowns for the
+/// The gain model is chosen automatically only with at least this many poses, because it has twelve unknowns for the
 /// force, and the physical model seven.
 const GAIN_POSES: usize = 12;
 /// The gain model is chosen automatically only if its held-out error is below this fraction of the physical model's.

@@ -40,7 +40,7 @@ pub struct GravityRecord {
 
 /// A smaller change of bias cannot be distinguished from the temperature drift of a recently started sensor, N.
 const DRIFT_FLOOR_N: f64 = 0.10;
-/// Upper limit for any calibration, N. , because a model that errs by more would otherwise excuse any bias.
+/// Upper limit for any calibration, N, because a model that errs by more would otherwise excuse any bias.
 const DRIFT_MOST_N: f64 = 0.50;
 
 impl GravityRecord {

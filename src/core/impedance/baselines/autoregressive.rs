@@ -20,7 +20,7 @@ const SPACINGS: usize = 10;
 /// Memory (s) and ridge (s) of the regression.
 const MEMORY_S: f64 = 3.0;
 const RIDGE_S: f64 = 0.03;
-/// Solves per second (at most one a tick). , because the parameters hardly change within 5 ms.
+/// Solves per second (at most one a tick), because the parameters hardly change within 5 ms.
 const SOLVE_HZ: f64 = 200.0;
 
 /// A constant, the newest force, and the differences of the taps.

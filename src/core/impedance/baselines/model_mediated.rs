@@ -24,7 +24,7 @@ use crate::{
 const MEMORY_S: f64 = 1.0;
 const RIDGE_S: f64 = 0.01;
 const ERROR_S: f64 = 1.0;
-/// Solves per second (at most one a tick). , because the parameters hardly change within 5 ms.
+/// Solves per second (at most one a tick), because the parameters hardly change within 5 ms.
 const SOLVE_HZ: f64 = 200.0;
 /// Number of candidate surfaces, evenly spaced over the visited range.
 const PLACES: usize = 5;

@@ -1,4 +1,4 @@
-//! The columns of a model, from which a force is computed.
+//! The columns of a model; a force is computed from them.
 
 use super::{
     super::{

@@ -54,8 +54,8 @@ const RIDGES: [Ridge; 3] =
 /// Solves per second of every expert (at most one per tick); the paper's form, whose memory is short, uses the second
 /// value.
 const SOLVE_HZ: [f64; 2] = [150.0, 200.0];
-/// Number of renewals of the other experts per renewal of an expert with the long memory: its parameters change ten
-/// times more slowly, so that it needs less of the processor's time.
+/// Number of renewals of the other experts per renewal of an expert with the long memory: its parameters change more
+/// slowly, so that it needs less of the processor's time.
 const LONG_RENEWALS: usize = 2;
 /// Memory of the experts' errors (s by the clock; the softmin's exponent is eight), and the error below which experts
 /// count as equal (N).

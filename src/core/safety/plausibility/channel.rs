@@ -21,7 +21,7 @@ const REPEATED: u32 = 3;
 /// probability p, the longest observed rest r satisfies n p^r = 1 approximately, so that a rest of 2.5 r has a
 /// probability of n^-2.5 per reading: 2e-9 after 3 s at 1 kHz.
 const LONGER: f64 = 2.5;
-/// Time constant with which the longest rest is forgotten, s. , so that one long rest does not hide faults for the rest
+/// Time constant with which the longest rest is forgotten, s, so that one long rest does not hide faults for the rest
 /// of the day. Chosen.
 const FORGOTTEN_S: f64 = 60.0;
 /// A number has noise if it turns this often per second: tremor of 12 Hz turns 24 times, and a product of two such
@@ -30,8 +30,8 @@ const NOISY_TURNS: f64 = 60.0;
 /// A number of a slow device has noise if it turns at this fraction of the readings. White noise turns at two of three.
 /// Chosen; no false alarm in 136 healthy minutes (`docs/faults.md`).
 const NOISY_SHARE: f64 = 0.35;
-/// Longest rest of a number without noise that is fine enough to be judged, s. A coarser one cannot be told from a
-/// frozen one within the 20 ms. Chosen.
+/// Longest rest of a number without noise that is fine enough to be judged, s. A coarser one cannot be distinguished
+/// from a frozen one within the 20 ms. Chosen.
 const FINE_S: f64 = 0.003;
 /// A number has stopped from speed if its last step was this many times its smallest step: a number that comes to rest
 /// by itself passes through small steps.

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 const GONE_N: f64 = 0.5;
 /// A fall decreases by at least this from one sample to the next, N; noise does not.
 const FALLS_N: f64 = 0.1;
-/// A fall with more than this fraction in one sample is a step. Rings that snap away have 0.38 to 0.6 at 1 kHz.
+/// A fall with more than this fraction in one sample is a step. Rings that snap away have 0.38 to 0.6 at 1 kHz
 /// (`docs/faults.md`); a sensor that steps has 1.
 const SHARPEST: f64 = 0.65;
 /// A fall begins at most this many samples before the first sample that is too far away. Chosen on the study of faults

@@ -16,9 +16,9 @@ use crate::{
 /// Malformed frames in a row after which the arm is lost: 10 ms at 1 kHz, so that a single one does no harm.
 const DAMAGED_MAX: u32 = 10;
 const IMPOSSIBLE_MAX: u32 = 5;
-/// Maximum number of datagrams handled in one poll. , so that a sender that floods the port cannot hold up the loop.
+/// Maximum number of datagrams handled in one poll, so that a sender that floods the port cannot hold up the loop.
 const DATAGRAMS: usize = 64;
-/// Maximum number of reads of the stream in one poll. , so that a flood of notifications cannot hold up the loop.
+/// Maximum number of reads of the stream in one poll, so that a flood of notifications cannot hold up the loop.
 const READS: usize = 4;
 /// Maximum plausible speed of a joint, rad/s; with [`JUMP_RAD`] it bounds the change between two readings.
 const JUMP_RAD_S: f64 = 10.0;

@@ -31,7 +31,7 @@ pub(super) struct Opened {
 
 /// TCP port for commands of a network sensor, to which the manufacturer's driver connects, too.
 pub const TCP_PORT: u16 = 23;
-/// Maximum number of restarts of a first-generation sensor that has not loaded its calibration, as in RoboComp's
+/// Maximum number of restarts of a first-generation sensor that has not loaded its calibration, as in `RoboComp`'s
 /// `bota_force_sensor`: some sensors start with the calibration inactive now and then.
 const RESTARTS: u32 = 5;
 const STOP_GEN_A: &[u8] = b"wh,1,2,1\n";

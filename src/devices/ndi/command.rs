@@ -8,7 +8,7 @@ use super::{
     words::ErrorCode,
 };
 
-/// Bytes of a tool definition in one command: `PVWR` carries 128 hexadecimal digits (PlusToolkit's `ndicapi`).
+/// Bytes of a tool definition in one command: `PVWR` carries 128 hexadecimal digits (`ndicapi`).
 pub const CHUNK: usize = 64;
 /// Maximum length of an accepted command line, including CR; the line of a tool definition has 144 bytes.
 pub const COMMAND_MAX: usize = 192;

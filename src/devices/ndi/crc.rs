@@ -1,6 +1,6 @@
 //! The checksum of the Combined API in both reply formats: CRC-16/ARC (polynomial 0x8005 reflected, start 0).
 //!
-//! Source: PlusToolkit's `ndicapi`; recomputed on published replies.
+//! Source: `ndicapi`; recomputed on published replies.
 
 use crc::{CRC_16_ARC, Crc};
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::command::CHUNK;
 use crate::Trouble;
 
-/// Length of a definition as sent, padded with zeros, as PlusToolkit's `ndicapi` does.
+/// Length of a definition as sent, padded with zeros, as `ndicapi` does.
 pub const DEFINITION: usize = 1024;
 const BEGIN: &[u8] = b"NDI\0";
 

@@ -5,7 +5,7 @@
 //! checksum of its header; a line by its CR. A reply with a wrong checksum is reported as [`Arrival::Damaged`] and
 //! discarded.
 //!
-//! Source: PlusToolkit's `ndicapi`, which `tests/peers` runs against the emulator.
+//! Source: `ndicapi`, which `tests/peers` runs against the emulator.
 
 use super::crc::{crc16, read_hex};
 use crate::unread::Unread;

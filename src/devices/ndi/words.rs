@@ -1,6 +1,6 @@
 //! Texts for the unit's error codes and status bits.
 //!
-//! Sources: PlusToolkit's `ndicapi` (errors) and NDI's Python client (`bx.py`, status bits); reference `ndi.md`,
+//! Sources: `ndicapi` (errors) and NDI's Python client (`bx.py`, status bits); reference `ndi.md`,
 //! sections 1.7 and 1.8.
 
 /// An error reply, `ERRORnn`.

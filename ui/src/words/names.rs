@@ -170,10 +170,7 @@ pub(crate) fn goal_words(what: GoalKind) -> [&'static str; 2] {
         ],
         GoalKind::Speed => [
             word("Speed", "Tempo"),
-            word(
-                "make quick strokes in and out, 10 cm/s at their fastest",
-                "schnell hinein- und herausfahren, bis zu 10 cm/s",
-            ),
+            word("make quick strokes in and out, up to 10 cm/s", "schnell hinein- und herausfahren, bis zu 10 cm/s"),
         ],
         GoalKind::Force => [
             word("Force at the tip", "Kraft an der Spitze"),

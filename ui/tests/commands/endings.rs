@@ -128,7 +128,7 @@ fn a_run_whose_devices_never_came_fails_and_says_why_all_the_time() {
     let summary: Value = serde_json::from_str(&json).unwrap();
     assert_eq!(summary["final_state"], "disconnected");
     let arm = summary["devices"].as_array().unwrap().iter().find(|device| device["name"] == "right arm").unwrap();
-    assert_eq!(arm["trouble"]["cause"], "nobody listens at 127.0.0.1:52900", "{arm}");
+    assert_eq!(arm["trouble"]["cause"], "no response from 127.0.0.1:52900", "{arm}");
     assert!(arm["trouble"]["cure"].is_string() && arm["outages"] == 0, "{arm}");
 }
 

@@ -68,7 +68,7 @@ fn the_emulated_rig_runs_with_nothing_beside_the_program() {
         println!("readings of both handles and both arms: {readings:?}\n{told}");
         // No load brings these about; only another program may have taken a port in between.
         for words in ["not installed", "cannot be used", "cannot be emulated"] {
-            assert!(!told.contains(words) || told.contains("used by another program"), "{told}");
+            assert!(!told.contains(words) || told.contains("in use by another program"), "{told}");
         }
         if readings.iter().any(|readings| *readings <= 100) {
             too_busy();

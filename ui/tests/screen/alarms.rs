@@ -199,7 +199,7 @@ fn a_device_that_is_missing_is_pinned_with_its_cause_and_its_cure() {
     assert_eq!(reads(&harness, " is missing: "), 1, "the first is pinned, the others are folded under it");
     assert_eq!(reads(&harness, "Warning: The "), 1);
     harness.key_press(Key::F5);
-    read(&mut harness, "The right arm is missing: nobody listens at 127.0.0.1:52800");
+    read(&mut harness, "The right arm is missing: no response from 127.0.0.1:52800");
     read(&mut harness, "Correct the port number in the rig file");
 }
 

@@ -182,7 +182,7 @@ fn a_sensor_without_an_accelerometer_uses_the_orientation_of_the_arm() {
     scene.wrist.as_mut().unwrap().imu = None;
     let mut console = console(scene, folder.path());
     pick(&mut console, "Calibrate gravity…");
-    wait(&mut console, "the cure", |c| shows(c, "take the orientation from the arm"));
+    wait(&mut console, "the remedy", |c| shows(c, "use the arm's orientation"));
     assert!(!can_press(&console, "Next"));
     console.query_all_by_label_contains("Take the orientation from the arm, not").next().unwrap().click();
     console.step();

@@ -310,7 +310,7 @@ mod tests {
             place: 1,
             name: "right arm".to_owned(),
             was_there: false,
-            cause: "nobody listens at 127.0.0.1:47100".to_owned(),
+            cause: "no response from 127.0.0.1:47100".to_owned(),
             cure: "Correct the port number in the rig file.".to_owned(),
         };
         let signs = Signs {

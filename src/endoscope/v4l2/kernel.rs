@@ -1,4 +1,4 @@
-//! The system calls: one thin implementation, and the trait behind which a test puts a table of its own.
+//! The system calls: a thin implementation, and a trait that a test replaces by a table.
 #![expect(unsafe_code, reason = "ioctl, mmap, poll and a clock have no safe interface in std")]
 
 use std::{
@@ -13,17 +13,17 @@ use std::{
 
 use super::layout::Request;
 
-/// What a camera is asked through.
+/// The system calls on a camera.
 pub(super) trait Kernel: Send {
-    /// One request with its structure, which is as long as the request says.
+    /// Sends a request with its structure, whose length the request defines.
     fn ioctl(&mut self, request: Request, structure: &mut [u8]) -> Result<()>;
-    /// Makes the next buffer visible, which the driver has at this offset.
+    /// Maps the next buffer, which the driver has at this offset.
     fn map(&mut self, offset: u32, length: usize) -> Result<()>;
-    /// The first bytes of a buffer that the driver has given back.
+    /// Returns the first bytes of a buffer that the driver has returned.
     fn copy(&self, buffer: usize, length: usize) -> Vec<u8>;
-    /// Waits until something can be asked for, so long at most.
+    /// Waits until data are available, at most this long.
     fn wait(&mut self, longest: Duration) -> Result<()>;
-    /// The monotonic clock, by which the driver stamps.
+    /// The monotonic clock, which the driver uses for its time stamps.
     fn now(&self) -> Duration;
 }
 

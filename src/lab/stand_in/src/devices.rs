@@ -1,4 +1,4 @@
-//! Who is attached, who is open, how it is.
+//! Attached devices, open devices, and their status.
 
 use std::{
     ffi::{CStr, c_char, c_int, c_uchar, c_ushort},
@@ -19,7 +19,8 @@ pub(crate) fn is_left(handle: &Handle) -> bool {
     handle.reply.kind == LEFT
 }
 
-/// Not of the SDK: adds an emulated handle at `address` ("127.0.0.1:PORT"). 0, or -1 when that is no address.
+/// Not part of the SDK: adds an emulated handle at `address` ("127.0.0.1:PORT"). Returns 0, or -1 if that is not an
+/// address.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nimaEmulateHandle(address: *const c_char) -> c_int {
     if address.is_null() {
@@ -33,7 +34,7 @@ pub unsafe extern "C" fn nimaEmulateHandle(address: *const c_char) -> c_int {
 #[unsafe(no_mangle)]
 pub extern "C" fn dhdEnableSimulator(_on: c_uchar) {}
 
-/// 3.17.5.0, or what `NIMA_EMULATED_SDK_VERSION` says ("3.10.0.0").
+/// 3.17.5.0, or the value of `NIMA_EMULATED_SDK_VERSION` ("3.10.0.0").
 fn version() -> [c_int; 4] {
     let mut version = [3, 17, 5, 0];
     let told = std::env::var("NIMA_EMULATED_SDK_VERSION").unwrap_or_default();

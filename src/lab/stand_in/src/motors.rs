@@ -1,4 +1,4 @@
-//! What the motors do, and the settings that protect the hand.
+//! Output of the motors, and the settings that protect the hand.
 
 use std::{
     ffi::{c_char, c_int, c_uchar, c_uint},
@@ -22,7 +22,7 @@ pub extern "C" fn dhdEnableForce(on: c_uchar, id: c_char) -> c_int {
 
 #[unsafe(no_mangle)]
 pub extern "C" fn dhdEnableGripperForce(_on: c_uchar, id: c_char) -> c_int {
-    // Matters to grippers with a default state only.
+    // Affects only grippers with a default state.
     noted(with(id, |_| Ok(0)))
 }
 
@@ -48,7 +48,7 @@ pub extern "C" fn dhdSetForceAndGripperForce(fx: f64, fy: f64, fz: f64, fg: f64,
 
 #[unsafe(no_mangle)]
 pub extern "C" fn dhdSetForceAndTorque(fx: f64, fy: f64, fz: f64, _tx: f64, _ty: f64, _tz: f64, id: c_char) -> c_int {
-    // The wrist is passive: torques are ignored.
+    // The wrist is passive, so torques are ignored.
     noted(with(id, |handle| handle.force([fx, fy, fz, handle.asked_n[3]])))
 }
 
@@ -66,10 +66,10 @@ pub extern "C" fn dhdSetForceAndTorqueAndGripperForce(
     noted(with(id, |handle| handle.force([fx, fy, fz, fg])))
 }
 
-/// The force and torque that the motors were last told, and the gripper's force.
+/// Writes the last commanded force and torque, and the gripper's force.
 ///
 /// # Safety
-/// The places are null or may be written.
+/// The pointers are null or valid for writes.
 unsafe fn told(force: [*mut f64; 3], torque: Option<[*mut f64; 3]>, gripper: Option<*mut f64>, id: c_char) -> c_int {
     noted(with(id, |handle| {
         let [x, y, z, gripper_n] = handle.asked_n;
@@ -103,7 +103,7 @@ told! {
 
 macro_rules! limit {
     ($($set:ident $get:ident $field:ident;)*) => {$(
-        /// A negative limit is none.
+        /// A negative limit means no limit.
         #[unsafe(no_mangle)]
         pub extern "C" fn $set(limit: f64, id: c_char) -> c_int {
             noted(with(id, |handle| {
@@ -171,7 +171,7 @@ pub extern "C" fn dhdDisableExpertMode() -> c_int {
     noted(Ok(0))
 }
 
-/// Watchdog and velocity threshold protect the hand: changing them to something weaker takes expert mode here.
+/// Watchdog and velocity threshold protect the hand, so weakening them requires expert mode.
 fn expert_for(weaker: bool) -> Result<(), c_int> {
     if weaker && !EXPERT.load(Ordering::Relaxed) { Err(EXPERT_MODE_DISABLED) } else { Ok(()) }
 }

@@ -1,13 +1,13 @@
-//! Writing results to where a caller wants them.
+//! Writing results to a caller's pointers.
 
 use std::ffi::c_int;
 
 use crate::errors::NULL_ARGUMENT;
 
-/// Writes one value; an error where there is no place for it.
+/// Writes one value; an error for a null pointer.
 ///
 /// # Safety
-/// `place` is null or points to a value that may be written.
+/// `place` is null or valid for a write.
 pub(crate) unsafe fn put<T>(place: *mut T, value: T) -> Result<(), c_int> {
     if place.is_null() {
         return Err(NULL_ARGUMENT);
@@ -17,10 +17,10 @@ pub(crate) unsafe fn put<T>(place: *mut T, value: T) -> Result<(), c_int> {
     Ok(())
 }
 
-/// Writes several values, one behind the other.
+/// Writes several consecutive values.
 ///
 /// # Safety
-/// `place` is null or points to at least as many values.
+/// `place` is null or valid for writes of this many values.
 pub(crate) unsafe fn put_all<T: Copy>(place: *mut T, values: &[T]) -> Result<(), c_int> {
     if place.is_null() {
         return Err(NULL_ARGUMENT);
@@ -30,7 +30,7 @@ pub(crate) unsafe fn put_all<T: Copy>(place: *mut T, values: &[T]) -> Result<(),
     Ok(())
 }
 
-/// Writes three values to three places.
+/// Writes three values to three pointers.
 ///
 /// # Safety
 /// As [`put`].

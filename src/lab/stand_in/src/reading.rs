@@ -1,4 +1,4 @@
-//! Where the hand is.
+//! Pose of the hand.
 
 use std::ffi::{c_char, c_int, c_uint};
 
@@ -15,7 +15,7 @@ const DEG: f64 = 180.0 / std::f64::consts::PI;
 const GRIPPER_OPEN_RAD: f64 = std::f64::consts::FRAC_PI_6;
 const GRIPPER_OPEN_M: f64 = 0.025;
 
-/// Reads anew and writes what `write` makes of it.
+/// Reads again, and calls `write` with the result.
 fn read(id: c_char, write: impl FnOnce(&mut Handle) -> Result<(), c_int>) -> c_int {
     noted(with(id, |handle| {
         let code = handle.refresh()?;
@@ -62,10 +62,10 @@ pub unsafe extern "C" fn dhdGetPositionAndOrientationFrame(
     })
 }
 
-/// Position and the wrist's angles, times `scale`.
+/// Writes position and the wrist's angles, times `scale`.
 ///
 /// # Safety
-/// The places are null or may be written.
+/// The pointers are null or valid for writes.
 unsafe fn pose(places: [[*mut f64; 3]; 2], scale: f64, id: c_char) -> c_int {
     // SAFETY: as the caller promises.
     read(id, |handle| unsafe {

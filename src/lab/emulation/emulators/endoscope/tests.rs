@@ -293,7 +293,7 @@ fn figures_of_a_picture_on_its_way() {
         thread::sleep(Duration::from_micros(500));
     }
     for (what, values) in
-        [("from the complete frame to its delivery", &mut work_ms), ("made to handed over", &mut whole_ms)]
+        [("from the complete frame to its delivery", &mut work_ms), ("from rendering to delivery", &mut whole_ms)]
     {
         values.sort_by(f64::total_cmp);
         let at = |share: f64| values[((values.len() - 1) as f64 * share) as usize];

@@ -6,7 +6,7 @@ fn ours_holds_at_the_extremes() {
     for extreme in &report.extremes {
         assert!(extreme.identifier_finite, "{}", extreme.name);
         for rendering in &extreme.renderings {
-            // The shortest case is over before the first parcel has come.
+            // The shortest case ends before the first packet has arrived.
             let too_short = extreme.window as f64 / extreme.rate_hz < 0.05;
             assert!(rendering.asked > 0 || too_short, "{}: {rendering:?}", extreme.name);
             assert_eq!(rendering.finite, rendering.asked, "{}: {rendering:?}", extreme.name);

@@ -33,7 +33,9 @@ pub struct WristId {
 pub enum StoreError {
     #[error("no folder for calibrations found; set NIMA_DATA_DIR to a folder")]
     NoFolder,
-    #[error("\"{name}\" cannot be part of a file name; use letters, digits, '-', '_' and '.', at most 64, not first a '.'")]
+    #[error(
+        "\"{name}\" cannot be part of a file name; use letters, digits, '-', '_' and '.', at most 64, not first a '.'"
+    )]
     Name { name: String },
     #[error("cannot read calibration {path}")]
     Read { path: PathBuf, source: io::Error },

@@ -83,7 +83,6 @@ pub struct Trained {
     pub constant: Vec<String>,
     /// Training rows and held-out rows of each fold.
     pub(super) folds: Vec<(Vec<usize>, Vec<usize>)>,
-    /// s.
     pub elapsed_s: f64,
 }
 

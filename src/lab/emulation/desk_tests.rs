@@ -88,7 +88,6 @@ impl Pressed {
         self.for_s(0.2);
     }
 
-    /// m.
     fn hand_m(&self, side: Side) -> Vector3<f64> {
         self.inputs[side.index()].map_or_else(Vector3::zeros, |inputs| inputs.hand.position_m)
     }

@@ -23,7 +23,6 @@ use super::{
     release::{ReleaseError, TREMOR_M, pressed_tissue},
 };
 
-/// ms.
 pub const DELAYS_MS: [f64; 5] = [0.0, 10.0, 50.0, 100.0, 300.0];
 /// Stiffnesses of loose grips, N/m, with a damping of 5 N s/m.
 pub const LOOSE_N_M: [f64; 3] = [150.0, 300.0, 600.0];

@@ -23,7 +23,6 @@ use serde::Serialize;
 
 use super::pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial};
 
-/// ms.
 pub const DELAYS_MS: [f64; 6] = [0.0, 10.0, 50.0, 100.0, 200.0, 300.0];
 /// Forces of the contact at the release, N: the strongest, and weak ones.
 pub const CONTACTS_N: [f64; 4] = [5.0, 2.0, 1.0, 0.5];
@@ -33,9 +32,7 @@ pub const WEAK_N: f64 = 2.0;
 pub const AIM_MM: f64 = 2.0;
 /// Travel of weak releases, mm.
 pub const WEAK_AIM_MM: f64 = 25.0;
-/// m/s.
 pub const AIM_M_S: f64 = 0.12;
-/// mJ.
 pub const AIM_MJ: f64 = 2.0;
 /// Force later than 100 ms, N: the brake's response to the quantisation of the reading at rest, near the handle's own
 /// friction.
@@ -73,7 +70,6 @@ pub enum ReleaseError {
     #[error("{mode} at {delay_ms} ms: the hand did not reach {contact_n} N within {PATIENCE_S} s")]
     NoContact {
         mode: Mode,
-        /// ms.
         delay_ms: f64,
         /// Force to be reached, N.
         contact_n: f64,
@@ -150,11 +146,8 @@ pub struct Worst {
     pub handle_kg: f64,
     /// Its Coulomb friction, N.
     pub coulomb_n: f64,
-    /// mm.
     pub travel_mm: f64,
-    /// m/s.
     pub peak_m_s: f64,
-    /// mJ.
     pub energy_mj: f64,
     /// Force later than 100 ms, N.
     pub force_after_100_ms_n: f64,

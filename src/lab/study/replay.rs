@@ -40,7 +40,6 @@ pub enum ReplayError {
         needed: usize,
         window_ms: f64,
         delay_ms: f64,
-        /// Hz.
         rate_hz: f64,
     },
     /// A delay that would be rounded to zero.
@@ -50,7 +49,6 @@ pub enum ReplayError {
     ShortDelay {
         path: String,
         delay_ms: f64,
-        /// Hz.
         rate_hz: f64,
         least_ms: f64,
     },
@@ -97,7 +95,6 @@ pub struct Motion<'a> {
     pub name: String,
     /// The axes; lane `i` of a sample is axis `axes[i]`.
     pub axes: &'a [usize],
-    /// Hz.
     pub rate_hz: f64,
     pub samples: usize,
     /// Returns the sample with this index; times rise, and numbers are finite.

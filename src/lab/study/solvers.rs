@@ -22,7 +22,6 @@ pub struct Row {
     pub position: [f64; 3],
     /// The paper's `u`: the change of each quantity over one window length.
     pub increment: [f64; 3],
-    /// N.
     pub force_n: f64,
 }
 

@@ -90,7 +90,6 @@ pub struct Extreme {
     /// Group of cases.
     pub group: &'static str,
     pub name: String,
-    /// Hz.
     pub rate_hz: f64,
     /// Samples in the window.
     pub window: usize,

@@ -30,7 +30,6 @@ use crate::{
 };
 
 pub const GAINS: [f64; 8] = [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0];
-/// s.
 pub const DELAYS_S: [f64; 8] = [0.0, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3];
 /// Tissue stiffnesses of the map, N/m: from fat to a stiff wall.
 pub const STIFFNESSES_N_M: [f64; 8] = [12.0, 50.0, 100.0, 200.0, 400.0, 800.0, 2000.0, 6000.0];

@@ -9,26 +9,13 @@ pub enum MappingError {
     #[error(
         "--map {text}: there is no quantity \"{name}\"; use t, x, y, z, fx, fy, fz, lx, ly or lz (the leader's motion), or xyz, fxyz or lxyz with three columns"
     )]
-    Name {
-        text: String,
-        name: String,
-    },
+    Name { text: String, name: String },
     #[error("--map {text}: \"{name}\" takes three columns, not {found}; write for example {name}=A,B,C*0.001")]
-    Three {
-        text: String,
-        name: String,
-        found: usize,
-    },
+    Three { text: String, name: String, found: usize },
     #[error("--map {text}: the scale \"{scale}\" is not a number other than zero; write for example 0.001")]
-    Scale {
-        text: String,
-        scale: String,
-    },
+    Scale { text: String, scale: String },
     #[error("--map {text}: \"{name}\" is mapped twice; map each quantity once")]
-    Twice {
-        text: String,
-        name: String,
-    },
+    Twice { text: String, name: String },
 }
 
 /// A column and the factor that turns its numbers into SI units.

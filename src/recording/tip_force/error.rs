@@ -7,10 +7,7 @@ use crate::store::StoreError;
 #[derive(Debug, thiserror::Error)]
 pub enum TipForceError {
     #[error("cannot read {path}: {reason}")]
-    Open {
-        path: PathBuf,
-        reason: String,
-    },
+    Open { path: PathBuf, reason: String },
     #[error("data set {path} has no column \"{column}\": its columns are {available}; rename or add the column")]
     NoColumn { path: PathBuf, column: String, available: String },
     #[error(
@@ -45,10 +42,7 @@ pub enum TipForceError {
     #[error("the trained networks differ in their numbers of inputs and outputs; train them with the same columns")]
     Shapes,
     #[error("{path} is not a usable tip-force model: {reason}; train it again with `nima train tip-force`")]
-    Model {
-        path: PathBuf,
-        reason: String,
-    },
+    Model { path: PathBuf, reason: String },
     #[error(transparent)]
     NotLive(#[from] nima_core::tip_force::NotLive),
     #[error("the tip-force model may not be used: {reason}; check it on a new recording")]

@@ -96,6 +96,7 @@ impl Encoder {
     }
 
     /// Encodes the ticks so far and empties the writer.
+    pub fn block(&mut self, block: &mut BlockWriter) -> Vec<u8> {
         self.message(BLOCK, &block.take())
     }
 

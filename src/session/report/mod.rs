@@ -59,7 +59,6 @@ pub struct Figures {
     pub about: BTreeMap<String, String>,
     /// Tables of calibrations: `right`, `left`, and by number those that became active later.
     pub calibrations: BTreeMap<String, BTreeMap<String, String>>,
-    /// s.
     pub length_s: f64,
     /// Whether the recording was closed; if not, the program was killed or the file was cut. `None` without a journal.
     pub closed: Option<bool>,
@@ -82,6 +81,7 @@ pub struct Figures {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Missing {
     /// End of the block with the gap, s since the session's begin.
+    pub until_s: f64,
     /// Number of missing entries.
     pub lost: u64,
 }

@@ -52,7 +52,6 @@ pub struct Board {
 pub struct Pegs {
     /// Positions, x and y, m.
     pub at_m: Vec<[f64; 2]>,
-    /// m.
     pub radius_m: f64,
     /// Height above the board, m.
     pub height_m: f64,
@@ -66,7 +65,6 @@ pub struct Shape {
     pub major_radius_m: f64,
     /// Radius of the tube, m.
     pub tube_radius_m: f64,
-    /// kg.
     pub mass_kg: f64,
 }
 
@@ -117,9 +115,7 @@ pub struct Contact {
 pub struct Jaws {
     /// From the hinge to the end of a finger, m.
     pub finger_length_m: f64,
-    /// m.
     pub finger_radius_m: f64,
-    /// m.
     pub shaft_radius_m: f64,
     /// Force at the end of the fingers per distance between actual and commanded position, N/m.
     pub stiffness_n_m: f64,

@@ -110,9 +110,7 @@ pub struct Wall {
     pub at_m: [f64; 3],
     /// The direction in which it pushes; of any length.
     pub normal: [f64; 3],
-    /// N/m.
     pub stiffness_n_m: f64,
-    /// N s/m.
     pub damping_n_s_m: f64,
 }
 

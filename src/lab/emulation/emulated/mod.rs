@@ -84,9 +84,7 @@ pub enum EmulatedRigError {
     #[error("cannot emulate this rig: it has no arm pair; add [devices.right], or use the rig `emulated`")]
     NoArm,
     #[error("cannot emulate the {device}: there is no emulator for its `make`; use another make")]
-    Make {
-        device: String,
-    },
+    Make { device: String },
     /// The address is not on this computer.
     #[error("cannot emulate the {device} at \"{place}\": {wanted}")]
     Place {
@@ -102,28 +100,16 @@ pub enum EmulatedRigError {
     Settings(#[from] Trouble),
     /// The arm's mount is impossible.
     #[error("the mount of the {device} is impossible; correct it in the rig file")]
-    Mount {
-        device: String,
-        source: ArmError,
-    },
+    Mount { device: String, source: ArmError },
     /// The trocar is impossible.
     #[error("the trocar of the {device} is impossible; correct it in the rig file")]
-    Trocar {
-        device: String,
-        source: RcmError,
-    },
+    Trocar { device: String, source: RcmError },
     /// The arm cannot reach the start position of the hand.
     #[error("the {device} cannot reach the start position of the scene's hand")]
-    Ready {
-        device: String,
-        source: ReadyError,
-    },
+    Ready { device: String, source: ReadyError },
     /// The emulator cannot be started.
     #[error("cannot emulate the {device}")]
-    Serve {
-        device: String,
-        source: std::io::Error,
-    },
+    Serve { device: String, source: std::io::Error },
 }
 
 /// An emulated device.

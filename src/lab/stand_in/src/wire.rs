@@ -115,7 +115,6 @@ pub struct Reply {
     pub watchdog: u32,
     pub status: [u32; STATUS_ENTRIES],
     pub firmware: f64,
-    /// m.
     pub position_m: [f64; 3],
     /// Row by row.
     pub frame: [f64; 9],

@@ -69,7 +69,6 @@ pub enum BaselinesError {
 pub struct Options {
     /// Recordings and scenes, each with its part.
     pub sources: Vec<(Source, Split)>,
-    /// s.
     pub delays_s: Vec<f64>,
     /// Whether the program's own modes learn the full matrix `M`.
     pub cross_talk: bool,

@@ -48,7 +48,9 @@ pub enum LiveError {
     #[error(transparent)]
     Start(#[from] StartError),
     /// The loop was not engaged within 5 s.
-    #[error("the loop on the real clock did not engage within 5 s: other programs use too much processor time; close them")]
+    #[error(
+        "the loop on the real clock did not engage within 5 s: other programs use too much processor time; close them"
+    )]
     NotEngaged,
     #[error("the loop's thread panicked; start the study again and report this")]
     Died,

@@ -133,7 +133,6 @@ pub struct Report {
     pub known_s: [f64; 2],
     /// Duration of a run, and of its judged part, s.
     pub run_s: f64,
-    /// s.
     pub judged_s: f64,
     /// Targets.
     pub aims: Vec<Aim>,

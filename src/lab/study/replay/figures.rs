@@ -59,7 +59,7 @@ pub struct Figures {
     pub mode: Mode,
     /// The motion from which the force is computed: the follower's, or the handle's if the recording has it.
     pub own_motion: OwnMotion,
-    /// ms.
+    pub window_ms: f64,
     /// Delay used, ms: the requested one rounded to whole samples.
     pub delay_ms: f64,
     /// Number of samples compared: all from the first one with a delayed force.

@@ -14,7 +14,6 @@ use nima_simulation::{World, scene::Scene};
 
 use super::ValidationError;
 
-/// Hz.
 pub const RATE_HZ: f64 = 1000.0;
 /// Time limit of a guided calibration, s.
 const PATIENCE_S: f64 = 120.0;

@@ -21,7 +21,6 @@ const FILL_S: f64 = 1.0;
 /// Mean absolute error and standard deviation per axis, averaged over the three axes, N.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Figures {
-    /// N.
     pub mae_n: f64,
     /// Standard deviation of the error, N.
     pub sd_n: f64,

@@ -73,11 +73,7 @@ fn a_file_that_is_cut_anywhere_is_read_up_to_there() {
     for length in 60..whole.len() {
         let reader = Reader::of_bytes("cut", whole[..length].to_vec()).unwrap();
         let read = ours(&reader);
-        assert!(
-            reader.notes()[0].starts_with("it is cut short: scanned all records"),
-            "{:?}",
-            reader.notes()
-        );
+        assert!(reader.notes()[0].starts_with("it is cut short: scanned all records"), "{:?}", reader.notes());
         assert!(read[..] == all[..read.len()] && read.len() >= most, "cut at {length}");
         most = read.len();
     }

@@ -159,7 +159,10 @@ fn what_cannot_be_created_or_goes_away_is_told_in_one_line() {
     let channel = writer.channel("a", plain_text()).unwrap();
     writer.message(channel, 0, b"a").unwrap();
     let foreign = writer.message(ChannelId(1), 0, b"a").unwrap_err().to_string();
-    assert!(foreign.ends_with("session.mcap has no channel 1: the channel belongs to another file; use one of this file"), "{foreign}");
+    assert!(
+        foreign.ends_with("session.mcap has no channel 1: the channel belongs to another file; use one of this file"),
+        "{foreign}"
+    );
     if cfg!(windows) {
         fs::remove_file(&path).unwrap_err();
         writer.flush().unwrap();

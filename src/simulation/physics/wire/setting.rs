@@ -35,7 +35,6 @@ pub struct WireSetting {
     pub points_m: Vec<[f64; 3]>,
     /// The goal: the point that the loop has to reach, counted from 0.
     pub goal_point: usize,
-    /// m.
     pub radius_m: f64,
     /// The loop around the tip of each instrument.
     #[serde(rename = "loop")]
@@ -62,9 +61,7 @@ pub struct Hoop {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct WireContact {
-    /// N/m.
     pub stiffness_n_m: f64,
-    /// N s/m.
     pub damping_n_s_m: f64,
     /// Coefficient of Coulomb friction.
     pub friction: f64,

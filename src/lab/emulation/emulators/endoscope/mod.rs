@@ -34,9 +34,7 @@ use super::Emulator;
 /// One instrument in the workspace, as seen by an endoscope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instrument {
-    /// m.
     pub tip_m: Vector3<f64>,
-    /// m.
     pub trocar_m: Vector3<f64>,
 }
 

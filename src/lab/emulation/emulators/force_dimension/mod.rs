@@ -24,7 +24,6 @@ use crate::emulators::{EmulatedFault, Emulator, End, Peer, Turn, wires::udp};
 /// Pose of the handle, in the device's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandState {
-    /// m.
     pub position_m: Vector3<f64>,
     pub orientation: UnitQuaternion<f64>,
     /// Opening of the gripper, rad.

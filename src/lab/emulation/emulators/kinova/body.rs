@@ -22,9 +22,7 @@ pub enum Asked {
     Twist {
         /// In this frame.
         frame: TwistFrame,
-        /// m/s.
         linear_m_s: Vector3<f64>,
-        /// rad/s.
         angular_rad_s: Vector3<f64>,
     },
 }
@@ -32,9 +30,7 @@ pub enum Asked {
 /// State of the body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyState {
-    /// rad.
     pub joint_rad: [f64; ARM_JOINTS],
-    /// rad/s.
     pub joint_rad_s: [f64; ARM_JOINTS],
     /// Joint torques with the sign of commands, Nm.
     pub joint_nm: [f64; ARM_JOINTS],

@@ -11,7 +11,6 @@ use crate::{tradeoff::Source, validation::ValidationError};
 /// The paper's task, and its programmed delay (s).
 const SCENE: &str = "peg_transfer";
 const DELAY_S: f64 = 0.3;
-/// Hz.
 const RATE_HZ: f64 = 1000.0;
 
 /// The hand's way of working, and the accuracy of the force measurement.

@@ -230,10 +230,7 @@ pub enum CopyError {
     #[error(transparent)]
     Write(#[from] WriteError),
     #[error("bundle {came} of the session arrived, but bundle {due} was expected; begin a new copy")]
-    Gap {
-        came: u64,
-        due: u64,
-    },
+    Gap { came: u64, due: u64 },
 }
 
 /// Writes a copy of a session file.

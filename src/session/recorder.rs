@@ -77,10 +77,7 @@ pub enum RecordError {
     Thread(#[source] io::Error),
     /// The operating system does not write to the disk.
     #[error("cannot record session {path}: {source}; check the disk or record to another one")]
-    System {
-        path: PathBuf,
-        source: io::Error,
-    },
+    System { path: PathBuf, source: io::Error },
 }
 
 /// A log entry from a screen, which does not pass through the loop.

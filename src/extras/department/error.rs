@@ -18,15 +18,9 @@ pub enum DepartmentError {
     #[error("{0} exists already; delete it first if it is no longer needed")]
     Exists(PathBuf),
     #[error("{path}: {source}")]
-    File {
-        path: PathBuf,
-        source: io::Error,
-    },
+    File { path: PathBuf, source: io::Error },
     #[error("{path} is not a certificate of a department: {why}; use the file issued by nima department")]
-    NotOne {
-        path: PathBuf,
-        why: String,
-    },
+    NotOne { path: PathBuf, why: String },
     #[error("cannot make a certificate: {0}")]
     Certificate(String),
     /// This machine has the wrong role.
@@ -38,25 +32,18 @@ pub enum DepartmentError {
         needed: &'static str,
     },
     /// The rig cannot be shared.
-    #[error("cannot share at {address}: {why}; end the program that uses this port, or choose another one with --share")]
-    Listen {
-        address: String,
-        why: String,
-    },
+    #[error(
+        "cannot share at {address}: {why}; end the program that uses this port, or choose another one with --share"
+    )]
+    Listen { address: String, why: String },
     /// The rig does not answer.
     #[error(
         "no rig answers at {address}: {why}; share it (--share), and check that both machines belong to the same department"
     )]
-    Connect {
-        address: String,
-        why: String,
-    },
+    Connect { address: String, why: String },
     /// The rig has stopped answering.
     #[error("rig {rig} does not answer: {why}; check that its console is running")]
-    Silent {
-        rig: String,
-        why: String,
-    },
+    Silent { rig: String, why: String },
     /// The rig is not recording now.
     #[error("rig {0} is not running a loop now; start it there")]
     NoSession(String),

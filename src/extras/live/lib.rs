@@ -25,10 +25,7 @@ pub enum LiveError {
     #[error(
         "live viewing: cannot listen at {address}: {reason}; end the program that uses this port, or choose another port"
     )]
-    Listen {
-        address: SocketAddr,
-        reason: String,
-    },
+    Listen { address: SocketAddr, reason: String },
 }
 
 /// A server that runs until it is dropped, for one session after the other.

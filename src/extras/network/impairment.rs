@@ -16,9 +16,7 @@ pub enum Jitter {
     #[default]
     None,
     /// The absolute value of a normal number with this standard deviation.
-    Normal {
-        deviation_s: f64,
-    },
+    Normal { deviation_s: f64 },
     /// A Pareto (Lomax) number: rarely very large.
     Pareto {
         mean_s: f64,

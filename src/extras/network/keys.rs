@@ -29,16 +29,10 @@ const FILE_MAX: usize = 16 * 1024;
 #[derive(Debug, thiserror::Error)]
 pub enum KeyError {
     #[error("{}: {source}", path.display())]
-    File {
-        path: PathBuf,
-        source: io::Error,
-    },
+    File { path: PathBuf, source: io::Error },
     /// Other users can read or change the file.
     #[error("{}: other users can read or change it (mode {mode:03o}); restrict it to yourself: chmod 600", path.display())]
-    Mode {
-        path: PathBuf,
-        mode: u32,
-    },
+    Mode { path: PathBuf, mode: u32 },
     /// The file is malformed.
     #[error("{}, line {line}: {what}", path.display())]
     Content {

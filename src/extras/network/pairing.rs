@@ -55,15 +55,14 @@ const LEN: usize = HANDSHAKE_LEN + 1 + 64;
 pub enum PairingError {
     /// The address cannot be used.
     #[error("pairing: cannot use {address}: {source}; correct the address")]
-    Address {
-        address: SocketAddr,
-        source: io::Error,
-    },
+    Address { address: SocketAddr, source: io::Error },
     /// No answer in time, or cancelled.
     #[error("pairing: no answer; start it on both machines, and check the address and the firewall")]
     Nobody,
     /// The revealed part does not match its commitment: a third party is between the machines.
-    #[error("pairing: the other side's data contradict its commitment, so a third party may be between the two machines; check the network, then pair again")]
+    #[error(
+        "pairing: the other side's data contradict its commitment, so a third party may be between the two machines; check the network, then pair again"
+    )]
     Contradiction,
     /// The entered code is wrong.
     #[error(
@@ -72,9 +71,7 @@ pub enum PairingError {
     WrongCode,
     /// Too many wrong codes.
     #[error("pairing: too many wrong codes; wait {wait_s:.0} s, then try again")]
-    TooMany {
-        wait_s: f64,
-    },
+    TooMany { wait_s: f64 },
     /// The system provides no random numbers.
     #[error(transparent)]
     Keys(#[from] KeyError),

@@ -34,24 +34,12 @@ pub enum ReplayError {
     #[error(
         "recording {path} has {found} samples; a window of {window_ms} ms and a delay of {delay_ms} ms at {rate_hz} Hz need {needed}; record longer or shorten the window"
     )]
-    TooShort {
-        path: String,
-        found: usize,
-        needed: usize,
-        window_ms: f64,
-        delay_ms: f64,
-        rate_hz: f64,
-    },
+    TooShort { path: String, found: usize, needed: usize, window_ms: f64, delay_ms: f64, rate_hz: f64 },
     /// A delay that would be rounded to zero.
     #[error(
         "the delay of {delay_ms} ms is less than half a sample of recording {path} ({rate_hz} Hz); give 0 or at least {least_ms:.3} ms"
     )]
-    ShortDelay {
-        path: String,
-        delay_ms: f64,
-        rate_hz: f64,
-        least_ms: f64,
-    },
+    ShortDelay { path: String, delay_ms: f64, rate_hz: f64, least_ms: f64 },
 }
 
 /// A time step longer than this (s) and this many periods is a gap: nothing is learnt or rendered across it.

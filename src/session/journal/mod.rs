@@ -35,18 +35,13 @@ pub enum JournalError {
     #[error(
         "its journal has version {found}, but this program reads version {VERSION}, whose gates need readings that older journals lack; replay it with the program that recorded it"
     )]
-    Version {
-        found: u16,
-    },
+    Version { found: u16 },
     #[error("its content does not match its checksum: the file was changed or damaged")]
     Damaged,
     #[error("its content is wrong: {0}")]
     Wrong(#[from] Wrong),
     #[error("its {what} cannot be used: {why}")]
-    Part {
-        what: &'static str,
-        why: String,
-    },
+    Part { what: &'static str, why: String },
 }
 
 #[derive(Clone, Debug)]

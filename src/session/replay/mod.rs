@@ -32,7 +32,9 @@ pub enum ReplayError {
     NoStart,
     #[error("it has no journal; only sessions recorded with `nima run --record` can be replayed")]
     NoJournal,
-    #[error("calibrations number {number} become active at tick {tick}, but the file does not contain them: it was cut or damaged")]
+    #[error(
+        "calibrations number {number} become active at tick {tick}, but the file does not contain them: it was cut or damaged"
+    )]
     NoCalibrations { number: u64, tick: u64 },
     /// The settings of the rig, as recorded or as changed, are not usable.
     #[error(transparent)]

@@ -45,9 +45,7 @@ pub enum ReportError {
     #[error(
         "{path} has neither the journal nor the plots of a session of this program; choose a file written by `nima run --record` or the console"
     )]
-    Foreign {
-        path: String,
-    },
+    Foreign { path: String },
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -14,7 +14,7 @@ thread_local! {
 }
 
 fn count() {
-    // A thread that is ending has no counter any more; its allocations do not matter.
+    // The counter of an ending thread no longer exists; its allocations do not matter.
     let _ = CALLS.try_with(|calls| calls.set(calls.get() + 1));
 }
 
@@ -42,7 +42,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Number of allocations, releases and changes of size by this thread so far.
+/// Number of allocations, releases and resizes by this thread so far.
 pub(crate) fn calls() -> u64 {
     CALLS.get()
 }

@@ -85,7 +85,10 @@ fn before_the_first_sample_and_after_a_silence_no_force_is_known() {
     assert_eq!(bench.judged(), judged, "nothing errs from a force that is not known");
 
     let tick = bench.run(10, at_tip);
-    assert!(tick.measured_n == force_n(tick.t_s) && is_unknown(tick.delayed_n), "not the value from before the silence");
+    assert!(
+        tick.measured_n == force_n(tick.t_s) && is_unknown(tick.delayed_n),
+        "not the value from before the silence"
+    );
     let tick = bench.run(DELAY_MS, at_tip);
     assert!((tick.delayed_n - force_n(tick.t_s - 0.05)).norm() < 1e-9, "{}", tick.delayed_n);
 }

@@ -278,7 +278,10 @@ impl StudyFile {
             let of = |mistake: String| format!("exclusion {}: {mistake}", at + 1);
             wrong.extend(rule.mistakes().into_iter().map(of));
             if self.blind && telling::tells(&rule.measure) {
-                wrong.push(of(format!("{} reveals the condition, so a blind study cannot use it as its primary measure", rule.measure)));
+                wrong.push(of(format!(
+                    "{} reveals the condition, so a blind study cannot use it as its primary measure",
+                    rule.measure
+                )));
             }
         }
     }

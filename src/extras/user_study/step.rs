@@ -34,9 +34,7 @@ pub enum Step {
         after: Option<Label>,
     },
     /// A trial has begun and has not ended: it is running, or the program ended in the middle of it.
-    Running {
-        trial: TrialId,
-    },
+    Running { trial: TrialId },
     /// Nothing.
     Done {
         /// The reason.

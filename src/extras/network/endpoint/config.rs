@@ -49,13 +49,8 @@ impl Config {
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
     /// The address cannot be used.
-    #[error(
-        "cannot use the UDP address {address}: {source}; end the other nima, or use an address of this machine"
-    )]
-    Address {
-        address: SocketAddr,
-        source: io::Error,
-    },
+    #[error("cannot use the UDP address {address}: {source}; end the other nima, or use an address of this machine")]
+    Address { address: SocketAddr, source: io::Error },
     #[error("cannot start a thread: {0}; end other programs, then try again")]
     Thread(io::Error),
     #[error(transparent)]

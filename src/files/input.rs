@@ -31,7 +31,7 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
         return Err(too_large(most));
     }
     let mut bytes = Vec::with_capacity(metadata.len() as usize);
-    // The limit applies to what is read, because the file may grow meanwhile.
+    // Limits the bytes that are read, because the file may grow meanwhile.
     if file.take(most + 1).read_to_end(&mut bytes)? as u64 > most {
         return Err(too_large(most));
     }
@@ -48,8 +48,8 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// let path = folder.path().join("rig.toml");
 /// std::fs::write(&path, "rate_hz = 1000.0")?;
 /// assert_eq!(nima_files::read_text(&path, 100)?, "rate_hz = 1000.0");
-/// assert!(nima_files::read_text(&path, 10).is_err(), "larger than the most that is read");
-/// assert!(nima_files::read_text(folder.path(), 100).is_err(), "a folder is no file");
+/// assert!(nima_files::read_text(&path, 10).is_err(), "larger than the limit");
+/// assert!(nima_files::read_text(folder.path(), 100).is_err(), "a folder is not a file");
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {

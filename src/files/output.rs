@@ -105,7 +105,7 @@ pub fn check_output(path: &Path, inputs: &[&Path]) -> io::Result<()> {
     Ok(())
 }
 
-/// The final path of a file, with links followed, and the file that is there now.
+/// The final path of a file, with links followed, and the existing file.
 struct Target {
     path: PathBuf,
     old: Option<Metadata>,

@@ -54,7 +54,7 @@ pub struct WholeFile {
     pub data: Vec<u8>,
 }
 
-/// A channel; the fields are those of [`Encoding`].
+/// A channel, with the fields of [`Encoding`].
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct NewChannel {
     #[prost(string, tag = "1")]

@@ -105,7 +105,7 @@ pub fn write(
     Ok(Cut { messages: writer.finish()?.messages, journal })
 }
 
-/// Passes the message on, unless the process was asked to end.
+/// Returns the message, or an error once cancellation was requested.
 pub(crate) fn unless(asked: &AtomicBool, message: Result<Message, ReadError>) -> Result<Message, CutError> {
     if asked.load(Ordering::Relaxed) { Err(CutError::Asked) } else { Ok(message?) }
 }

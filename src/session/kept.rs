@@ -35,7 +35,7 @@ pub(crate) fn described(calibrations: &Calibrations) -> BTreeMap<String, String>
             tell(key, value.clone().unwrap_or_default());
         }
         tell("network_date", origin.date.clone());
-        // The bytes are those of the network's file.
+        // The same bytes as in the network's file.
         if let Ok(bytes) = model_to_bytes(model) {
             tell("network_digest", format!("{:016x}", digest_of_bytes(&bytes)));
         }

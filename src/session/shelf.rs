@@ -183,7 +183,7 @@ pub fn free_bytes(folder: &Path) -> Option<u64> {
     let mut name: Vec<u16> = folder.as_os_str().encode_wide().collect();
     name.push(0);
     let mut free = 0;
-    // SAFETY: the name ends with a zero, and what is written to lives through the call; what is not wanted may be null.
+    // SAFETY: the name is zero-terminated, and the output lives through the call; pointers to unused outputs may be null.
     let told = unsafe {
         windows_sys::Win32::Storage::FileSystem::GetDiskFreeSpaceExW(
             name.as_ptr(),

@@ -84,7 +84,7 @@ fn unplug(path: &Path) {
         .collect();
     assert_eq!(of_file.len(), 2, "one is written to, and one is synchronised");
     for number in of_file {
-        // SAFETY: both are open files of this process, and whoever has the second one goes on having an open file.
+        // SAFETY: both are open files of this process, and the owner of the second still has an open file afterwards.
         assert!(unsafe { libc::dup2(broken.as_raw_fd(), number) } == number);
     }
 }

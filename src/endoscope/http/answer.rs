@@ -14,7 +14,7 @@ pub(super) const PICTURE_MOST: usize = 8 << 20;
 /// Number of images that are kept for a slow reader; older ones are dropped.
 const PARTS_MOST: usize = 8;
 
-/// One image as it was sent.
+/// One image with its headers, still encoded.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Part {
     pub(super) body: Vec<u8>,

@@ -4,7 +4,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`igtl`] | `OpenIGTLink` (3D Slicer, PLUS, pyigtl): codec and server |
-//! | `lsl` | Lab Streaming Layer: marks of what happened |
+//! | `lsl` | Lab Streaming Layer: event markers |
 //!
 //! A bridge is an `Audience` of the session's recorder, like the live viewers. On the recorder's thread it only copies
 //! due data into a bounded queue and never waits; its own threads do the rest. The data, names and units of each bridge

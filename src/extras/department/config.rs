@@ -11,7 +11,8 @@ const WATCHERS_MAX: usize = 64;
 /// A watcher that is silent for this long is disconnected, ms.
 const LEASE_MS: u64 = 5000;
 
-/// A rig listens and only sends. Data of a watcher other than its requests are dropped on arrival.
+/// Returns the configuration of a rig. It accepts connections and only sends. Data of a watcher other than its
+/// requests are dropped on arrival.
 pub(crate) fn rig(own: &Identity, address: &str, scouting: Scouting) -> Result<Config, DepartmentError> {
     let [authority, certificate, key] = [&own.authority, &own.certificate, &own.key].map(|pem| STANDARD.encode(pem));
     let tls = json!({

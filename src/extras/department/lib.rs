@@ -8,13 +8,13 @@
 //! | module | holds |
 //! |---|---|
 //! | `identity` | certificates: the department, its rigs and its watchers |
-//! | `config` | what zenoh may do at each end |
+//! | `config` | zenoh's configuration and permissions at each end |
 //! | `keys` | the names under which a rig publishes |
-//! | `feed` | what a rig publishes, from its recorder |
-//! | `kept` | the last minutes of its session, for those who come late |
-//! | `share` | the rig's end |
-//! | `watch` | the other end: finding rigs, their screens |
-//! | `record` | a rig's session in a file elsewhere |
+//! | `feed` | published data, from the rig's recorder |
+//! | `kept` | the last minutes of its session, for watchers that join late |
+//! | `share` | publishing side, on the rig |
+//! | `watch` | receiving side: discovery of rigs, their screens |
+//! | `record` | records a rig's session on another machine |
 #![cfg(feature = "engine")]
 
 mod config;

@@ -111,7 +111,7 @@ pub struct Dropped {
     pub foreign_version: u64,
     /// Truncated, too long, or not of this protocol.
     pub malformed: u64,
-    /// Of a session that is not open here.
+    /// Datagrams of a session that is not open here.
     pub unknown_session: u64,
     /// Parts of handshakes beyond the limits.
     pub flooded: u64,

@@ -110,14 +110,14 @@ mod stamps {
     pub(super) fn switch_on(socket: &socket2::Socket) {
         let on: libc::c_int = 1;
         let len = size_of::<libc::c_int>() as libc::socklen_t;
-        // SAFETY: the pointer and the length are those of `on`. Without stamps, ages are 0.
+        // SAFETY: pointer and length describe `on`. Without stamps, ages are 0.
         unsafe {
             libc::setsockopt(socket.as_raw_fd(), libc::SOL_SOCKET, libc::SO_TIMESTAMPNS, (&raw const on).cast(), len);
         }
     }
 
     pub(super) fn receive(socket: &UdpSocket, buffer: &mut [u8]) -> io::Result<Arrival> {
-        // SAFETY: all of these are valid when they are zero.
+        // SAFETY: all zeros is a valid value of both.
         let (mut name, mut message): (libc::sockaddr_storage, libc::msghdr) = unsafe { (zeroed(), zeroed()) };
         let mut control = [0_u64; 16];
         let mut part = libc::iovec { iov_base: buffer.as_mut_ptr().cast(), iov_len: buffer.len() };
@@ -127,8 +127,8 @@ mod stamps {
         message.msg_iovlen = 1;
         message.msg_control = control.as_mut_ptr().cast();
         message.msg_controllen = size_of::<[u64; 16]>() as _;
-        // SAFETY: every pointer in the message is to memory of the stated length that lives through the call. `MSG_TRUNC` asks for the
-        // true length of a datagram that was cut; no more than the buffer is written.
+        // SAFETY: every pointer in the message is valid for the stated length during the call. `MSG_TRUNC` returns the
+        // true length of a truncated datagram; the kernel writes no more than the buffer holds.
         let len = unsafe { libc::recvmsg(socket.as_raw_fd(), &raw mut message, libc::MSG_TRUNC) };
         let Ok(len) = usize::try_from(len) else { return Err(io::Error::last_os_error()) };
         let from = address(&name).ok_or(io::ErrorKind::InvalidData)?;
@@ -137,7 +137,7 @@ mod stamps {
 
     /// Returns when the datagram arrived, since 1970.
     fn stamp(message: &libc::msghdr) -> Option<Duration> {
-        // SAFETY: the message is as `recvmsg` left it, with its control data alive; the macro reads within them.
+        // SAFETY: `recvmsg` filled the message, and its control data are alive; the macro reads within them.
         let first = unsafe { libc::CMSG_FIRSTHDR(message).as_ref() }?;
         if (first.cmsg_level, first.cmsg_type) != (libc::SOL_SOCKET, libc::SCM_TIMESTAMPNS) {
             return None;

@@ -115,7 +115,7 @@ pub struct Stream {
     plain: [u8; DATAGRAM_MAX],
 }
 
-/// Converts a time to µs, as it is sent.
+/// Converts a time to µs, the unit on the wire.
 fn micros(now_s: f64) -> u64 {
     (now_s * 1e6).round().clamp(0.0, 281_474_976_710_655.0) as u64
 }

@@ -86,7 +86,7 @@ impl Kind {
 pub enum Unreadable {
     /// Not of this protocol, truncated, or inconsistent.
     Malformed,
-    /// Of a handshake of another version of this protocol.
+    /// A handshake of another version of this protocol.
     ForeignVersion(u8),
     /// In length and kind like a session's datagram, but of another version. It is never answered.
     ForeignData(u8),

@@ -41,7 +41,7 @@ impl fmt::Debug for Condition {
 }
 
 impl Condition {
-    /// What is wrong with it, a line each.
+    /// Returns its mistakes, one line each.
     pub(crate) fn mistakes(&self) -> Vec<String> {
         let Self { name, no_force, mode, gain, delay_ms, own_motion } = self;
         let mut wrong = Vec::new();

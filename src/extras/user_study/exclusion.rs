@@ -14,7 +14,7 @@ pub struct ExclusionRule {
     /// Limit of the measure, in its unit; not for `missing`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<f64>,
-    /// What it excludes.
+    /// The trial or the participant.
     pub exclude: Excludes,
     /// Number of such trials from which a participant is excluded; only for participants.
     #[serde(default = "once", skip_serializing_if = "is_once")]

@@ -119,7 +119,7 @@ pub fn raw_tlx(ratings: &[u8; 6]) -> f64 {
 /// ```
 /// use nima_user_study::{PAIRS, weighted_tlx};
 ///
-/// // Whoever takes the first of each pair gives the weights 5, 4, 3, 2, 1, 0.
+/// // Choosing the first of each pair gives the weights 5, 4, 3, 2, 1, 0.
 /// let chosen = PAIRS.map(|(first, _)| first);
 /// assert_eq!(weighted_tlx(&[60, 30, 45, 30, 15, 100], &chosen), (300 + 120 + 135 + 60 + 15) as f64 / 15.0);
 /// ```

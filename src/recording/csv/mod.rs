@@ -39,7 +39,7 @@ pub enum RecordingError {
         column: String,
         purpose: &'static str,
         available: String,
-        /// What to do: columns of some files can be mapped, those of others have fixed names.
+        /// Remedy: columns of some files can be mapped, other files have fixed names.
         cure: String,
     },
     #[error(

@@ -25,7 +25,7 @@ pub struct Cursor<I> {
     t_s: f64,
 }
 
-/// A loop between two blocks of its journal, from which a cursor can continue.
+/// State of a loop between two blocks of its journal. A cursor can continue from it.
 #[derive(Clone, Debug)]
 pub struct Keyframe {
     machine: Machine,

@@ -36,7 +36,7 @@ pub(super) struct Ran {
 /// Outputs of one side.
 #[derive(Debug, Default)]
 struct Lane {
-    /// Of each tick that is compared.
+    /// One per compared tick.
     digests: Vec<[u64; STAGES]>,
     /// With the index of their tick in the run.
     events: Vec<(usize, Event)>,

@@ -20,7 +20,7 @@ const WAITING_MOST: usize = 256;
 /// let mut watch = Watch::new(&objects);
 /// objects.step(&[None, None]);
 /// watch.look(&objects);
-/// assert_eq!(watch.next_event(), None, "nobody has touched anything");
+/// assert_eq!(watch.next_event(), None, "nothing was touched");
 /// ```
 #[derive(Clone, Debug)]
 pub struct Watch {

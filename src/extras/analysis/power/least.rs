@@ -13,8 +13,8 @@ pub struct Least {
 }
 
 impl Least {
-    /// Returns the minimum number from `from` to `largest` at which the share of `power_of` reaches `wanted` (between 0
-    /// and 1): doubles until it is reached, then bisects.
+    /// Returns the minimum number from `from` to `largest` at which the fraction from `power_of` reaches `wanted`
+    /// (between 0 and 1): doubles until it is reached, then bisects.
     ///
     /// The power of an exact test rises in small steps and may fall from one number to the next, and simulations
     /// scatter: one participant fewer does not reach the requested power, but a still smaller number may do so by

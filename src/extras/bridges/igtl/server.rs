@@ -2,10 +2,10 @@
 //!
 //! | thread | does |
 //! |---|---|
-//! | the recorder's | [`Watching`] copies a moment into a bounded queue when a client is due, or a state has changed; never waits |
-//! | hub | makes messages of it for each client, into its [`Mailbox`], where a newer bundle takes the place of the one before |
-//! | listener | takes clients in, up to [`MOST_CLIENTS`] |
-//! | reader, writer | of each client: hear its requests, no faster than they should be; send, and give the client up that takes nothing |
+//! | the recorder's | [`Watching`] copies the state into a bounded queue when a client is due or a state has changed; never waits |
+//! | hub | writes messages for each client into its [`Mailbox`], where a newer bundle replaces the older one |
+//! | listener | accepts clients, up to [`MOST_CLIENTS`] |
+//! | reader, writer (per client) | receive its requests, limited in rate; send, and disconnect a client that reads nothing |
 
 mod audience;
 mod client;

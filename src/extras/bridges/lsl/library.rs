@@ -46,7 +46,7 @@ macro_rules! library {
             fn of(library: &Library) -> Result<Self, &'static str> {
                 Ok(Self {
                     $(
-                        // SAFETY: the type is that of the symbol's declaration in the library's header; the library is never
+                        // SAFETY: the type matches the symbol's declaration in the library's header; the library is never
                         // unloaded, so the pointer stays valid.
                         $field: unsafe { *library.get($symbol).map_err(|_| $symbol)? },
                     )*
@@ -99,7 +99,7 @@ impl Lsl {
 
     fn load(path: &Path) -> Result<Self, LslError> {
         let unusable = |reason| LslError::Unusable { path: path.to_owned(), reason };
-        // SAFETY: loading runs the library's initialisation. It is the one that the user has named or installed.
+        // SAFETY: loading runs the library's initialisation. The user has named or installed this library.
         let library = unsafe { Library::new(path) }.map_err(|error| {
             let source = std::error::Error::source(&error).map(ToString::to_string);
             unusable(source.unwrap_or_else(|| error.to_string()))
@@ -145,7 +145,7 @@ impl Lsl {
     }
 
     fn refused(&self) -> LslError {
-        // SAFETY: the library gives a text that is valid until its next call on this thread, or nothing.
+        // SAFETY: the library returns null or a text that is valid until the next call on this thread.
         let reason = unsafe {
             let reason = (self.last_error)();
             if reason.is_null() { String::new() } else { CStr::from_ptr(reason).to_string_lossy().into_owned() }
@@ -171,7 +171,7 @@ pub(super) struct Stream {
     outlet: NonNull<c_void>,
 }
 
-// SAFETY: the library's outlets may be used from any thread; this one is used by one at a time.
+// SAFETY: an outlet may be used from any thread; this one is used by one thread at a time.
 unsafe impl Send for Stream {}
 
 impl Stream {
@@ -179,7 +179,7 @@ impl Stream {
     pub(super) fn push(&self, what: &str, at_s: f64) {
         let what = text(what);
         let sample = [what.as_ptr()];
-        // SAFETY: the outlet is valid; one C string for its one channel lives through the call, which copies it.
+        // SAFETY: the outlet is valid; the C string for its only channel lives through the call, which copies it.
         // It fails for a wrong number of channels only.
         unsafe { (self.lsl.push_sample_strtp)(self.outlet.as_ptr(), sample.as_ptr(), at_s, PUSH_THROUGH) };
     }

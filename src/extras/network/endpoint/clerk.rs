@@ -52,7 +52,7 @@ pub(super) enum News {
 /// Counters and switches used by both sides.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
-    /// Whether a console wants a session.
+    /// Whether a session is requested by the console.
     pub(super) is_wanted: AtomicBool,
     /// Whether a follower admits no more consoles.
     pub(super) is_full: AtomicBool,

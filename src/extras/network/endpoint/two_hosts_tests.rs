@@ -21,7 +21,7 @@ const TICK: Duration = Duration::from_millis(1);
 const LENGTH_S: f64 = 4.0;
 const CUT_AFTER: Duration = Duration::from_millis(1800);
 const CUT_FOR: Duration = Duration::from_millis(700);
-/// Environment variable that tells the process its host: the folder with its keys.
+/// Environment variable with the process's host: the folder with its keys.
 const FOLDER: &str = "NIMA_NETWORK_HOST";
 
 fn ip(arguments: &[&str]) -> bool {

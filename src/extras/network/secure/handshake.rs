@@ -218,7 +218,7 @@ impl Reception {
     }
 }
 
-/// What a console is waiting for.
+/// The answer that a console is waiting for.
 #[derive(Debug)]
 enum Waits {
     Cookie,

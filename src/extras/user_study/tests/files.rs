@@ -18,7 +18,7 @@ fn every_mistake_is_one_line_that_names_the_key() {
         (with("attempts = 11"), "attempts = 11"),
         (with("pilot = true"), "pilot"),
         (with("secondary = ['speed']"), "there is no measure \"speed\""),
-        (with("secondary = ['completion_time_s']"), "there twice"),
+        (with("secondary = ['completion_time_s']"), "occurs twice"),
         (with("secondary = ['peak_force_n']"), "_left or _right"),
         (with("reference = 'Gnu'"), "no condition \"Gnu\""),
         (TWO.replace("mode = 'anchored'\n", ""), "mode is missing"),

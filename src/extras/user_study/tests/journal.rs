@@ -109,7 +109,7 @@ fn one_program_at_a_time_writes_and_others_may_look() {
     let mut looking = Study::read(&folder.path().join("study")).unwrap();
     assert!(next(&looking, "P01").contains("has begun"));
     assert!(matches!(looking.note(None, "x", AT), Err(StudyError::ReadOnly)));
-    study.abort_trial(running, "somebody came in", AT).unwrap();
+    study.abort_trial(running, "a visitor came in", AT).unwrap();
     assert_eq!(due(&study, "P01"), (1, 2));
 }
 
@@ -123,7 +123,7 @@ fn what_is_not_next_is_refused_and_does_not_stand_in_the_journal() {
         assert!(told.contains(words), "{words}: {told}");
     };
     refused(study.answer("P01", Answers::Realism(3), true, AT), "not the next step; do trial 1");
-    refused(study.answer("P77", Answers::Realism(3), true, AT), "there are P01 to P04");
+    refused(study.answer("P77", Answers::Realism(3), true, AT), "choose one of P01 to P04");
     refused(study.exclude("P01", Some(1), "fell asleep", AT), "has not made trial 1");
     refused(study.exclude("P01", None, " ", AT), "needs a reason");
     refused(study.unblind("", "x", AT), "needs a name");

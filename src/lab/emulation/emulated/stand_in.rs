@@ -89,7 +89,7 @@ mod tests {
         provide_handles();
         let this = libloading::os::unix::Library::this();
         for symbol in ["dhdOpen", "drdOpen", "nimaEmulateHandle"] {
-            // SAFETY: it is looked up and not called.
+            // SAFETY: the symbol is looked up and not called.
             let found = unsafe { this.get::<extern "C" fn()>(symbol) };
             assert!(found.is_err(), "{symbol} is exported");
         }

@@ -296,7 +296,7 @@ fn settings_of_a_serial_probe_are_checked() {
 #[cfg_attr(target_os = "linux", expect(unsafe_code, reason = "std sets rights of whole processes only"))]
 fn without_roots_rights<T>(action: impl FnOnce() -> T) -> T {
     #[cfg(target_os = "linux")]
-    // SAFETY: takes a number (that of `nobody`), and changes this thread alone.
+    // SAFETY: takes a number (the user `nobody`), and affects this thread only.
     unsafe {
         libc::setfsuid(65_534);
     }

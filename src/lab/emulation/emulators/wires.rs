@@ -89,7 +89,7 @@ pub(super) fn wait(ends: &[Box<dyn End>], longest: Duration, admits: bool) {
     let mut watched: Vec<libc::pollfd> = watched.into_iter().map(of).collect();
     let first = watched.as_mut_ptr();
     let count = watched.len() as libc::nfds_t;
-    // SAFETY: the pointers are valid for the call, and the count is that of the vector.
+    // SAFETY: the pointers are valid for the call, and the count is the length of the vector.
     #[cfg(target_os = "linux")]
     unsafe {
         let longest = libc::timespec { tv_sec: 0, tv_nsec: longest.subsec_nanos().into() };

@@ -73,7 +73,7 @@ pub extern "C" fn dhdSetForceAndTorqueAndGripperForce(
 unsafe fn told(force: [*mut f64; 3], torque: Option<[*mut f64; 3]>, gripper: Option<*mut f64>, id: c_char) -> c_int {
     noted(with(id, |handle| {
         let [x, y, z, gripper_n] = handle.asked_n;
-        // SAFETY: as the caller promises.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             put_three(force, [x, y, z])?;
             torque.map_or(Ok(()), |torque| put_three(torque, [0.0; 3]))?;
@@ -89,7 +89,7 @@ macro_rules! told {
         pub unsafe extern "C" fn $name(
             $($x: *mut f64, $y: *mut f64, $z: *mut f64,)* $($gripper: *mut f64,)? id: c_char,
         ) -> c_int {
-            // SAFETY: as the SDK asks for.
+            // SAFETY: guaranteed by the caller (SDK).
             unsafe { told($force, $torque, $to_gripper, id) }
         }
     )*};
@@ -150,7 +150,7 @@ pub extern "C" fn dhdSetEffectorMass(mass_kg: f64, id: c_char) -> c_int {
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn dhdGetEffectorMass(mass_kg: *mut f64, id: c_char) -> c_int {
-    // SAFETY: null or a place for it.
+    // SAFETY: the pointer is null or valid for one value (SDK).
     noted(with(id, |handle| unsafe { put(mass_kg, handle.effector_kg) }.map(|()| 0)))
 }
 
@@ -186,7 +186,7 @@ pub extern "C" fn dhdSetVelocityThreshold(threshold: c_uint, id: c_char) -> c_in
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn dhdGetVelocityThreshold(threshold: *mut c_uint, id: c_char) -> c_int {
-    // SAFETY: null or a place for it.
+    // SAFETY: the pointer is null or valid for one value (SDK).
     noted(with(id, |handle| unsafe { put(threshold, handle.reply.velocity_threshold) }.map(|()| 0)))
 }
 
@@ -199,7 +199,7 @@ pub extern "C" fn dhdSetWatchdog(steps: c_uchar, id: c_char) -> c_int {
 pub unsafe extern "C" fn dhdGetWatchdog(steps: *mut c_uchar, id: c_char) -> c_int {
     noted(with(id, |handle| {
         let value = c_uchar::try_from(handle.reply.watchdog).map_err(|_| OUTSIDE_RANGE)?;
-        // SAFETY: null or a place for it.
+        // SAFETY: the pointer is null or valid for one value (SDK).
         unsafe { put(steps, value) }.map(|()| 0)
     }))
 }

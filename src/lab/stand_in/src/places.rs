@@ -12,7 +12,7 @@ pub(crate) unsafe fn put<T>(place: *mut T, value: T) -> Result<(), c_int> {
     if place.is_null() {
         return Err(NULL_ARGUMENT);
     }
-    // SAFETY: as the caller promises.
+    // SAFETY: guaranteed by the caller.
     unsafe { place.write(value) };
     Ok(())
 }
@@ -25,7 +25,7 @@ pub(crate) unsafe fn put_all<T: Copy>(place: *mut T, values: &[T]) -> Result<(),
     if place.is_null() {
         return Err(NULL_ARGUMENT);
     }
-    // SAFETY: as the caller promises; the two do not overlap, one is ours.
+    // SAFETY: the caller guarantees that the pointer is valid; the ranges do not overlap, because one is ours.
     unsafe { place.copy_from_nonoverlapping(values.as_ptr(), values.len()) };
     Ok(())
 }
@@ -36,7 +36,7 @@ pub(crate) unsafe fn put_all<T: Copy>(place: *mut T, values: &[T]) -> Result<(),
 /// As [`put`].
 pub(crate) unsafe fn put_three(places: [*mut f64; 3], values: [f64; 3]) -> Result<(), c_int> {
     for (place, value) in places.into_iter().zip(values) {
-        // SAFETY: as the caller promises.
+        // SAFETY: guaranteed by the caller.
         unsafe { put(place, value)? };
     }
     Ok(())

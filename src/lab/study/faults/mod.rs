@@ -4,7 +4,7 @@
 //! Each case compares a machine whose rig, clock, link or screen fails with a fault-free twin in the same world. Takes
 //! [`Options`]; returns a [`Report`] (ms, N). A case is *detected* (the machine reports a fault, a change of state, a
 //! refusal, a closed gate or an unusable force), *harmless* (there is no force and no motion; or the force in the hand
-//! differs from the twin's within 5 ms by at most [`HARMLESS_N`], or is no further from the force at the tip than the
+//! differs from the twin's within 5 ms by at most [`HARMLESS_N`], or is at most as far from the force at the tip as the
 //! twin's), *bounded* (it cannot be detected in principle; its maximum error is given), or *silent*. Faults of threads
 //! and disks run on the real clock; faults of files need no clock.
 

@@ -10,13 +10,13 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `source` | recordings, scenes recorded open-loop, slower sampling |
-//! | `plan` | the parameters and the values that are tried |
+//! | `source` | recordings, scenes recorded open-loop, resampling to lower rates |
+//! | `plan` | the parameters and their values |
 //! | `modes` | cost and error of a mode as the loop runs it |
 //! | `windows` | cost and error of the plain model of a window, by each solver |
 //! | `sweep` | all points of all sources, their curves and the Pareto front |
 //! | `chart`, `pictures` | the curves as SVG |
-//! | `table`, `words` | the figures as CSV, and for a terminal |
+//! | `table`, `words` | the figures as CSV and as text for a terminal |
 
 mod modes;
 mod pictures;

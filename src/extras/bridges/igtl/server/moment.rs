@@ -49,7 +49,7 @@ impl Arm {
     }
 }
 
-/// Names of what is told of a side: `right.tip`.
+/// Names of the messages of a side, as in `right.tip`.
 pub(super) const TIP: &str = "tip";
 const LEADER: &str = "leader";
 const MEASURED: &str = "measured";

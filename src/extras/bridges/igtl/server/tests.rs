@@ -372,7 +372,7 @@ fn an_address_in_use_is_told_in_one_line_and_is_free_when_the_server_has_ended()
     let server = server();
     let address = server.address();
     let error = Server::start(address, |_| String::new()).unwrap_err().to_string();
-    assert!(error.contains(&address.to_string()) && error.contains("name another one"), "{error}");
+    assert!(error.contains(&address.to_string()) && error.contains("choose another port"), "{error}");
     assert_eq!(error.lines().count(), 1);
     let mut audience = server.audience(Outline::default());
     let _peer = Peer::of(&server);

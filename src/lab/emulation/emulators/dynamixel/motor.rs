@@ -68,7 +68,7 @@ pub(super) struct Motor {
     pub(super) velocity_rad_s: f64,
     pub(super) current_a: f64,
     pub(super) pwm: f64,
-    /// Of the profile, rad and rad/s.
+    /// Set point of the profile, rad and rad/s.
     pub(super) wanted_rad: f64,
     pub(super) wanted_rad_s: f64,
     wanted_rad_s2: f64,

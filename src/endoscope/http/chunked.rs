@@ -1,8 +1,8 @@
-//! Takes an answer's chunks apart (RFC 9112, section 7.1).
+//! Parses the chunks of a response (RFC 9112, section 7.1).
 
 use super::answer::Wrong;
 
-/// A line with a length is no longer than this.
+/// Maximum length of a line with a chunk length, bytes.
 const LINE_MOST: usize = 256;
 
 #[derive(Debug, Default)]
@@ -16,14 +16,14 @@ enum State {
     /// In the line with a length.
     #[default]
     Length,
-    /// So many bytes of a chunk are still to come.
+    /// Remaining bytes of a chunk.
     Body(usize),
     /// In the line after a chunk.
     After,
 }
 
 impl Chunked {
-    /// Adds the bytes in the chunks to `out`.
+    /// Appends the bytes in the chunks to `out`.
     pub(super) fn take(&mut self, mut bytes: &[u8], out: &mut Vec<u8>) -> Result<(), Wrong> {
         while !bytes.is_empty() {
             if let State::Body(left) = self.state {

@@ -1,8 +1,8 @@
-//! The head of an answer, and of one part of it.
+//! The head of a response, and of one of its parts.
 
 use super::answer::Wrong;
 
-/// What a head says; names of its lines without regard to case.
+/// Fields of a head; their names are case-insensitive.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Head {
     pub(super) content_type: Option<String>,
@@ -12,7 +12,7 @@ pub(super) struct Head {
 }
 
 impl Head {
-    /// From the lines of a head, without the one before them.
+    /// Parses the lines of a head, without the first line.
     pub(super) fn parse(text: &[u8]) -> Result<Self, Wrong> {
         let mut head = Self::default();
         for line in text.split(|byte| *byte == b'\n') {
@@ -22,7 +22,7 @@ impl Head {
             match name.trim().to_ascii_lowercase().as_str() {
                 "content-type" => head.content_type = Some(value.to_owned()),
                 "content-length" => {
-                    let length = value.parse().map_err(|_| Wrong::Unreadable("a length that is no number"))?;
+                    let length = value.parse().map_err(|_| Wrong::Unreadable("a length that is not a number"))?;
                     head.length = Some(length);
                 }
                 "transfer-encoding" => match value.to_ascii_lowercase().as_str() {
@@ -30,7 +30,7 @@ impl Head {
                     "identity" => {}
                     _ => return Err(Wrong::Unreadable("a compression that was not asked for")),
                 },
-                // As mjpg-streamer and others send it: seconds.
+                // Seconds, as sent by mjpg-streamer and others.
                 "x-timestamp" => head.stamp_s = value.parse().ok().filter(|stamp_s: &f64| stamp_s.is_finite()),
                 _ => {}
             }
@@ -38,13 +38,13 @@ impl Head {
         Ok(head)
     }
 
-    /// Type and subtype, in small letters and without what follows.
+    /// Returns type and subtype, in lower case and without parameters.
     pub(super) fn kind(&self) -> String {
         let whole = self.content_type.as_deref().unwrap_or_default();
         whole.split(';').next().unwrap_or_default().trim().to_ascii_lowercase()
     }
 
-    /// What stands between the parts of an answer; cameras write it with and without dashes and quotes.
+    /// Returns the boundary between the parts of a response; cameras write it with and without dashes and quotes.
     pub(super) fn boundary(&self) -> Option<Vec<u8>> {
         let parameters = self.content_type.as_deref()?.split(';').skip(1);
         let mut boundaries = parameters.filter_map(|parameter| {
@@ -58,7 +58,7 @@ impl Head {
     }
 }
 
-/// The status of an answer's first line.
+/// Returns the status in the first line of a response.
 pub(super) fn status(line: &[u8]) -> Result<u16, Wrong> {
     let text = String::from_utf8_lossy(line);
     let mut words = text.split_whitespace();
@@ -67,7 +67,7 @@ pub(super) fn status(line: &[u8]) -> Result<u16, Wrong> {
     status.filter(|_| is_http).ok_or(Wrong::Unreadable("an answer that is not HTTP"))
 }
 
-/// Where a head ends, and where what follows begins; cameras end lines with and without a carriage return.
+/// Returns the end of a head and the begin of the data after it; cameras end lines with and without a carriage return.
 pub(super) fn end(bytes: &[u8]) -> Option<[usize; 2]> {
     let with = bytes.windows(4).position(|four| four == b"\r\n\r\n").map(|at| [at, at + 4]);
     let without = bytes.windows(2).position(|two| two == b"\n\n").map(|at| [at, at + 2]);

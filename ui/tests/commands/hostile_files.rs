@@ -273,9 +273,9 @@ fn an_existing_output_is_refused_followed_or_keeps_its_mode() {
     let identify = |out: &str| ["identify", &input, "--out", out].map(str::to_owned);
     let refuse = |out: &str| refused(&identify(out).each_ref().map(String::as_str));
     let fifo = folder.fifo("fifo");
-    assert!(refuse(&fifo).contains("a pipe is there and is left as it is"));
-    assert!(refuse(&folder.link("to nothing", "nowhere")).contains("a link to a file that is not there"));
-    assert!(refuse(&folder.text(".")).contains("a folder is there"));
+    assert!(refuse(&fifo).contains("a pipe exists and is never replaced"));
+    assert!(refuse(&folder.link("to nothing", "nowhere")).contains("a link to a file that does not exist"));
+    assert!(refuse(&folder.text(".")).contains("a folder exists"));
     // A device like /dev/null, which only root can make.
     let device = folder.text("null");
     if Command::new("mknod")
@@ -285,7 +285,7 @@ fn an_existing_output_is_refused_followed_or_keeps_its_mode() {
         .is_ok_and(|made| made.success())
     {
         let before = fs::metadata(&device).unwrap();
-        assert!(refuse(&device).contains("a device is there"));
+        assert!(refuse(&device).contains("a device exists"));
         let after = fs::metadata(&device).unwrap();
         assert_eq!((before.ino(), before.mode()), (after.ino(), after.mode()));
     }

@@ -98,7 +98,7 @@ fn what_cannot_be_mapped_or_written_is_one_line() {
         (with(&[name, name], &["--out", out.to_str().unwrap()]), "--out writes the samples of one recording"),
         (
             vec!["identify", name, "--map", "xyz=px,py"],
-            "\"xyz\" takes three columns, for example xyz=A,B,C*0.001; 2 given",
+            "\"xyz\" takes three columns, not 2; write for example xyz=A,B,C*0.001",
         ),
         (vec!["identify", name, "--map", "uvw=a,b,c"], "there is no quantity \"uvw\""),
         (with(&[name], &["--map", "lx=hx"]), "no column \"ly_m\" for leader's motion"),

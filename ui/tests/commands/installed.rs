@@ -67,7 +67,7 @@ fn the_emulated_rig_runs_with_nothing_beside_the_program() {
         let (readings, told) = run(folder.path());
         println!("readings of both handles and both arms: {readings:?}\n{told}");
         // No load brings these about; only another program may have taken a port in between.
-        for words in ["not installed", "cannot be used", "cannot be emulated"] {
+        for words in ["not installed", "cannot be used", "cannot emulate"] {
             assert!(!told.contains(words) || told.contains("in use by another program"), "{told}");
         }
         if readings.iter().any(|readings| *readings <= 100) {

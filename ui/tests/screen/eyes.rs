@@ -96,7 +96,7 @@ fn the_picture_is_shown_with_the_forces_in_it_and_each_of_its_faults_in_words() 
         (EmulatedFault::Late, "ms old"),
         (EmulatedFault::WrongSize, "Picture is 320 x 180 pixels, not 640 x 360"),
         (EmulatedFault::OtherFormat, "sends image/png, not motion JPEG"),
-        (EmulatedFault::Disconnect, "Picture is lost: nobody listens at 127.0.0.1"),
+        (EmulatedFault::Disconnect, "Picture is lost: no response from 127.0.0.1"),
     ] {
         serving.faults.set(fault);
         told(&mut harness, words);
@@ -215,15 +215,15 @@ fn halves(harness: &Console) -> Vec<[f32; 2]> {
 fn a_camera_that_is_not_there_is_told_with_a_cure_there_and_among_the_devices() {
     let endoscope = |url: &str| Endoscope { url: url.to_owned(), ..Endoscope::default() };
     let mut harness = surgeon(endoscope("http://127.0.0.1:1/"), [1280.0, 720.0]);
-    told(&mut harness, "Picture is lost: nobody listens at 127.0.0.1:1");
+    told(&mut harness, "Picture is lost: no response from 127.0.0.1:1");
     assert!(is_painted(&harness, "Correct the port in the rig file"));
     harness.state_mut().settings_mut().layout = Layout { front: vec![Panel::Devices], ..Layout::default() };
     press(&mut harness, "Technician");
-    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "nobody listens at 127.0.0.1:1")));
+    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "no response from 127.0.0.1:1")));
     for (url, words) in [
         ("rtmp://127.0.0.1/", "cameras (/dev/video0) and files are supported"),
         ("rtsp://127.0.0.1/", "Picture is lost: this program was built without RTSP and H.264"),
-        ("/dev/video987654", "Picture is lost: /dev/video987654 is not there"),
+        ("/dev/video987654", "Picture is lost: /dev/video987654 does not exist"),
     ] {
         told(&mut surgeon(endoscope(url), [1280.0, 720.0]), words);
     }

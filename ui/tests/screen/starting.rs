@@ -143,8 +143,8 @@ fn an_endoscope_is_tried_while_its_address_is_typed_and_written_without_editing_
     press(&mut harness, "Rig");
     harness.get_by_label_contains("None: the surgeon's view draws the field");
     for (address, cause, cure) in [
-        ("http://127.0.0.1:1/", "nobody listens at 127.0.0.1:1", "Correct the port"),
-        ("/no/such/film.mjpeg", "not there", "Put the file there"),
+        ("http://127.0.0.1:1/", "no response from 127.0.0.1:1", "Correct the port"),
+        ("/no/such/film.mjpeg", "no such file", "Put the file there"),
         ("ftp://127.0.0.1/", "No picture:", "Give http://HOST:PORT/PATH"),
     ] {
         type_address(&mut harness, address);

@@ -210,7 +210,7 @@ fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_fro
     choose(&mut window, "Rule 1: leaves out", "the participant");
     set(&mut window, "Rule 1: from so many times on", 2.0);
     pick(&mut window, "Make the study");
-    for mistake in ["time_limit_s = 0", "drops is there twice", "exclusion 1: limit is missing"] {
+    for mistake in ["time_limit_s = 0", "drops occurs twice", "exclusion 1: limit is missing"] {
         assert!(shows(&window, mistake), "{mistake}: {:?}", texts(&window));
     }
     set(&mut window, "A trial is over after", 30.0);

@@ -1,6 +1,7 @@
-//! Descriptions of messages in the form that Protocol Buffers have for it: a set of files, each after those that it needs.
+//! Descriptions of messages in Protocol Buffers' own form: a set of files, each after the files that it needs.
 //!
-//! The few parts of `google/protobuf/descriptor.proto` that are needed are written by hand, which is less than a dependency.
+//! The few required parts of `google/protobuf/descriptor.proto` are written by hand, which costs less than a
+//! dependency.
 
 use prost::Message;
 
@@ -62,7 +63,7 @@ struct Choices {
 struct Choice {
     #[prost(string, tag = "1")]
     name: String,
-    // With presence: the value 0 is written too.
+    // An explicit presence, so that the value 0 is written too.
     #[prost(int32, optional, tag = "2")]
     number: Option<i32>,
 }
@@ -72,7 +73,7 @@ const LABEL_MANY: i32 = 3;
 const KIND_INT64: i32 = 3;
 const KIND_INT32: i32 = 5;
 
-/// The description of this message of the package and of all that it is made of.
+/// Returns the description of this message of the package and of all messages that it contains.
 pub(super) fn file_set(name: &str) -> FileSet {
     let mut set = FileSet { file: Vec::new() };
     add(&mut set, name);
@@ -102,7 +103,7 @@ fn file_name(name: &str) -> String {
     format!("foxglove/{name}.proto")
 }
 
-/// `Timestamp` and `Duration`, which are alike.
+/// Adds `Timestamp` or `Duration`, which have the same fields.
 fn add_google(set: &mut FileSet, name: &str) -> String {
     let file = format!("google/protobuf/{}.proto", name.to_lowercase());
     let field =

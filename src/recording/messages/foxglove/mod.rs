@@ -1,7 +1,7 @@
-//! Messages that Foxglove knows by name, as Protocol Buffers: frames, text, arrows, pictures.
+//! Protocol Buffers messages that Foxglove recognises by name: frames, text, arrows, images.
 //!
-//! The structs are written by hand from the published field numbers; [`encoding`] makes the description that goes with them into
-//! the file, of which a reader without knowledge of Foxglove decodes them.
+//! The structs are written by hand from the published field numbers. [`encoding`] returns the description that is
+//! stored in the file; it lets a reader without Foxglove support decode them.
 
 mod descriptor;
 mod schemas;
@@ -10,13 +10,12 @@ use prost::Message;
 
 use crate::session::Encoding;
 
-/// A kind of message with a description.
 pub trait Described: Message {
-    /// Its name in the package `foxglove`.
+    /// Name in the package `foxglove`.
     const NAME: &'static str;
 }
 
-/// How a reader is to understand a channel of these messages.
+/// Returns the encoding of a channel of these messages.
 ///
 /// ```
 /// use nima_recording::messages::foxglove::{encoding, Log};
@@ -31,7 +30,6 @@ pub fn encoding<M: Described>() -> Encoding {
     }
 }
 
-/// A moment.
 #[derive(Clone, Copy, PartialEq, Eq, Message)]
 pub struct Timestamp {
     /// s
@@ -43,14 +41,13 @@ pub struct Timestamp {
 }
 
 impl Timestamp {
-    /// ns since the epoch of the session's times.
+    /// Converts ns since the epoch of the session's times.
     pub fn of_ns(ns: u64) -> Self {
         let second = 1_000_000_000;
         Self { seconds: (ns / second).cast_signed(), nanos: (ns % second) as i32 }
     }
 }
 
-/// A length of time.
 #[derive(Clone, Copy, PartialEq, Eq, Message)]
 pub struct Duration {
     /// s
@@ -61,7 +58,7 @@ pub struct Duration {
     pub nanos: i32,
 }
 
-/// A vector: a place in m, where nothing else is said.
+/// A vector: a position in m unless stated otherwise.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct Vector3 {
     #[prost(double, tag = "1")]
@@ -72,7 +69,6 @@ pub struct Vector3 {
     pub z: f64,
 }
 
-/// A rotation, of length 1.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct Quaternion {
     #[prost(double, tag = "1")]
@@ -88,15 +84,14 @@ pub struct Quaternion {
 /// A place and a rotation.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct Pose {
-    /// m
+    /// m.
     #[prost(message, optional, tag = "1")]
     pub position: Option<Vector3>,
-    /// Where it points.
+    /// Orientation.
     #[prost(message, optional, tag = "2")]
     pub orientation: Option<Quaternion>,
 }
 
-/// A colour, each part from 0 to 1.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct Color {
     #[prost(double, tag = "1")]
@@ -109,19 +104,16 @@ pub struct Color {
     pub a: f64,
 }
 
-/// Where a frame stands in another one.
+/// Pose of a frame in its parent frame.
 #[derive(Clone, PartialEq, Message)]
 pub struct FrameTransform {
-    /// Since when.
     #[prost(message, optional, tag = "1")]
     pub timestamp: Option<Timestamp>,
-    /// In which frame.
     #[prost(string, tag = "2")]
     pub parent_frame_id: String,
-    /// Which frame.
     #[prost(string, tag = "3")]
     pub child_frame_id: String,
-    /// m
+    /// m.
     #[prost(message, optional, tag = "4")]
     pub translation: Option<Vector3>,
     /// Parent from child.
@@ -129,15 +121,14 @@ pub struct FrameTransform {
     pub rotation: Option<Quaternion>,
 }
 
-/// Where several frames stand.
+/// Poses of several frames.
 #[derive(Clone, PartialEq, Message)]
 pub struct FrameTransforms {
-    /// Each of them.
     #[prost(message, repeated, tag = "1")]
     pub transforms: Vec<FrameTransform>,
 }
 
-/// How much a line of a log matters.
+/// Severity of a log line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, prost::Enumeration)]
 #[repr(i32)]
 pub enum Level {
@@ -149,28 +140,24 @@ pub enum Level {
     Fatal = 5,
 }
 
-/// A line of a log.
 #[derive(Clone, PartialEq, Message)]
 pub struct Log {
-    /// When.
     #[prost(message, optional, tag = "1")]
     pub timestamp: Option<Timestamp>,
-    /// How much it matters.
     #[prost(enumeration = "Level", tag = "2")]
     pub level: i32,
-    /// What.
     #[prost(string, tag = "3")]
     pub message: String,
-    /// Of which part.
+    /// The part of the program that reports it.
     #[prost(string, tag = "4")]
     pub name: String,
-    /// Of which file of the program.
+    /// Source file of the program.
     #[prost(string, tag = "5")]
     pub file: String,
-    /// And line.
+    /// Line in that file.
     #[prost(fixed32, tag = "6")]
     pub line: u32,
-    /// The same as a value of the program that wrote it. Not in the schema of Foxglove, whose readers pass over it.
+    /// The message as a value of the program that wrote it. Not in Foxglove's schema; Foxglove's readers ignore it.
     #[prost(bytes = "vec", optional, tag = "1000")]
     pub value: Option<Vec<u8>>,
 }
@@ -178,87 +165,79 @@ pub struct Log {
 /// An arrow along its x axis.
 #[derive(Clone, PartialEq, Message)]
 pub struct Arrow {
-    /// Where its tail is and where it points.
+    /// Position of the tail and direction of the arrow.
     #[prost(message, optional, tag = "1")]
     pub pose: Option<Pose>,
-    /// m
+    /// m.
     #[prost(double, tag = "2")]
     pub shaft_length: f64,
-    /// m
+    /// m.
     #[prost(double, tag = "3")]
     pub shaft_diameter: f64,
-    /// m
+    /// m.
     #[prost(double, tag = "4")]
     pub head_length: f64,
-    /// m
+    /// m.
     #[prost(double, tag = "5")]
     pub head_diameter: f64,
-    /// Its colour.
     #[prost(message, optional, tag = "6")]
     pub color: Option<Color>,
 }
 
-/// Things that are drawn together; only arrows are written here.
+/// Objects that are drawn together; only arrows are written here.
 #[derive(Clone, PartialEq, Message)]
 pub struct SceneEntity {
-    /// Since when.
     #[prost(message, optional, tag = "1")]
     pub timestamp: Option<Timestamp>,
-    /// In which frame.
     #[prost(string, tag = "2")]
     pub frame_id: String,
-    /// Which thing: one of the same name is replaced.
+    /// An entity with the same name is replaced.
     #[prost(string, tag = "3")]
     pub id: String,
-    /// For how long; for ever where there is none.
+    /// How long it is shown; unlimited if absent.
     #[prost(message, optional, tag = "4")]
     pub lifetime: Option<Duration>,
     /// Whether it moves with its frame.
     #[prost(bool, tag = "5")]
     pub frame_locked: bool,
-    /// The arrows.
     #[prost(message, repeated, tag = "7")]
     pub arrows: Vec<Arrow>,
 }
 
-/// What changes in the scene.
+/// Changes of the scene.
 #[derive(Clone, PartialEq, Message)]
 pub struct SceneUpdate {
-    /// New things, and those that replace others.
+    /// New entities, and those that replace others.
     #[prost(message, repeated, tag = "2")]
     pub entities: Vec<SceneEntity>,
 }
 
-/// A picture as a camera compressed it.
 #[derive(Clone, PartialEq, Eq, Message)]
 pub struct CompressedImage {
-    /// When.
     #[prost(message, optional, tag = "1")]
     pub timestamp: Option<Timestamp>,
-    /// Its bytes.
     #[prost(bytes = "vec", tag = "2")]
     pub data: Vec<u8>,
-    /// Their format: `jpeg`.
+    /// `jpeg`.
     #[prost(string, tag = "3")]
     pub format: String,
-    /// In which frame: x to the right of the picture, y down, z away from the lens.
+    /// Frame of the camera: x to the right of the image, y down, z away from the lens.
     #[prost(string, tag = "4")]
     pub frame_id: String,
 }
 
-/// A picture of a stream: some refer to those before them.
+/// A frame of a video stream; some frames refer to earlier ones.
 #[derive(Clone, PartialEq, Eq, Message)]
 pub struct CompressedVideo {
-    /// When.
     #[prost(message, optional, tag = "1")]
     pub timestamp: Option<Timestamp>,
-    /// In which frame, as in [`CompressedImage`].
+    /// As in [`CompressedImage`].
     #[prost(string, tag = "2")]
     pub frame_id: String,
-    /// The bytes of this one picture; of H.264 as annex B has them, without pictures that refer to later ones.
+    /// The bytes of this frame; for H.264 in annex B format, without frames that refer to later ones.
     #[prost(bytes = "vec", tag = "3")]
     pub data: Vec<u8>,
-    /// Their format: `h264`.
+    /// `h264`.
     #[prost(string, tag = "4")]
     pub format: String,
 }

@@ -1,7 +1,7 @@
-//! The fields of the messages in the package `foxglove`, as docs.foxglove.dev lists them: all of them, so that a reader finds
-//! empty lists where we write nothing.
+//! All fields of the messages in the package `foxglove`, as listed on docs.foxglove.dev, so that a reader finds empty
+//! lists where we write nothing.
 
-/// What a field holds.
+/// Type of a field.
 #[derive(Clone, Copy)]
 pub(super) enum Holds {
     Double,
@@ -13,17 +13,17 @@ pub(super) enum Holds {
     Own(&'static str),
     /// Another message of the package.
     Message(&'static str),
-    /// One of the package `google.protobuf`.
+    /// A message of the package `google.protobuf`.
     Google(&'static str),
 }
 
-/// Name, number, what it holds, whether many.
+/// Name, number, type, and whether it is repeated.
 pub(super) type Field = (&'static str, i32, Holds, bool);
 
 pub(super) struct Schema {
     pub(super) name: &'static str,
     pub(super) fields: &'static [Field],
-    /// An enumeration inside: its name and values, from 0.
+    /// An inner enumeration: its name and values, from 0.
     pub(super) choices: Option<(&'static str, &'static [&'static str])>,
 }
 

@@ -17,14 +17,14 @@ enum Writer {
     State(DataWriter<OperatingState>),
 }
 
-/// Publishes samples of both arms.
 pub struct Publisher {
     writers: BTreeMap<(Side, Topic), Writer>,
-    /// Without it nothing is published any more.
+    /// Dropping it ends the publication.
     _participant: DomainParticipant,
 }
 
-/// Reliable, so that readers of either kind match; the newest sample only, so that nobody waits for what is old.
+/// Reliable, so that it matches readers of either kind; only the newest sample is kept, so that no reader waits for old
+/// ones.
 fn usual() -> QosPolicyBuilder {
     QosPolicyBuilder::new()
         .reliability(Reliability::Reliable { max_blocking_time: rustdds::Duration::ZERO })
@@ -32,7 +32,7 @@ fn usual() -> QosPolicyBuilder {
 }
 
 impl Publisher {
-    /// Of this domain and namespace; announced in the networks of these addresses alone, or in all of them.
+    /// Publishes in this domain and namespace; announced only in the networks of these addresses, or in all of them.
     pub fn new(domain: u16, networks: &[Ipv4Addr], namespace: &str) -> Result<Self, String> {
         let mut builder = DomainParticipantBuilder::new(domain);
         if !networks.iter().any(Ipv4Addr::is_unspecified) {
@@ -41,7 +41,7 @@ impl Publisher {
         let participant = builder.build().map_err(|error| error.to_string())?;
         let writers =
             Side::ALL.into_iter().flat_map(|side| Topic::ALL.map(|topic| (side, topic))).map(|(side, topic)| {
-                // As ROS 2 names its topics and types in DDS.
+                // ROS 2's naming of topics and types in DDS.
                 let name = format!("rt/{namespace}/{}/{}", side.word(), topic.name());
                 Ok(((side, topic), writer(&participant, &name, topic)?))
             });
@@ -49,7 +49,7 @@ impl Publisher {
         Ok(Self { writers, _participant: participant })
     }
 
-    /// Hands samples to their readers. One that cannot be written now is followed by the next one.
+    /// Publishes samples. A sample that cannot be written now is superseded by the next one.
     pub fn publish(&self, samples: &[Sample]) {
         for sample in samples {
             self.write(sample);
@@ -74,7 +74,7 @@ fn writer(participant: &DomainParticipant, name: &str, topic: Topic) -> Result<W
         Topic::MeasuredCf | Topic::RenderedCf => {
             Writer::Wrench(of_type(participant, name, "geometry_msgs::msg::dds_::WrenchStamped_", &usual().build())?)
         }
-        // Who comes late learns the state at once.
+        // A late reader gets the state at once.
         Topic::OperatingState => {
             let qos = usual().durability(Durability::TransientLocal).build();
             Writer::State(of_type(participant, name, "crtk_msgs::msg::dds_::OperatingState_", &qos)?)

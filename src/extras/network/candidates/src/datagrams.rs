@@ -1,4 +1,4 @@
-//! Raw UDP: what no engine can undercut.
+//! Raw UDP: the lower limit for every engine.
 
 use std::net::UdpSocket;
 

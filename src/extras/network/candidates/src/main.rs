@@ -1,5 +1,6 @@
-//! What the stream between two machines could be made of, compared in one loop: raw UDP, the link of `nima-network` (UDP with snow),
-//! quinn-proto and zenoh. Two processes in two network namespaces, 1 kHz, real-time priority. Needs root, and Linux.
+//! Compares candidates for the stream between two machines in one loop: raw UDP, the link of `nima-network` (UDP with
+//! snow), quinn-proto and zenoh. Two processes in two network namespaces, 1 kHz, real-time priority. Needs root, and
+//! Linux.
 //!
 //! `cargo run --release -- [seconds] [rounds] [engine ...]`
 
@@ -24,16 +25,16 @@ const PORT: u16 = 47_200;
 /// Length of a payload, bytes.
 const LEN: usize = 64;
 const TICK: Duration = Duration::from_millis(1);
-/// Between two looks of the receiver.
+/// Polling interval of the receiver.
 const NAP: Duration = Duration::from_micros(50);
 const ENGINES: [&str; 4] = ["raw", "snow", "quinn", "zenoh"];
 
 /// One end of a stream of payloads.
 trait Engine {
-    /// Payloads can be sent.
+    /// Whether payloads can be sent.
     fn is_ready(&mut self) -> bool;
     fn send(&mut self, payload: &[u8]);
-    /// Does what has to be done, and gives the payloads that have come, with the time at which each was seen, ns.
+    /// Does pending work, and passes the received payloads to `got`, with the time at which each was seen, ns.
     fn poll(&mut self, got: &mut dyn FnMut(&[u8], u64));
 }
 
@@ -45,7 +46,7 @@ fn now_ns() -> u64 {
     time.tv_sec as u64 * 1_000_000_000 + time.tv_nsec as u64
 }
 
-/// Time on processors that this process has taken, s.
+/// Processor time of this process, s.
 fn processor_s() -> f64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
     // SAFETY: the pointer is valid for the call.
@@ -78,7 +79,8 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
-/// The process on the sender's host: prints median and 99th percentile of what sending took (us), its load (%), and payloads sent.
+/// The process on the sender's host: prints median and 99th percentile of the sending time (us), its load (%), and the
+/// number of payloads sent.
 fn sender(mut engine: Box<dyn Engine>, seconds: f64) -> Outcome<()> {
     let begin = Instant::now();
     while !engine.is_ready() {
@@ -102,7 +104,7 @@ fn sender(mut engine: Box<dyn Engine>, seconds: f64) -> Outcome<()> {
         costs_us.push((now_ns() - sent_ns) as f64 * 1e-3);
         number += 1;
         engine.poll(&mut |_, _| {});
-        // As the loop does: periods that have passed are skipped, never caught up in a burst.
+        // Like the loop: missed periods are skipped, never made up in a burst.
         wake = (wake + TICK).max(Instant::now());
         sleep(wake.saturating_duration_since(Instant::now()));
     }
@@ -113,7 +115,8 @@ fn sender(mut engine: Box<dyn Engine>, seconds: f64) -> Outcome<()> {
     Ok(())
 }
 
-/// The process on the receiver's host: prints payloads got, quantiles of the one-way delay (us) and its load (%).
+/// The process on the receiver's host: prints the number of payloads received, quantiles of the one-way delay (us) and
+/// its load (%).
 fn receiver(mut engine: Box<dyn Engine>, seconds: f64) -> Outcome<()> {
     let mut delays_us = Vec::with_capacity(100_000);
     let mut last = Instant::now();
@@ -171,7 +174,7 @@ impl Drop for Hosts {
     }
 }
 
-/// Receiver's and sender's figures of one run.
+/// Returns the receiver's and the sender's results of one run.
 fn run(hosts: &Hosts, name: &str, seconds: f64, folder: &Path) -> Outcome<[Vec<f64>; 2]> {
     let start = |host: usize, role: &str| {
         let mut command = Command::new("ip");

@@ -1,4 +1,4 @@
-//! The link of `nima-network`, with two copies of each payload, handed over when they come.
+//! The link of `nima-network`, with two copies of each payload, delivered on arrival.
 
 use std::{fs, path::Path};
 
@@ -9,7 +9,6 @@ use nima_network::{
 
 use crate::{Engine, Outcome, PORT, THERE, now_ns};
 
-/// Keys for both hosts.
 pub(crate) fn prepare(folder: &Path) -> Outcome<()> {
     let folders = ["console", "follower"].map(|name| folder.join(name));
     for folder in &folders {

@@ -1,4 +1,4 @@
-//! QUIC datagrams by quinn-proto, driven by our own thread, with a congestion controller that never holds anything back.
+//! QUIC datagrams by quinn-proto, driven by our own thread, with a congestion controller that never delays.
 
 use std::{
     any::Any,
@@ -51,7 +51,6 @@ impl ControllerFactory for Fixed {
     }
 }
 
-/// A certificate for the receiver.
 pub(crate) fn prepare(folder: &Path) -> Outcome<()> {
     let made = rcgen::generate_simple_self_signed(["follower".to_owned()])?;
     fs::write(folder.join("certificate"), made.cert.der())?;

@@ -1,4 +1,4 @@
-//! zenoh over UDP: express, real-time priority, dropped rather than held up. What comes is seen by its own thread, at once.
+//! zenoh over UDP: express, real-time priority, dropped rather than delayed. Its own thread receives the data at once.
 
 use std::{
     sync::mpsc::{Receiver, channel},

@@ -9,9 +9,9 @@ use crate::language::{told, word};
 pub(crate) fn happening(event: &Event) -> String {
     let number = |count: usize| count.saturating_add(1);
     match *event {
-        Event::Begun => word("the trial begins", "der Versuch beginnt").to_owned(),
+        Event::Begun => word("the trial starts", "der Versuch beginnt").to_owned(),
         Event::Ended => word("the task is done", "die Aufgabe ist erledigt").to_owned(),
-        Event::Aborted => word("the trial was given up", "der Versuch wurde abgebrochen").to_owned(),
+        Event::Aborted => word("the trial was aborted", "der Versuch wurde abgebrochen").to_owned(),
         Event::RingGrasped { ring, side } => {
             told!(
                 "ring {} grasped by the {} instrument",

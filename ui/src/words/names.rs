@@ -77,26 +77,26 @@ pub(crate) fn loss_words(loss: Loss) -> &'static str {
 pub(crate) fn exchange_words(exchange: Exchange) -> &'static str {
     match exchange {
         Exchange::Handles => {
-            word("the right and the left handle are exchanged", "rechtes und linkes Handgerät sind vertauscht")
+            word("the right and left handles are swapped", "rechtes und linkes Handgerät sind vertauscht")
         }
         Exchange::Arms => word(
-            "the right and the left arm, or their mounts in the rig file, are exchanged",
+            "the right and left arms, or their mounts in the rig file, are swapped",
             "rechter und linker Arm oder ihre Montage in der Aufbaudatei sind vertauscht",
         ),
         Exchange::Sensors => {
-            word("the right and the left sensor are exchanged", "rechter und linker Sensor sind vertauscht")
+            word("the right and left sensors are swapped", "rechter und linker Sensor sind vertauscht")
         }
         Exchange::Servos => word(
-            "the servos of the right and the left instrument are exchanged",
+            "the servos of the right and left instruments are swapped",
             "die Servos des rechten und des linken Instruments sind vertauscht",
         ),
         Exchange::Markers => word(
-            "the markers of the right and the left instrument are exchanged",
+            "the markers of the right and left instruments are swapped",
             "die Marker des rechten und des linken Instruments sind vertauscht",
         ),
         Exchange::Trocars => word(
-            "the right and the left trocar are exchanged, or the instruments stand in each other's",
-            "rechter und linker Trokar sind vertauscht, oder jedes Instrument steckt im anderen",
+            "the right and left trocars are swapped, or each instrument is in the other's trocar",
+            "rechter und linker Trokar sind vertauscht, oder jedes Instrument steckt im Trokar des anderen",
         ),
     }
 }
@@ -106,7 +106,7 @@ pub(crate) fn obstacle_words(obstacle: &Obstacle) -> String {
     match obstacle {
         Obstacle::Start(start) => start.to_string(),
         Obstacle::Waiting(Awaited::Servos) => {
-            word("the servos have not answered yet", "die Servos haben noch nicht geantwortet").to_owned()
+            word("the servos have not responded yet", "die Servos haben noch nicht geantwortet").to_owned()
         }
         Obstacle::Waiting(Awaited::Markers) => word(
             "the tracker has not seen the markers of both instruments yet",
@@ -115,8 +115,8 @@ pub(crate) fn obstacle_words(obstacle: &Obstacle) -> String {
         .to_owned(),
         Obstacle::Exchanged(exchange) => exchange_words(*exchange).to_owned(),
         Obstacle::FarEnd => word(
-            "the follower's machine says that it cannot: its own screen names the reason",
-            "der Rechner des Folgearms meldet, dass er nicht kann: sein eigener Bildschirm nennt den Grund",
+            "the follower's machine refuses to engage; its screen shows the reason",
+            "der Rechner des Folgearms lehnt das Koppeln ab; sein Bildschirm zeigt den Grund",
         )
         .to_owned(),
     }
@@ -144,7 +144,7 @@ pub(crate) fn lack_words(lack: Lack) -> [&'static str; 2] {
             ),
         ],
         Lack::NotLinux => [
-            word("real-time scheduling is used on Linux only", "Echtzeitpriorität gibt es nur unter Linux"),
+            word("real-time scheduling is available on Linux only", "Echtzeitpriorität gibt es nur unter Linux"),
             word("expect more missed ticks here", "hier sind mehr versäumte Takte zu erwarten"),
         ],
     }

@@ -49,7 +49,7 @@ fn a_folder_of_pictures_gives_the_lens_and_changes_the_rig_file() {
     let to = rig.to_str().unwrap();
     let output = nima(&["calibrate", "camera", from, "--square-mm", "10", "--out", to, "--json"]);
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success() && told.contains("99.jpg: no board is seen"), "{told}");
+    assert!(output.status.success() && told.contains("99.jpg: no board detected"), "{told}");
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(report["verdict"], "accepted", "{report}");
     assert!(report["lens"]["held_out_px"].as_f64().unwrap() < 0.3, "{report}");

@@ -98,10 +98,7 @@ fn a_sensor_or_a_tool_in_anothers_place_is_told_at_the_start() {
     let sensors = rig().replace("\"901\"", "\"9\"").replace("\"902\"", "\"901\"").replace("\"9\"", "\"902\"");
     let tools = rig().replace("right grasper", "scissors");
     let cases = [
-        (
-            sensors,
-            ["SN000902 with \"Emulated right grasper\": gravity", "The right and the left sensor, or their tools"],
-        ),
+        (sensors, ["SN000902 with \"Emulated right grasper\": gravity", "The right and left sensors, or their tools"]),
         (tools, ["SN000901 with \"Emulated scissors\": gravity", "not \"Emulated scissors\""]),
     ];
     for (rig, words) in &cases {

@@ -112,7 +112,7 @@ fn everything_on_every_page_and_in_every_list_has_a_name() {
     console.run_steps(2);
     studies::open(&mut console);
     look(&mut console, "study", &mut all);
-    studies::begin(&mut console, "Begin the trial");
+    studies::begin(&mut console, "Start the trial");
     look(&mut console, "trial", &mut all);
     wait(&mut console, "its end", |console| !console.state().in_trial());
     told(&all);

@@ -145,15 +145,15 @@ fn a_blind_study_tells_its_conditions_on_no_page_and_in_no_file_until_it_is_open
     let mut reader = Reader { window, seen: BTreeSet::new() };
     reader.pick("Open Touching");
     reader.pick("a simulated hand");
-    reader.trial("Begin the practice trial");
+    reader.trial("Start the practice trial");
     reader.pick("the mouse");
-    reader.trial("Begin the trial");
+    reader.trial("Start the trial");
     reader.pick("Fill in the questionnaire");
     reader.pick("1: 5");
     reader.pick("Submit");
-    reader.pick("Begin the break");
+    reader.pick("Start the break");
     reader.pick("End the break");
-    reader.trial("Begin the trial");
+    reader.trial("Start the trial");
     reader.pick("Fill in the questionnaire");
     reader.pick("1: 4");
     reader.pick("Submit");
@@ -161,15 +161,15 @@ fn a_blind_study_tells_its_conditions_on_no_page_and_in_no_file_until_it_is_open
     reader.read("Finished");
     reader.pick("P02");
     reader.write_into("What happened", "the light flickered");
-    reader.pick("Keep the note");
+    reader.pick("Save note");
     reader.write_into("Reason", "never came");
-    reader.pick("Leave it out");
+    reader.pick("Exclude");
     reader.pick("Write the report");
     reader.read("Written: ");
     reader.point_around();
     let seen: Vec<String> = reader.seen.iter().cloned().collect();
     let files = everything(folder.path());
-    for told in ["Trial 1 of 2, condition ", "Practice trial 1", "Touch", "Loop state: Engaged", "Give up this trial"] {
+    for told in ["Trial 1 of 2, condition ", "Practice trial 1", "Touch", "Loop state: Engaged", "Abort this trial"] {
         assert!(seen.iter().any(|words| words.contains(told)), "{told} was not even seen: {seen:?}");
     }
     let found: Vec<&String> = seen.iter().filter(|words| !secrets_in(words).is_empty()).collect();
@@ -183,7 +183,7 @@ fn a_blind_study_tells_its_conditions_on_no_page_and_in_no_file_until_it_is_open
     assert!(!folder.path().join("sessions").exists(), "the console recorded nothing of its own");
 
     reader.write_into("Your name", "A. Person");
-    reader.write_into("Reason of the unblinding", "end");
+    reader.write_into("Reason for unblinding", "end");
     reader.pick("Unblind the study");
     reader.read("Unblinded by");
     let seen = reader.seen.iter().cloned().collect::<String>();

@@ -112,7 +112,7 @@ fn another_handle_is_chosen_by_its_serial_number_and_sensors_are_exchanged_by_on
         harness.run_steps(2);
         harness.get_by_label_contains("Saved in the rig file");
 
-        press(&mut harness, "Exchange sensors");
+        press(&mut harness, "Swap sensors");
         let path = folder.path().join("rigs/bench.toml");
         wait(&mut harness, "exchanged sensors", |harness| {
             let of = |devices: &Settings, side| devices.arm(side).map(|set| set.sensor.clone());
@@ -138,7 +138,7 @@ fn every_device_is_tested_and_its_figures_are_told() {
         let folder = tempfile::tempdir().unwrap();
         let (mut harness, _) = on_emulated_rig(folder.path());
         press(&mut harness, "Test all");
-        assert!(harness.query_all_by_label("testing: let it rest").next().is_some());
+        assert!(harness.query_all_by_label("testing: keep it at rest").next().is_some());
         wait(&mut harness, "results", |harness| harness.query_all_by_label_contains("Tested: ").count() == 11);
         // Two sensors with an accelerometer, three with forces.
         assert_eq!(harness.query_all_by_label("Up").count(), 2);
@@ -150,7 +150,7 @@ fn every_device_is_tested_and_its_figures_are_told() {
         press(&mut harness, "Test right arm");
         wait(&mut harness, "the result of one", |harness| {
             harness.query_all_by_label_contains("Tested: ").count() == 11
-                && harness.query_all_by_label("testing: let it rest").next().is_none()
+                && harness.query_all_by_label("testing: keep it at rest").next().is_none()
         });
     });
 }
@@ -161,7 +161,7 @@ fn nothing_is_changed_while_the_drives_are_on_and_a_rig_without_devices_says_so(
     let folder = tempfile::tempdir().unwrap();
     let harness = console(folder.path());
     harness.get_by_label("This rig is simulated: it has no devices");
-    assert!(harness.query_by_label_contains("Exchange").is_none());
+    assert!(harness.query_by_label_contains("Swap").is_none());
     drop(harness);
     let _alone = alone();
     judged(|| {
@@ -180,15 +180,15 @@ fn nothing_is_changed_while_the_drives_are_on_and_a_rig_without_devices_says_so(
         press(&mut harness, "Engage");
         wait(&mut harness, "engaged", |harness| state(harness) == Some(LoopState::Engaged));
         harness.run_steps(2);
-        harness.get_by_label_contains("Rest or stop first: the drives are on");
-        let button = harness.get_by_role_and_label(Role::Button, "Exchange handles");
+        harness.get_by_label_contains("Set the loop to idle or press Stop first: the drives are on");
+        let button = harness.get_by_role_and_label(Role::Button, "Swap handles");
         assert!(button.accesskit_node().is_disabled());
         press(&mut harness, "Choose left arm");
-        let other = harness.get_by_label_contains("now the right arm; the two are exchanged");
+        let other = harness.get_by_label_contains("currently the right arm; the two will be swapped");
         assert!(other.accesskit_node().is_disabled());
         press(&mut harness, "Stop");
         wait(&mut harness, "stopped", |harness| state(harness) == Some(LoopState::Stopped));
         harness.run_steps(2);
-        harness.get_by_label_contains("Release the stop first");
+        harness.get_by_label_contains("Press Release stop first");
     });
 }

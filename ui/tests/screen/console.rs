@@ -195,7 +195,7 @@ fn traces_pause_while_the_loop_goes_on() {
     let mut harness = console();
     press(&mut harness, "Pause");
     assert!(ever(&mut harness, 1.0, |tick| tick.state == LoopState::Engaged));
-    press(&mut harness, "Go on");
+    press(&mut harness, "Resume");
     press(&mut harness, "Last 10 s");
     harness.get_by_role_and_label(Role::Button, "Pause");
 }
@@ -246,7 +246,7 @@ fn the_instrument_is_led_by_mouse_and_keys_and_a_stop_lets_it_go() {
     harness.step();
     let aim_m = harness.state().tick().unwrap().guide_m.unwrap();
     until(&mut harness, "where it is led", |tick| (tick.leader_m - tick.guide_m.unwrap_or_default()).norm() < 3e-3);
-    press(&mut harness, "Let go (M)");
+    press(&mut harness, "Stop driving (M)");
     until(&mut harness, "let go", |tick| tick.guide_m.is_none());
     harness.key_press(Key::M);
     until(&mut harness, "led again", |tick| tick.guide_m.is_some_and(|at_m| at_m != aim_m));

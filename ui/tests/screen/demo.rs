@@ -139,7 +139,7 @@ fn a_fault_in_each_chapter_is_explained_and_the_chapter_restarts() {
     let (mut console, is_silent) = of_silent(SPEED);
     press(&mut console, "Demo");
     until(&mut console, "engaged", |tick| tick.state == LoopState::Engaged);
-    press(&mut console, "Hold");
+    press(&mut console, "Pause");
     for (chapter, mode, delay_s) in [
         ("1. What you see", Mode::Best, 0.05),
         ("2. Direct reflection", Mode::Dfr, 0.3),
@@ -201,13 +201,13 @@ fn the_demonstration_lets_go_with_and_without_the_governor_and_leaves_everything
     press(&mut harness, "Demo");
     press(&mut harness, "7. Letting go");
     until(&mut harness, "without a governor", |tick| tick.gate_settings.handle_kg == 0.0);
-    press(&mut harness, "Hold");
+    press(&mut harness, "Pause");
     until(&mut harness, "the handle flies to where its mechanism ends", |tick| tick.leader_m.z > 0.07);
     harness.get_by_label_contains("The handle moved");
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged, "nothing ends it");
     press(&mut harness, "8. The governor");
     until(&mut harness, "with the governor", |tick| tick.gate_settings == before_with_hold(before));
-    until(&mut harness, "nobody holds the handle", |tick| tick.state == LoopState::Idle);
+    until(&mut harness, "no hand holds the handle", |tick| tick.state == LoopState::Idle);
     let went = harness.get_by_label_contains("The handle moved").value().unwrap_or_default();
     // The press at which the hand lets go is not the same in each run: 0.9 to 2.1 mm were seen.
     assert!(["moved 0.", "moved 1.", "moved 2."].iter().any(|few| went.contains(few)), "{went}");

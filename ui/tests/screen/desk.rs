@@ -90,7 +90,7 @@ fn an_edge_is_dragged_and_the_default_comes_back() {
     assert!((after.left() - before.left() - 120.0).abs() < 4.0, "{before:?} {after:?}");
     assert!(layout_of(&mut harness).places.is_some());
     press(&mut harness, "View");
-    press(&mut harness, "Reset the layout");
+    press(&mut harness, "Reset layout");
     harness.run_steps(2);
     assert_eq!(layout_of(&mut harness).places, None);
     assert!((field(&harness).left() - before.left()).abs() < 1.0);

@@ -42,7 +42,7 @@ fn a_bias_that_moved_warns_with_its_figure_and_blocks_nothing() {
 fn a_bias_that_did_not_move_is_fine_with_the_time_of_the_check() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(folder.path(), 0.0);
-    read(&mut console, "N without contact, good");
+    read(&mut console, "N without contact, passed");
     let lines = console.state().in_force().lines();
     assert!(lines.iter().any(|line| line.starts_with("Bias, checked at ") && line.contains(" UTC: 0.0")), "{lines:?}");
     assert!(!shows(&console, "its bias has drifted"));

@@ -85,23 +85,23 @@ fn has_picture(harness: &Console) -> bool {
 fn the_picture_is_shown_with_the_forces_in_it_and_each_of_its_faults_in_words() {
     let (serving, endoscope) = camera();
     let mut harness = surgeon(endoscope, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
+    told(&mut harness, "Endoscope image: live");
     assert!(comes(&mut harness, TIMEOUT, has_picture));
-    assert!(is_painted(&harness, "pictures a second") && is_painted(&harness, "Forces are drawn at the tips"));
+    assert!(is_painted(&harness, "images per second") && is_painted(&harness, "Forces are drawn at the tips"));
     assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "ceiling 4 N")));
     for (fault, words) in [
-        (EmulatedFault::Freeze, "Picture is frozen: nothing new for"),
-        (EmulatedFault::Black, "Picture is black"),
-        (EmulatedFault::Torn, "Picture is damaged: its end is missing"),
+        (EmulatedFault::Freeze, "Image is frozen: no new image for"),
+        (EmulatedFault::Black, "Image is black"),
+        (EmulatedFault::Torn, "Image is damaged: its end is missing"),
         (EmulatedFault::Late, "ms old"),
         (EmulatedFault::WrongSize, "Picture is 320 x 180 pixels, not 640 x 360"),
         (EmulatedFault::OtherFormat, "sends image/png, not motion JPEG"),
-        (EmulatedFault::Disconnect, "Picture is lost: nobody listens at 127.0.0.1"),
+        (EmulatedFault::Disconnect, "Image is lost: nobody listens at 127.0.0.1"),
     ] {
         serving.faults.set(fault);
         told(&mut harness, words);
         serving.faults.set(EmulatedFault::None);
-        told(&mut harness, "Endoscope's picture: live");
+        told(&mut harness, "Endoscope image: live");
     }
     // The loop went on: nothing of the picture concerns it.
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged);
@@ -111,11 +111,11 @@ fn the_picture_is_shown_with_the_forces_in_it_and_each_of_its_faults_in_words() 
 fn a_key_hides_the_forces() {
     let (_serving, endoscope) = camera();
     let mut harness = surgeon(endoscope, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
+    told(&mut harness, "Endoscope image: live");
     harness.key_press(Key::O);
     harness.step();
     harness.step();
-    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "O draws the forces at the tips")));
+    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "Forces are hidden; O draws them at the tips")));
 }
 
 /// Greatest opacity of the letters of these words, wherever they are painted.
@@ -141,7 +141,7 @@ fn the_forces_fade_where_the_check_of_the_camera_was_worse_than_ten_pixels() {
         let (serving, mut endoscope) = camera();
         endoscope.camera.as_mut().unwrap().checked_px = checked_px;
         let mut harness = surgeon(endoscope, [1280.0, 720.0]);
-        told(&mut harness, "Endoscope's picture: live");
+        told(&mut harness, "Endoscope image: live");
         (serving, harness)
     };
     let faint = |harness: &Console| opacities(harness, "ceiling 4 N").iter().filter(|most| **most < 128).count();
@@ -162,8 +162,8 @@ fn a_camera_whose_place_is_not_known_draws_no_forces_and_says_so() {
     camera.position_m = None;
     camera.world_from_camera_deg = None;
     let mut harness = surgeon(endoscope, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
-    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "the camera's place is not known")));
+    told(&mut harness, "Endoscope image: live");
+    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "the camera position is unknown")));
     assert!(!is_painted(&harness, "O hides them"));
 }
 
@@ -172,12 +172,12 @@ fn a_key_chooses_the_half_of_two_lenses_and_the_forces_go_with_it() {
     let (_serving, endoscope) = lenses(Some(0.004));
     let view = Some(StereoView::Left);
     let mut harness = surgeon(Endoscope { view, baseline_m: Some(0.004), ..endoscope }, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
+    told(&mut harness, "Endoscope image: live");
     for (words, shares) in [
-        ("Left half", vec![[0.0, 0.5]]),
-        ("Right half", vec![[0.5, 1.0]]),
-        ("Both halves", vec![[0.0, 0.5], [0.5, 1.0]]),
-        ("Left half", vec![[0.0, 0.5]]),
+        ("Left image", vec![[0.0, 0.5]]),
+        ("Right image", vec![[0.5, 1.0]]),
+        ("Both images", vec![[0.0, 0.5], [0.5, 1.0]]),
+        ("Left image", vec![[0.0, 0.5]]),
     ] {
         let is_so = comes(&mut harness, TIMEOUT, |harness| {
             is_painted(harness, words) && halves(harness) == shares && has_forces(harness, shares.len() > 1)
@@ -215,15 +215,15 @@ fn halves(harness: &Console) -> Vec<[f32; 2]> {
 fn a_camera_that_is_not_there_is_told_with_a_cure_there_and_among_the_devices() {
     let endoscope = |url: &str| Endoscope { url: url.to_owned(), ..Endoscope::default() };
     let mut harness = surgeon(endoscope("http://127.0.0.1:1/"), [1280.0, 720.0]);
-    told(&mut harness, "Picture is lost: nobody listens at 127.0.0.1:1");
+    told(&mut harness, "Image is lost: nobody listens at 127.0.0.1:1");
     assert!(is_painted(&harness, "Correct the port in the rig file"));
     harness.state_mut().settings_mut().layout = Layout { front: vec![Panel::Devices], ..Layout::default() };
     press(&mut harness, "Technician");
     assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "nobody listens at 127.0.0.1:1")));
     for (url, words) in [
         ("rtmp://127.0.0.1/", "cameras (/dev/video0) and files are supported"),
-        ("rtsp://127.0.0.1/", "Picture is lost: this program was built without RTSP and H.264"),
-        ("/dev/video987654", "Picture is lost: /dev/video987654 is not there"),
+        ("rtsp://127.0.0.1/", "Image is lost: this program was built without RTSP and H.264"),
+        ("/dev/video987654", "Image is lost: /dev/video987654 is not there"),
     ] {
         told(&mut surgeon(endoscope(url), [1280.0, 720.0]), words);
     }
@@ -235,7 +235,7 @@ fn without_an_endoscope_the_field_is_drawn_as_ever() {
     harness.key_press(Key::F1);
     harness.step();
     harness.step();
-    assert!(harness.query_by_label_contains("Endoscope's picture").is_none());
+    assert!(harness.query_by_label_contains("Endoscope image").is_none());
     harness.get_by_label("Operating field");
 }
 
@@ -294,7 +294,7 @@ fn double_click(harness: &mut Console, at: Pos2) {
 fn the_wheel_zooms_a_drag_moves_and_a_double_click_shows_all() {
     let (_serving, endoscope) = camera();
     let mut harness = surgeon(endoscope, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
+    told(&mut harness, "Endoscope image: live");
     assert!(comes(&mut harness, TIMEOUT, has_picture));
     let whole = place(&harness);
     let at = whole.center() + vec2(60.0, 40.0);
@@ -329,7 +329,7 @@ fn the_wheel_zooms_a_drag_moves_and_a_double_click_shows_all() {
 fn edges_are_cut_off_by_the_rig_file_and_on_the_screen() {
     let (_serving, endoscope) = camera();
     let mut harness = surgeon(Endoscope { crop_px: [64, 0, 64, 0], ..endoscope }, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
+    told(&mut harness, "Endoscope image: live");
     assert!(comes(&mut harness, TIMEOUT, has_picture));
     let (by_file, part) = picture(&harness).unwrap();
     assert_eq!(part, Rect::from_min_max(pos2(0.1, 0.0), pos2(0.9, 1.0)));
@@ -347,7 +347,7 @@ fn edges_are_cut_off_by_the_rig_file_and_on_the_screen() {
 fn forces_of_now_are_called_so() {
     let (_serving, endoscope) = camera();
     let mut harness = surgeon(endoscope, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
+    told(&mut harness, "Endoscope image: live");
     harness.state_mut().settings_mut().picture.forces_of_now = true;
-    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "Forces of now, ahead of the picture")));
+    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "Current forces, ahead of the image")));
 }

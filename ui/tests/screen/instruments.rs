@@ -71,6 +71,6 @@ fn one_key_marks_a_moment_also_while_the_traces_are_paused() {
     assert_eq!(marks_s.len(), 3);
     assert!(marks_s[2] >= 0.7, "{marks_s:?}");
     assert!(marks_s[1] >= 0.5 && marks_s[0] < marks_s[1], "{marks_s:?}");
-    harness.get_by_role_and_label(accesskit::Role::Button, "Go on");
+    harness.get_by_role_and_label(accesskit::Role::Button, "Resume");
     harness.get_by_label_contains("Force space.");
 }

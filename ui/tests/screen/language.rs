@@ -150,10 +150,10 @@ fn welcome_and_tour_fit() {
     let mut console = console_of("peg_transfer", SIZES[0], move |app| app.with_settings(Kept::open(&path)));
     until(&mut console, "any tick", |_| true);
     let mut all = look_at(&mut console, "welcome", Page::Over);
-    press(&mut console, "Go on with the simulated rig");
+    press(&mut console, "Continue with the simulated rig");
     for step in 1..=4 {
         all.extend(look_at(&mut console, &format!("step {step} of the tour"), Page::Over));
-        press(&mut console, if step < 4 { "Next step" } else { "Begin" });
+        press(&mut console, if step < 4 { "Next step" } else { "Start" });
     }
     none(&all);
 }
@@ -186,13 +186,13 @@ fn the_pages_of_a_study_and_a_trial_fit() {
     let mut all = look_at(&mut console, "list of studies", Page::Scrolls);
     pick(&mut console, "New study");
     all.extend(look_at(&mut console, "form of a study", Page::Form));
-    pick(&mut console, "Make the study");
+    pick(&mut console, "Create study");
     all.extend(look_at(&mut console, "new study", Page::Form));
     pick(&mut console, "Close the study");
     pick(&mut console, "Open Touching");
     pick(&mut console, "a simulated hand");
     all.extend(look_at(&mut console, "study", Page::Form));
-    pick(&mut console, "Begin the trial");
+    pick(&mut console, "Start the trial");
     bench::wait(&mut console, "a trial", |console| console.state().in_trial());
     until(&mut console, "idle", |tick| tick.state == LoopState::Idle);
     all.extend(look_at(&mut console, "trial", Page::Whole));

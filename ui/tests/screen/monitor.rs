@@ -74,7 +74,7 @@ fn a_rig_elsewhere_is_shown_in_every_view_and_nothing_acts_on_it() {
     let (mut window, teller) = window();
     reads(&mut window, "Connecting to the rig");
     assert!(teller.tell(Heard::Rests));
-    reads(&mut window, "no loop runs there now");
+    reads(&mut window, "no loop is running there");
 
     let plan = plan("peg_transfer");
     let moments = sent(&plan);
@@ -98,7 +98,7 @@ fn a_rig_elsewhere_is_shown_in_every_view_and_nothing_acts_on_it() {
     teller.tell(Heard::Shows(stopped.to_vec()));
     reads(&mut window, "Stopped");
     // What stays on the screen is told to be old.
-    reads(&mut window, "Nothing from the rig for");
+    reads(&mut window, "No data from the rig for");
     assert!(!shows(&window, "Stopped"), "a state that may be another by now");
     teller.tell(Heard::Trouble("rig theatre-1 does not answer".to_owned()));
     reads(&mut window, "does not answer");

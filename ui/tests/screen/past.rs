@@ -81,7 +81,7 @@ fn do_everything(harness: &mut Harness<'_, ConsoleApp>) -> usize {
         .filter(|node| {
             let name = node.accesskit_node().label().unwrap_or_default();
             // What leaves the past, stops, or opens something over the rest is pressed elsewhere.
-            !["Stop", "Live again (L)", "Close", "View", "Report", "Save the stretch"].contains(&name.as_str())
+            !["Stop", "Return to live (L)", "Close", "View", "Report", "Save excerpt"].contains(&name.as_str())
         })
         .map(|node| node.rect().center())
         .collect();
@@ -149,7 +149,9 @@ fn the_past_looks_like_the_past_and_one_key_leaves_it() {
     for role in Role::ALL {
         harness.state_mut().settings_mut().role = role;
         harness.run_steps(3);
-        assert!(harness.query_by_label("PAST").is_some() && harness.query_by_label("Time of the session").is_some());
+        assert!(
+            harness.query_by_label("PLAYBACK").is_some() && harness.query_by_label("Time of the session").is_some()
+        );
     }
     harness.state_mut().show_past(2.5);
     harness.step();
@@ -168,7 +170,7 @@ fn the_past_looks_like_the_past_and_one_key_leaves_it() {
     harness.key_press(Key::L);
     harness.step();
     harness.run_steps(2);
-    assert!(harness.query_by_label("PAST").is_none() && harness.state().past().is_none());
+    assert!(harness.query_by_label("PLAYBACK").is_none() && harness.state().past().is_none());
 }
 
 /// What a pointer is told that moves along the time line until it is over these words.

@@ -24,7 +24,7 @@ fn lumps_are_marked_by_a_key_while_the_instrument_is_led_and_told_at_the_end() {
     harness.key_press(Key::X);
     press(&mut harness, "Drive by mouse (M)");
     until(&mut harness, "led", |tick| tick.guide_m.is_some());
-    read(&mut harness, "Places marked: 0 (X marks, D ends the trial, N begins it anew)");
+    read(&mut harness, "Places marked: 0 (X marks, D ends the trial, N restarts it)");
     for marked in 1..=2 {
         harness.key_press(Key::X);
         read(&mut harness, &format!("Places marked: {marked}"));
@@ -40,7 +40,7 @@ fn lumps_are_marked_by_a_key_while_the_instrument_is_led_and_told_at_the_end() {
 #[test]
 fn the_way_along_the_wire_is_told_and_the_looks_are_switched() {
     let mut harness = console_of("wire", SIZE, |app| app);
-    read(&mut harness, "Way to the goal: ");
+    read(&mut harness, "Path to the goal: ");
     assert_eq!(harness.state().extras(), Extras::default());
     press(&mut harness, SHOW.get());
     for switch in [SHADOWS, DEPTH, ROUND] {

@@ -133,13 +133,13 @@ fn nothing_is_cut_or_overlaps_on_the_pages_of_a_study_and_in_a_trial() {
     look(&mut harness, "list", &mut all);
     bench::pick(&mut harness, "New study");
     look(&mut harness, "form", &mut all);
-    bench::pick(&mut harness, "Make the study");
+    bench::pick(&mut harness, "Create study");
     look(&mut harness, "new study", &mut all);
     bench::pick(&mut harness, "Close the study");
     bench::pick(&mut harness, "Open Touching");
     bench::pick(&mut harness, "a simulated hand");
     look(&mut harness, "study", &mut all);
-    bench::pick(&mut harness, "Begin the trial");
+    bench::pick(&mut harness, "Start the trial");
     bench::wait(&mut harness, "a trial", |harness| harness.state().in_trial());
     until(&mut harness, "idle", |tick| tick.state == LoopState::Idle);
     look(&mut harness, "trial", &mut all);
@@ -242,23 +242,23 @@ fn tour_and_glossary_fit_and_leave_the_stop_alone() {
     };
     let mut harness = begin(path.clone());
     until(&mut harness, "any tick", |_| true);
-    bench::press(&mut harness, "Go on with the simulated rig");
+    bench::press(&mut harness, "Continue with the simulated rig");
     for button in ["Next step", "Next step", "Step back", "Next step", "Next step"] {
         assert!(harness.query_by_role_and_label(accesskit::Role::Button, "Stop").is_some());
         bench::press(&mut harness, button);
     }
     bench::press(&mut harness, "Stop");
     until(&mut harness, "stopped during the tour", |tick| tick.state == LoopState::Stopped);
-    bench::press(&mut harness, "Begin");
-    assert!(harness.query_by_label("Begin").is_none());
+    bench::press(&mut harness, "Start");
+    assert!(harness.query_by_label("Start").is_none());
     harness.key_press(egui::Key::F4);
     harness.run_steps(3);
-    let entry = harness.get_by_label("Horizon").rect();
+    let entry = harness.get_by_label("Prediction horizon").rect();
     let stop = harness.get_by_role_and_label(accesskit::Role::Button, "Stop").rect();
     assert!(entry.top() > stop.bottom());
     harness.key_press(egui::Key::F4);
     harness.run_steps(3);
-    assert!(harness.query_by_label("Horizon").is_none());
+    assert!(harness.query_by_label("Prediction horizon").is_none());
     drop(harness);
     let mut again = begin(path);
     again.run_steps(3);

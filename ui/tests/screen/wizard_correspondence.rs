@@ -112,7 +112,7 @@ fn pushes_along_one_line_are_kept_only_under_a_name() {
     read(&mut harness, "Insufficient motion");
     read(&mut harness, "along one line");
     pick(&mut harness, "Next");
-    let button = "Save in spite of the verdict";
+    let button = "Save despite the verdict";
     assert!(!can_press(&harness, button) && harness.query_by_label("Save and use").is_none());
     for (label, text) in [("Your name", "A. Technician"), ("Reason", "practice")] {
         write_into(&mut harness, label, text);
@@ -123,7 +123,7 @@ fn pushes_along_one_line_are_kept_only_under_a_name() {
     assert_eq!(record.judgement.verdict, Verdict::InsufficientMotion);
     assert_eq!(record.judgement.override_by.as_deref(), Some("A. Technician"));
     let lines = harness.state().in_force().lines();
-    assert!(lines.iter().any(|line| line.contains("NOT PROVEN, kept by A. Technician")), "{lines:?}");
+    assert!(lines.iter().any(|line| line.contains("NOT PROVEN, accepted by A. Technician")), "{lines:?}");
 }
 
 #[test]

@@ -123,8 +123,8 @@ fn a_technician_finds_the_tip_sees_the_change_saves_it_and_undoes_it() {
         assert!(RigFile::of(&rig).unwrap().text().contains("# The mirror image."), "comments stay");
         let now = console.state().rig().devices.as_ref().unwrap().right.as_ref().unwrap().mount.shaft_m;
         assert!((now - found_m).abs() < 1e-12, "the loop runs with it");
-        press(&mut console, "Put the values of before back");
-        until(&mut console, "undone", |c| shows(c, "The values of before are in the rig file again"));
+        press(&mut console, "Restore previous values");
+        until(&mut console, "undone", |c| shows(c, "The previous values are in the rig file again"));
         assert!((shaft_m(&rig) - wrong_m).abs() < 1e-12);
         press(&mut console, "Next: Right arm, hand-eye");
         assert!(shows(&console, "turn its marker towards the tracker"));

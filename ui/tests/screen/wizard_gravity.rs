@@ -56,7 +56,7 @@ fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
     let mut console = console(Scene::load("palpation").unwrap(), folder.path());
     wait(&mut console, "an unknown force", |c| shows(c, "the wrist sensor is not calibrated"));
     pick(&mut console, "Calibrate gravity…");
-    wait(&mut console, "the first step", |c| shows(c, "let go of it: nothing may touch the tool"));
+    wait(&mut console, "the first step", |c| shows(c, "release it: nothing may touch the tool"));
     assert!(!can_press(&console, "Engage"), "nobody engages an arm that is being guided by hand");
     language::fits(&mut console, "checks before the poses");
     leave_the_checks(&mut console);
@@ -152,15 +152,15 @@ fn a_wrong_sign_is_named_and_an_override_is_written_into_the_file() {
     wait(&mut console, "a reading", |c| shows(c, "Not passed yet"));
     pick(&mut console, "Next");
     wait(&mut console, "the last step", |c| shows(c, "not proven"));
-    assert!(!can_press(&console, "Save in spite of the verdict"), "a name and a reason come first");
+    assert!(!can_press(&console, "Save despite the verdict"), "a name and a reason come first");
     write_into(&mut console, "Your name", "Ada Lovelace");
     write_into(&mut console, "Reason", "bench test");
-    pick(&mut console, "Save in spite of the verdict");
+    pick(&mut console, "Save despite the verdict");
     wait(&mut console, "saved", |c| shows(c, "Saved and in use"));
     let path = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap().path();
     let text = std::fs::read_to_string(path).unwrap();
     assert!(text.contains("Ada Lovelace") && text.contains("bench test"), "{text}");
-    wait(&mut console, "who kept it", |c| shows(c, "NOT PROVEN, kept by Ada Lovelace"));
+    wait(&mut console, "who kept it", |c| shows(c, "NOT PROVEN, accepted by Ada Lovelace"));
 }
 
 #[test]
@@ -203,7 +203,7 @@ fn the_left_arm_is_calibrated_by_itself_and_keeps_nothing_of_the_right_one() {
     wait(&mut console, "a pose of the left arm", |c| shows(c, "1 of 12 recorded"));
     assert_eq!(console.state().tick().map(|tick| tick.prompt), Some(Prompt::Rest), "nobody asks at the right arm");
     pick(&mut console, "Right arm");
-    wait(&mut console, "the first step anew", |c| shows(c, "let go of it: nothing may touch the tool"));
+    wait(&mut console, "the first step anew", |c| shows(c, "release it: nothing may touch the tool"));
     leave_the_checks(&mut console);
     assert!(shows(&console, "0 of 12 recorded"), "poses of the left arm");
     wait(&mut console, "a pose of the right arm", |c| shows(c, "1 of 12 recorded"));

@@ -273,7 +273,7 @@ fn without_a_correspondence_nothing_can_be_recorded() {
     let mut real = real_console(Wizards::default(), folder.path());
     pick(&mut real, "Calibrate tip force…");
     wait(&mut real, "the reason", |window| {
-        window.query_by_label_contains("The correspondence is not known: calibrate it first").is_some()
+        window.query_by_label_contains("The correspondence is unknown: calibrate it first").is_some()
             && window.query_by_label_contains("Correspondence: not known; press").is_some()
             && window.query_by_label_contains("Gravity: fine").is_some()
     });
@@ -303,7 +303,7 @@ fn work_in_one_place_never_meets_the_goals_and_its_network_needs_a_name() {
     console.read("Verdict: ");
     assert!(!console.shows("Accepted"));
     console.press("Next");
-    assert!(!console.is_ready("Save in spite of the verdict") && !console.shows("Save and use"));
+    assert!(!console.is_ready("Save despite the verdict") && !console.shows("Save and use"));
 }
 
 #[test]
@@ -320,18 +320,18 @@ fn sensors_that_do_not_agree_are_refused_and_an_override_is_written_into_the_fil
     console.read("Verdict: ");
     assert!(console.shows("Poor data"), "{:?}", texts(&console.window));
     console.press("Next");
-    assert!(!console.is_ready("Save in spite of the verdict"), "a name and a reason come first");
+    assert!(!console.is_ready("Save despite the verdict"), "a name and a reason come first");
     for (label, text) in [("Your name", "A. Technician"), ("Reason", "practice")] {
         write_into(&mut console.window, label, text);
     }
-    console.press("Save in spite of the verdict");
+    console.press("Save despite the verdict");
     let saving = console.window.state_mut().saving.take().unwrap();
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load("isolation").unwrap();
     let mut in_force = InForce::load(Some(folder.path()), &rig, &scene);
     in_force.save(saving).unwrap();
     let lines = in_force.lines();
-    assert!(lines.iter().any(|line| line.contains("NOT PROVEN, kept by A. Technician")), "{lines:?}");
+    assert!(lines.iter().any(|line| line.contains("NOT PROVEN, accepted by A. Technician")), "{lines:?}");
     let wrist = rig.simulated_wrist(Side::Right).unwrap();
     let store = Store::open(folder.path());
     let kept = kept_model(&store, &wrist.serial_number, &wrist.tool, SystemTime::now()).unwrap().unwrap();
@@ -363,13 +363,13 @@ fn a_cancelled_training_and_steps_back_keep_the_recording() {
     console.press("Back");
     assert_eq!(console.rows(), rows);
     assert_eq!(rows_of(folder.path(), "tip-force-data"), Some(rows), "it is on disk too");
-    console.press("Go on recording");
+    console.press("Resume recording");
     console.record(rows + 300);
     let rows = console.rows();
     console.look_away();
     assert_eq!(console.rows(), rows, "nobody watched, and nothing is lost");
     assert!(console.shows("Paused: press"), "what happened meanwhile is not known: it goes on when asked to");
-    console.press("Go on recording");
+    console.press("Resume recording");
     console.read("setting the sensor under the tissue to zero");
     console.record(rows + 300);
     console.press("Start over");

@@ -109,7 +109,7 @@ fn line(entry: &Entry, roster: &Roster) -> String {
             let [cause, cure] = cause_words(cause, roster);
             format!("{name}: FAILED: {cause}; {cure}")
         }
-        State::LeftOut(lacks) => format!("{name}: left out, {}", lacks_words(*lacks)),
+        State::LeftOut(lacks) => format!("{name}: skipped, {}", lacks_words(*lacks)),
     }
 }
 

@@ -77,7 +77,7 @@ fn a_ready_check_tells_what_has_changed_since_if_it_was_later() {
         items: vec![item],
     };
     let since = |side, date: &str| found_since(Some(&check), Check::Trocar(side), date);
-    let words = Some("ready check of 2026-08-21: 0.31 mm, limit 1.00".to_owned());
+    let words = Some("ready check on 2026-08-21: 0.31 mm, limit 1.00".to_owned());
     assert_eq!(since(Side::Left, "2026-08-20T10:20:30Z"), words);
     assert_eq!(since(Side::Left, &utc_now()), None, "calibrated after the check");
     assert_eq!(since(Side::Right, "2026-08-20T10:20:30Z"), None);

@@ -52,8 +52,8 @@ pub(in crate::console) const NOW: Text = Text::of("now", "jetzt");
 pub(in crate::console) const ENDED: Text = Text::of("ended", "beendet");
 pub(in crate::console) const PRESENT: Text = Text::of("still present", "besteht noch");
 pub(in crate::console) const DEVICE_MISSING_CURE: Text = Text::of(
-    "It is opened again automatically; check its cable and its power",
-    "Es wird automatisch wieder geöffnet; Kabel und Stromversorgung prüfen",
+    "The console reconnects it automatically; check its cable and its power",
+    "Die Konsole verbindet es von selbst wieder; Kabel und Stromversorgung prüfen",
 );
 
 /// A fault and the time of its first report, s on the loop's clock.
@@ -92,17 +92,17 @@ pub(in crate::console) fn bias_moved(by_n: f64) -> String {
 /// No program for playing sounds is installed.
 pub(in crate::console) fn no_player(players: &str) -> String {
     told!(
-        "No alarm sound: none of these players is installed: {players}",
-        "Kein Alarmton: keines dieser Abspielprogramme ist installiert: {players}"
+        "No alarm sound: none of these players is installed: {players}; install one",
+        "Kein Alarmton: keines dieser Abspielprogramme ist installiert: {players}; eines installieren"
     )
 }
 
 pub(in crate::console) const UNCHECKED_CAUSE: Text = Text::of(
-    "No ready check of the last 12 hours has passed with these devices",
+    "No ready check has passed with these devices in the last 12 hours",
     "Keine bestandene Startprüfung mit diesen Geräten in den letzten 12 Stunden",
 );
 pub(in crate::console) const UNCHECKED_CURE: Text = Text::of(
-    "Press Ready check in the panel Calibration before you engage",
+    "Press Ready check in the Calibration panel before you engage",
     "Vor dem Koppeln im Panel Kalibrierung Startprüfung drücken",
 );
 

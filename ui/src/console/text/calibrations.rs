@@ -6,7 +6,7 @@ use nima_recording::store::WristId;
 use crate::language::{Text, told, word};
 
 pub(in crate::console) const NOT_OF_A_SENSOR: Text =
-    Text::of("these numbers belong into the rig file", "diese Werte gehören in die Aufbaudatei");
+    Text::of("these values belong in the rig file", "diese Werte gehören in die Aufbaudatei");
 pub(in crate::console) const SETS_IDLE: Text = Text::of(
     "The check and the wizards set the loop to idle",
     "Prüfung und Assistenten setzen die Regelung in den \
@@ -44,11 +44,11 @@ pub(in crate::console) const REMARK_FUTURE_DATE: Text = Text::of(
     "; Datum in der Zukunft, Uhr dieses Rechners prüfen",
 );
 pub(in crate::console) const SENSOR_NOT_CONNECTED: Text = Text::of(
-    "The wrist sensor is not connected: its serial number decides which calibrations are in force",
+    "The wrist sensor is not connected: its serial number decides which calibrations are used",
     "Handgelenksensor nicht verbunden: seine Seriennummer bestimmt, welche Kalibrierungen gelten",
 );
 pub(in crate::console) const SENSOR_WITHOUT_SERIAL: Text = Text::of(
-    "The wrist sensor gave no serial number, so no calibration can belong to it: connect it again",
+    "The wrist sensor reports no serial number, so no calibration can be assigned to it: reconnect it",
     "Der Handgelenksensor nennt keine Seriennummer, ihm ist keine Kalibrierung zuzuordnen: neu verbinden",
 );
 pub(in crate::console) const RIG_WITHOUT_SENSOR: Text = Text::of(
@@ -56,7 +56,7 @@ pub(in crate::console) const RIG_WITHOUT_SENSOR: Text = Text::of(
     "Die Aufbaudatei nennt keinen Handgelenksensor für diesen Arm: serial_number und tool in [simulated] ergänzen",
 );
 pub(in crate::console) const NO_SENSOR_TO_SAVE_FOR: Text = Text::of(
-    "the serial number of the wrist sensor is not known; save again once the sensor is connected",
+    "the serial number of the wrist sensor is unknown; connect the sensor, then save again",
     "Seriennummer des Handgelenksensors unbekannt; Sensor verbinden, dann erneut speichern",
 );
 pub(in crate::console) const ARM_TO_CALIBRATE: Text = Text::of(
@@ -72,15 +72,14 @@ pub(crate) fn closed(state: LoopState) -> Option<&'static str> {
             Some(word("The loop is stopped: press Release stop", "Die Regelung ist angehalten: Halt lösen drücken"))
         }
         LoopState::Disconnected => {
-            Some(word("A device is missing: see the panel Devices", "Ein Gerät fehlt: siehe Panel Geräte"))
+            Some(word("A device is missing: see the Devices panel", "Ein Gerät fehlt: siehe Panel Geräte"))
         }
         LoopState::Ready => Some(word(
-            "About to engage: align hand and tip, or Stop",
-            "Vor dem Koppeln: Hand und Spitze ausrichten, \
-             oder Halt",
+            "About to engage: align hand and tip, or press Stop",
+            "Vor dem Koppeln: Hand und Spitze ausrichten, oder Halt drücken",
         )),
         LoopState::Clutched => {
-            Some(word("The clutch is pressed: let the pedal go", "Kupplung gedrückt: Pedal loslassen"))
+            Some(word("The clutch is pressed: release the pedal", "Kupplung gedrückt: Pedal loslassen"))
         }
     }
 }
@@ -124,8 +123,8 @@ pub(in crate::console) fn other_sensors_are_calibrated(sensor: &str, tool: &str,
 /// Each sensor is calibrated with the tool of the other arm.
 pub(in crate::console) fn sensors_are_exchanged(right: &WristId, left: &WristId) -> String {
     told!(
-        "The right and the left sensor, or their tools in the rig file, are exchanged: {} is calibrated with {}, and \
-         {} with {}: exchange the cables, or press Exchange Sensors in the panel Devices.",
+        "The right and left sensors, or their tools in the rig file, are swapped: {} is calibrated with {}, and \
+         {} with {}. Swap the cables, or press Swap sensors in the Devices panel.",
         "Rechter und linker Sensor oder ihre Instrumente in der Aufbaudatei sind vertauscht: {} ist mit {} kalibriert \
          und {} mit {}: Kabel tauschen, oder im Panel Geräte Sensoren tauschen.",
         right.serial_number,
@@ -198,7 +197,7 @@ pub(in crate::console) fn days_old(days: u64) -> String {
 
 /// Remark: its verdict was overridden by this person.
 pub(in crate::console) fn not_proven(name: &str) -> String {
-    told!("; NOT PROVEN, kept by {name}", "; NICHT BELEGT, übernommen von {name}")
+    told!("; NOT PROVEN, accepted by {name}", "; NICHT BELEGT, übernommen von {name}")
 }
 
 /// A wizard could not be opened.
@@ -213,7 +212,7 @@ pub(in crate::console) fn still_in_the_experiment(reason: &str) -> String {
 
 /// Saved, but the running loop does not use it yet.
 pub(in crate::console) fn in_force_with_next_start(saved: &str, reason: &str) -> String {
-    told!("{saved}. It is used from the next start on: {reason}", "{saved}. Gilt ab dem nächsten Start: {reason}")
+    told!("{saved}. It will be used after the next start: {reason}", "{saved}. Gilt ab dem nächsten Start: {reason}")
 }
 
 /// Could not be saved.

@@ -9,8 +9,9 @@ pub(in crate::console) fn gain_hover(rate_per_s: f64) -> String {
     let Limits { min, max, .. } = limits::GAIN;
     let most = GAIN_ABOVE_ONE.max;
     told!(
-        "Ratio of the force in the hand to the force that the mode asks for, no unit: {min} to {max}, or up to {most} if \
-         allowed below. 0 is no force, 1 is natural. The gain changes by at most {rate_per_s} per second.",
+        "Ratio of the force in the hand to the force that the mode requests, no unit: {min} to {max}, or up to \
+         {most} if allowed below. 0 is no force, 1 is natural. The gain changes by at most {rate_per_s} per \
+         second.",
         "Verhältnis der Kraft in der Hand zu der vom Modus verlangten, ohne Einheit: {min} bis {max}, oder bis {most}, wenn \
          unten erlaubt. 0 ist keine Kraft, 1 ist natürlich. Ändert sich um höchstens {rate_per_s} je Sekunde."
     )
@@ -42,8 +43,8 @@ pub(in crate::console) fn dead_band_hover() -> String {
     )
 }
 pub(in crate::console) const HOLD_HOVER: Text = Text::of(
-    "On: the force stays when the hand stops, so that you feel a steady push. Off: it fades out in the \
-    dead band, as in the paper, and \"Why no force?\" shows how much is not rendered (N).",
+    "On: the force stays when the hand stops, so that you feel a steady push. Off: it fades out in the dead \
+     band, as in the paper, and \"Why no force?\" shows how much is not rendered (N).",
     "Ein: die Kraft bleibt, wenn die Hand anhält; ein stetiger Druck ist spürbar. Aus: sie blendet im Totband aus wie \
      im Artikel, und „Warum keine Kraft?“ zeigt, wie viel nicht dargestellt wird (N).",
 );
@@ -53,8 +54,8 @@ pub(in crate::console) fn allow_above_1_hover() -> String {
     let most = GAIN_ABOVE_ONE.max;
     let max = limits::GAIN.max;
     told!(
-        "Allows a gain up to {most}, so that soft tissue feels stiffer than it is. The force ceiling still \
-         applies. Clearing the box brings the gain back to at most {max}.",
+        "Allows a gain of up to {most}, so that soft tissue feels stiffer than it is. The force ceiling still \
+         applies. Clearing the box reduces the gain to at most {max}.",
         "Erlaubt Verstärkungen bis {most}, sodass sich weiches Gewebe steifer anfühlt, als es ist. Die Höchstkraft gilt \
          weiter. Abwählen bringt die Verstärkung auf höchstens {max} zurück."
     )

@@ -20,26 +20,28 @@ pub(in crate::console) const FRAMES_HOVER: Text = Text::of(
 );
 pub(in crate::console) const SHADOWS: Text = Text::of("Shadows on the board", "Schatten auf dem Brett");
 pub(in crate::console) const SHADOWS_HOVER: Text = Text::of(
-    "What stands between the lamp and the board throws a shadow: it helps to judge height. On tissue the shafts always \
-     throw theirs.",
+    "Objects between the lamp and the board cast a shadow, which helps to judge height. On tissue the shafts \
+     always cast shadows.",
     "Was zwischen Lampe und Brett steht, wirft Schatten: das hilft, Höhe einzuschätzen. Auf Gewebe werfen die Schäfte \
      immer Schatten.",
 );
 pub(in crate::console) const DEPTH: Text = Text::of("Darker with distance", "Dunkler mit Abstand");
 pub(in crate::console) const DEPTH_HOVER: Text = Text::of(
-    "As under an endoscope, whose light is at the lens: what is farther away is darker. It helps to judge depth.",
+    "More distant objects are darker, as with an endoscope whose light is at the lens. This helps to judge depth.",
     "Wie unter einem Endoskop mit Licht am Objektiv: Ferneres ist dunkler. Das hilft, Tiefe einzuschätzen.",
 );
 pub(in crate::console) const ROUND: Text =
-    Text::of("Round picture in the surgeon's view", "Rundes Bild in der Ansicht Chirurg");
-pub(in crate::console) const ROUND_HOVER: Text =
-    Text::of("The endoscope's picture is a disc with a dark rim", "Das Endoskopbild ist eine Scheibe mit dunklem Rand");
+    Text::of("Round image in the Surgeon view", "Rundes Bild in der Ansicht Chirurg");
+pub(in crate::console) const ROUND_HOVER: Text = Text::of(
+    "Shows the endoscope image as a disc with a dark rim",
+    "Das Endoskopbild ist eine Scheibe mit dunklem Rand",
+);
 pub(in crate::console) const FRAME_WORLD: Text = Text::of("World", "Welt");
 pub(in crate::console) const ENDOSCOPE: Text = Text::of("Endoscope", "Endoskop");
 pub(in crate::console) const TROCAR: Text = Text::of("Trocar", "Trokar");
 pub(in crate::console) const TIP: Text = Text::of("Tip", "Spitze");
 pub(in crate::console) const LEAD: Text = Text::of("Drive by mouse (M)", "Maussteuerung (M)");
-pub(in crate::console) const LEAD_END: Text = Text::of("Let go (M)", "Loslassen (M)");
+pub(in crate::console) const LEAD_END: Text = Text::of("Stop driving (M)", "Steuerung beenden (M)");
 pub(in crate::console) const ARROW_MEASURED: Text = Text::of("Measured force", "Gemessene Kraft");
 pub(in crate::console) const ARROW_RENDERED: Text = Text::of("Rendered force", "Dargestellte Kraft");
 pub(in crate::console) const RESET_VIEW: Text = Text::of("Endoscope view", "Endoskopsicht");
@@ -64,7 +66,7 @@ pub(in crate::console) fn lead_hover(has_jaws: bool, is_bimanual: bool) -> Strin
 
 /// Name of the hand whose instrument is led.
 pub(in crate::console) fn led(side: &str) -> String {
-    told!("{side} (led)", "{side} (gesteuert)")
+    told!("{side} (driven)", "{side} (gesteuert)")
 }
 
 /// The view cannot be drawn.

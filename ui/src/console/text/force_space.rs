@@ -3,11 +3,11 @@
 use crate::language::{Text, told};
 
 pub(in crate::console) const HOVER: Text = Text::of(
-    "Measured and rendered force of the last six seconds in force space (N, world axes), one line each. \
-    The dot is the force now, or at the time under the pointer in a trace. The three rings are an \
-    ellipsoid around the force measured now; it contains 95 % of the errors (rendered minus measured) if \
-    they are normally distributed. The share that it really contains is written below. The dashed circle \
-    is the force ceiling. Drag to turn, double-click to reset.",
+    "Measured and rendered force of the last six seconds in force space (N, world axes), one line each. The dot \
+     is the force now, or at the time under the pointer in a trace. The three rings are an ellipsoid around the \
+     force measured now; it contains 95 % of the errors (rendered minus measured) if they are normally \
+     distributed. The percentage that it really contains is given below. The dashed circle is the force ceiling. \
+     Drag to turn, double-click to reset.",
     "Gemessene und dargestellte Kraft der letzten sechs Sekunden im Kraftraum (N, Weltachsen), je eine Linie. Der \
      Punkt ist die Kraft jetzt oder zur Zeit unter dem Zeiger in einem Verlauf. Die drei Ringe sind ein Ellipsoid um \
      die jetzt gemessene Kraft; es enthält 95 % der Fehler (dargestellt minus gemessen), falls sie normalverteilt \
@@ -23,7 +23,7 @@ pub(in crate::console) fn canvas(words: &str) -> String {
 /// The measured force is not known now; two lines, separated by a semicolon.
 pub(in crate::console) fn unknown(seconds: f64) -> String {
     told!(
-        "Last {seconds:.0} s; the measured force is unknown now",
+        "Last {seconds:.0} s; the measured force is currently unknown",
         "Letzte {seconds:.0} s; die gemessene Kraft ist jetzt unbekannt"
     )
 }

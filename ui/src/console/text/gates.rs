@@ -9,7 +9,7 @@ pub(in crate::console) const FREE_MOTION: Text = Text::of(
 pub(in crate::console) const NONE_DEVICE_MISSING: Text =
     Text::of("No force: a device is missing (see Devices)", "Keine Kraft: ein Gerät fehlt (siehe Geräte)");
 pub(in crate::console) const NONE_IDLE: Text =
-    Text::of("No force: the loop is idle, press Engage", "Keine Kraft: Regelung im Leerlauf, Koppeln drücken");
+    Text::of("No force: the loop is idle; press Engage", "Keine Kraft: Regelung im Leerlauf; Koppeln drücken");
 pub(in crate::console) const NONE_STARTING: Text =
     Text::of("No force: the loop has not started yet", "Keine Kraft: Regelung noch nicht gestartet");
 pub(in crate::console) const NONE_IDLE_THEN: Text =
@@ -41,7 +41,7 @@ pub(in crate::console) const LESS_ENERGY: Text = Text::of(
 );
 pub(in crate::console) const DEAD_BAND_OFF: Text = Text::of("off: force is kept", "aus: Kraft wird gehalten");
 pub(in crate::console) const LESS_GOVERNED: Text = Text::of(
-    "Reduced force: the handle runs away and no hand holds it. The force returns when a hand takes hold.",
+    "Reduced force: the handle is running away and no hand holds it. The force returns when a hand grips it.",
     "Weniger Kraft: das Handgerät läuft weg, keine Hand hält es. Die Kraft kehrt zurück, sobald eine Hand zugreift.",
 );
 pub(in crate::console) const GOVERNOR_OFF: Text = Text::of(
@@ -49,7 +49,7 @@ pub(in crate::console) const GOVERNOR_OFF: Text = Text::of(
     "aus: Handgerätemasse \
  unbekannt",
 );
-pub(in crate::console) const NEVER_ACTED: Text = Text::of("It has not acted so far", "Hat bisher nicht eingegriffen");
+pub(in crate::console) const NEVER_ACTED: Text = Text::of("Has not acted so far", "Hat bisher nicht eingegriffen");
 pub(in crate::console) const OPEN: Text = Text::of("open", "offen");
 pub(in crate::console) const CLOSED: Text = Text::of("closed", "geschlossen");
 pub(in crate::console) const LIMITING: Text = Text::of("limiting", "begrenzt");

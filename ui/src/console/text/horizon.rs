@@ -6,10 +6,10 @@ pub(in crate::console) const LAST_3_MIN: Text = Text::of("last 3 min", "letzte 3
 pub(in crate::console) const REFERENCE: Text = Text::of("reference", "Referenz");
 pub(in crate::console) const COMPARE: Text = Text::of("Compare all modes", "Alle Modi vergleichen");
 pub(in crate::console) const COMPARE_HOVER: Text = Text::of(
-    "Compute every mode on the same samples and show its error. Otherwise only the mode in use is computed, which \
-    takes less time. The force in the hand does not change.",
-    "Jeden Modus auf denselben Messwerten rechnen und seinen Fehler zeigen. Sonst wird nur der aktive Modus gerechnet, \
-     das braucht weniger Zeit. Die Kraft in der Hand ändert sich nicht.",
+    "Computes every mode on the same samples and shows its error. Otherwise only the mode in use is computed, \
+     which takes less time. The force in the hand does not change.",
+    "Berechnet jeden Modus auf denselben Messwerten und zeigt seinen Fehler. Sonst wird nur der aktive Modus \
+     berechnet, das braucht weniger Zeit. Die Kraft in der Hand ändert sich nicht.",
 );
 pub(in crate::console) const IN_USE: Text = Text::of(" (in use)", " (aktiv)");
 

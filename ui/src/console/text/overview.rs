@@ -4,18 +4,18 @@ use crate::language::{Text, told, word};
 
 pub(in crate::console) const TITLE: Text = Text::of("All calibrations", "Alle Kalibrierungen");
 pub(in crate::console) const MEANING: Text = Text::of(
-    "Of every arm: when each was made, its verdict, what has changed since then, and a button that makes it",
+    "For every arm: date, verdict and later changes of each calibration, and a button to calibrate",
     "Für jeden Arm: Datum, Urteil, Änderungen seither und eine Schaltfläche zum Kalibrieren",
 );
 pub(in crate::console) const OPEN: Text = Text::of("All calibrations…", "Alle Kalibrierungen…");
 pub(in crate::console) const CALIBRATION: Text = Text::of("Calibration", "Kalibrierung");
-pub(in crate::console) const MADE: Text = Text::of("Made", "Erstellt");
+pub(in crate::console) const MADE: Text = Text::of("Created", "Erstellt");
 pub(in crate::console) const VERDICT: Text = Text::of("Verdict", "Urteil");
 pub(in crate::console) const SINCE: Text = Text::of("Since then", "Seither");
 pub(in crate::console) const MAKE: Text = Text::of("Calibrate", "Kalibrieren");
-pub(in crate::console) const REDO: Text = Text::of("Redo", "Wiederholen");
+pub(in crate::console) const REDO: Text = Text::of("Recalibrate", "Neu kalibrieren");
 pub(in crate::console) const NEVER: Text = Text::of("not calibrated", "nicht kalibriert");
-pub(in crate::console) const NOT_WATCHED: Text = Text::of("not watched", "nicht überwacht");
+pub(in crate::console) const NOT_WATCHED: Text = Text::of("not monitored", "nicht überwacht");
 pub(in crate::console) const FOR_TRAINING_ONLY: Text = Text::of(
     "used for training only",
     "nur für das Training \
@@ -25,7 +25,7 @@ pub(in crate::console) const NOT_USED: Text =
     Text::of("used for less than 10 s since the start", "seit dem Start unter 10 s genutzt");
 pub(in crate::console) const IN_FILE: Text = Text::of("in the rig file", "in der Aufbaudatei");
 pub(in crate::console) const OTHER_IN_FILE: Text =
-    Text::of("the rig file has other values now", "die Aufbaudatei hat jetzt andere Werte");
+    Text::of("the rig file now has other values", "die Aufbaudatei hat jetzt andere Werte");
 pub(in crate::console) const UNCHECKED: Text = Text::of("trained but not checked", "trainiert, aber nicht geprüft");
 pub(in crate::console) const HANDLE: Text = Text::of("View, handle", "Bildlage, Handgerät");
 pub(in crate::console) const FUTURE: Text = Text::of("in the future", "in der Zukunft");
@@ -73,12 +73,12 @@ pub(in crate::console) fn verdict(verdict: &str, error: &str) -> String {
 
 /// A verdict that somebody has overridden.
 pub(in crate::console) fn overridden(verdict: &str, name: &str) -> String {
-    told!("{verdict}, kept by {name}", "{verdict}, übernommen von {name}")
+    told!("{verdict}, accepted by {name}", "{verdict}, übernommen von {name}")
 }
 
 /// What the last ready check has found.
 pub(in crate::console) fn checked(day: &str, found: &str) -> String {
-    told!("ready check of {day}: {found}", "Startprüfung vom {day}: {found}")
+    told!("ready check on {day}: {found}", "Startprüfung vom {day}: {found}")
 }
 
 /// How much of the time with force a network was outside its training data, as shares; what to do if that is much.
@@ -91,7 +91,7 @@ pub(in crate::console) fn in_use(outside: f64, without: f64) -> String {
     );
     let much = without >= 0.02 || outside >= 0.3;
     if much {
-        told!("{shares}: record more where you work", "{shares}: im Arbeitsbereich mehr aufzeichnen")
+        told!("{shares}: record more data where you work", "{shares}: im Arbeitsbereich mehr aufzeichnen")
     } else {
         shares
     }

@@ -14,12 +14,13 @@ pub(in crate::console) const WORK_HOVER: Text = Text::of(
 );
 pub(in crate::console) const SAMPLE_TO_FORCE: Text = Text::of("Sample to force", "Messung bis Kraft");
 pub(in crate::console) const SAMPLE_TO_FORCE_HOVER: Text = Text::of(
-    "Time from the arrival of the oldest measurement until the force computed from it is sent to the handle (µs)",
+    "Time from the arrival of the oldest measurement to the sending of the force computed from it to the handle \
+     (µs)",
     "Zeit vom Eintreffen des ältesten Messwerts, bis die daraus berechnete Kraft zum Handgerät geht (µs)",
 );
 pub(in crate::console) const TICKS: Text = Text::of("Ticks", "Takte");
 pub(in crate::console) const TICKS_HOVER: Text = Text::of(
-    "Ticks since the loop started, and how many per second reach this screen",
+    "Ticks since the loop started, and ticks per second that reach this screen",
     "Takte seit Start der Regelung und wie viele pro Sekunde diesen Bildschirm erreichen",
 );
 pub(in crate::console) const MISSED: Text = Text::of("Missed", "Versäumt");
@@ -41,15 +42,14 @@ pub(in crate::console) const SCHEDULING_HOVER: Text = Text::of(
 pub(in crate::console) const REAL_TIME_PRIORITY: Text = Text::of("Real-time priority", "Echtzeitpriorität");
 pub(in crate::console) const LOCKED_MEMORY: Text = Text::of("Locked memory", "Gesperrter Speicher");
 pub(in crate::console) const FRAME_HOVER: Text = Text::of(
-    "Time between two frames of this window since it opened (ms; target 31 ms, idle time not counted), \
-    and the work in the present frame",
+    "Time between two frames of this window since it opened (ms; target 31 ms, idle time not counted), and the \
+     work in the current frame",
     "Zeit zwischen zwei Bildern dieses Fensters seit dem Öffnen (ms; Ziel 31 ms, ohne Leerlauf) und die Arbeit am \
      aktuellen Bild",
 );
 pub(in crate::console) const FRAME_HOVER_ROUGH: Text = Text::of(
-    "Time between two frames of this window since it opened (ms; target 31 ms, idle time not counted), \
-    and the work in the present frame. Edges in 3-D are not smoothed, because this computer would draw \
-    too slowly.",
+    "Time between two frames of this window since it opened (ms; target 31 ms, idle time not counted), and the \
+     work in the current frame. Edges in 3-D are not smoothed, because this computer would draw too slowly.",
     "Zeit zwischen zwei Bildern dieses Fensters seit dem Öffnen (ms; Ziel 31 ms, ohne Leerlauf) und die Arbeit am \
      aktuellen Bild. Kanten in 3-D sind nicht geglättet, weil dieser Rechner sonst zu langsam zeichnet.",
 );

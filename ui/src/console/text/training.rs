@@ -5,11 +5,7 @@ use crate::language::{Text, told, word};
 /// While lumps are looked for: how many places were marked, and the keys while the instrument is led.
 pub(in crate::console) fn lumps_marked(marked: u32, is_led: bool) -> String {
     let keys = if is_led {
-        word(
-            " (X marks, D ends the trial, N begins it anew)",
-            " (X markiert, D beendet den Versuch, N beginnt ihn \
-         neu)",
-        )
+        word(" (X marks, D ends the trial, N restarts it)", " (X markiert, D beendet den Versuch, N startet ihn neu)")
     } else {
         ""
     };
@@ -26,12 +22,12 @@ pub(in crate::console) fn lumps_found(found: u32, lumps: u32, mark_false: u32) -
 
 /// On the wire.
 pub(in crate::console) fn wire(touches: u32, share: f64, ended: bool, is_led: bool) -> String {
-    let keys = if is_led { word(" (N begins the trial anew)", " (N beginnt den Versuch neu)") } else { "" };
+    let keys = if is_led { word(" (N restarts the trial)", " (N startet den Versuch neu)") } else { "" };
     if ended {
         return told!("Goal reached, touches: {touches}{keys}", "Ziel erreicht, Berührungen: {touches}{keys}");
     }
     told!(
-        "Way to the goal: {:.0} %, touches: {touches}{keys}",
+        "Path to the goal: {:.0} %, touches: {touches}{keys}",
         "Weg zum Ziel: {:.0} %, Berührungen: {touches}{keys}",
         100.0 * share
     )
@@ -59,6 +55,7 @@ pub(in crate::console) fn rings(led: Option<&str>, [passed, placed, dropped]: [u
 }
 
 pub(in crate::console) const CHOOSE_MATCHED: Text = Text::of(
-    "Two hands on one ring need the mode Matched: with this one the loop ends in a fault",
-    "Zwei Hände an einem Ring brauchen den Modus Abgeglichen: mit diesem endet die Regelung in einer Störung",
+    "Two hands on one ring require the mode Matched: in the current mode the loop ends in a fault",
+    "Zwei Hände an einem Ring erfordern den Modus Abgeglichen: im aktuellen Modus endet die Regelung in einer \
+     Störung",
 );

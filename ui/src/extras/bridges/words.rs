@@ -10,10 +10,11 @@ pub(super) fn trouble_of(state: LoopState) -> String {
     match state {
         State::Faulted(fault) => format!("{}. {}", fault.cause(), fault.cure()),
         State::Stopped => {
-            word("Stopped. Release the stop, then engage again", "Angehalten. Halt lösen, dann neu koppeln").to_owned()
+            word("Stopped. Press Release stop, then engage again", "Angehalten. Halt lösen, dann neu koppeln")
+                .to_owned()
         }
         State::Disconnected => word(
-            "A device is missing or sends nothing. See Devices",
+            "A device is missing or sends no data. See Devices",
             "Ein Gerät fehlt oder sendet nichts. Siehe Geräte",
         )
         .to_owned(),

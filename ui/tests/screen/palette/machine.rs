@@ -22,12 +22,12 @@ fn stop_release_engage_and_the_traces() {
         &mut console,
         Action::Pause,
         |console| {
-            if shows(console, "Go on") {
-                press(console, "Go on");
+            if shows(console, "Resume") {
+                press(console, "Resume");
             }
         },
         |console| press(console, "Pause"),
-        |console| format!("{}", shows(console, "Go on")),
+        |console| format!("{}", shows(console, "Resume")),
     ));
     let traces = |console: &mut Console| format!("{:?}", console.state().traces_s());
     let zoom = |console: &mut Console| console.state_mut().show_traces(30.0);
@@ -44,7 +44,7 @@ fn stop_release_engage_and_the_traces() {
         write_into(&mut console, FIELD, &entry(action).title);
         console.key_press(Key::Enter);
         console.run_steps(30);
-        assert!(is_open(&console) && shows(&console, "Press Enter once more"), "{action:?}");
+        assert!(is_open(&console) && shows(&console, "Press Enter or click again"), "{action:?}");
         assert_ne!(console.state().tick().unwrap().state, state, "one Enter does nothing");
         close(&mut console);
         choose(&mut console, action);

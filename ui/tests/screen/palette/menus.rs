@@ -81,7 +81,7 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
         done.push(alike(&mut console, Action::Panel(panel), reset, other, seen));
     }
     let reset = set(|settings| settings.layout = Layout { closed: vec![Panel::Link], ..Layout::default() });
-    done.push(alike(&mut console, Action::ResetLayout, reset, of_menu(Kind::Button, "Reset the layout"), settings));
+    done.push(alike(&mut console, Action::ResetLayout, reset, of_menu(Kind::Button, "Reset layout"), settings));
     for action in [Action::Sound, Action::ForcesOfNow, Action::RecordsPicture] {
         done.push(alike(&mut console, action, set(|_| {}), of_menu(Kind::CheckBox, &entry(action).title), settings));
     }
@@ -134,7 +134,7 @@ fn what_the_top_bar_opens_and_what_is_undone() {
             }
         }
         if shows(console, "Three views of one loop") {
-            pick(console, "Skip the tour");
+            pick(console, "Skip tour");
         }
         // The key of a view closes the pages.
         console.key_press(Key::F2);

@@ -202,7 +202,7 @@ fn a_recorded_stream_says_which_program_shows_it() {
     settled(&mut past, 2.0);
     shown(&mut past);
     let words = drawn(&mut past);
-    assert!(words.contains("Picture is damaged") && words.contains("built without H.264"), "{words}");
+    assert!(words.contains("Image is damaged") && words.contains("built without H.264"), "{words}");
 }
 
 #[test]
@@ -231,7 +231,7 @@ fn the_words_over_a_recorded_picture_are_those_of_its_moment() {
     let live = words(&mut past, 3.0);
     assert!(live.contains("Recorded picture, ") && live.contains(" ms old then"), "{live}");
     let frozen = words(&mut past, 4.8);
-    assert!(frozen.contains("Picture is frozen: nothing new for 0."), "{frozen}");
+    assert!(frozen.contains("Image is frozen: no new image for 0."), "{frozen}");
     let none = words(&mut past, 6.4);
     assert!(none.contains("No picture came in the two seconds before this moment"), "{none}");
 }

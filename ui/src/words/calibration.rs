@@ -1,4 +1,4 @@
-//! Texts about calibrations: verdicts, missing data, and whether a saved calibration still holds.
+//! Texts about calibrations: verdicts, missing data, and the validity of a saved calibration.
 
 use nima_core::calibration::{
     Verdict,
@@ -61,7 +61,6 @@ impl Words for Lack {
     }
 }
 
-/// Why a push was not recorded, and what to do.
 pub(crate) fn refusal(refusal: &Refusal) -> String {
     match refusal {
         Refusal::TooShort => word(
@@ -84,7 +83,6 @@ pub(crate) fn refusal(refusal: &Refusal) -> String {
     }
 }
 
-/// Whether a saved gravity calibration still holds, and what to do.
 pub(crate) fn drift(drift: Drift) -> String {
     match drift {
         Drift::Waiting => {

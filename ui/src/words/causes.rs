@@ -1,4 +1,4 @@
-//! Texts about the ready check: why a point failed, and what to do.
+//! Texts about the ready check: causes and remedies of failed points.
 
 use nima_core::{calibration::gravity::NotChecked, kinematics::START_MISS_M};
 use nima_machine::{
@@ -17,7 +17,7 @@ use super::{
 };
 use crate::language::{Text, told, word};
 
-/// Cause and cure of a point that failed, on a rig with these devices.
+/// Cause and remedy of a failed point.
 pub(crate) fn cause_words(cause: &Cause, roster: &Roster) -> [String; 2] {
     let words: [Text; 2] = match *cause {
         Cause::Missing { place } => return missing(place, roster),
@@ -113,7 +113,6 @@ const NO_BITE_LINK: [Text; 2] = [
     Text::of("Do not engage; restart the console", "Nicht koppeln; Konsole neu starten"),
 ];
 
-/// Another fault than the one that was to come.
 fn other_fault(fault: Fault) -> [String; 2] {
     [
         told!("A different fault was raised: {}", "Eine andere Störung trat auf: {}", fault.cause()),
@@ -121,7 +120,6 @@ fn other_fault(fault: Fault) -> [String; 2] {
     ]
 }
 
-/// The loop did not do what the check asked for.
 fn refused(why: Refusal) -> [String; 2] {
     [
         told!("The loop refused the test: {}", "Die Regelung lehnte den Test ab: {}", refused_because(why)),
@@ -129,7 +127,6 @@ fn refused(why: Refusal) -> [String; 2] {
     ]
 }
 
-/// Too many periods were missed.
 fn missed(share: f64) -> [String; 2] {
     with(
         told!("{:.1} % of the periods were missed", "{:.1} % der Takte wurden versäumt", 100.0 * share),
@@ -137,7 +134,6 @@ fn missed(share: f64) -> [String; 2] {
     )
 }
 
-/// Two clocks do not agree.
 fn clocks_apart(by_s: f64) -> [String; 2] {
     with(
         told!(
@@ -148,7 +144,6 @@ fn clocks_apart(by_s: f64) -> [String; 2] {
     )
 }
 
-/// The sensor reads a force where there is none.
 fn bias_moved(by_n: f64, limit_n: f64) -> [String; 2] {
     with(
         told!(
@@ -162,7 +157,6 @@ fn bias_moved(by_n: f64, limit_n: f64) -> [String; 2] {
     )
 }
 
-/// A force at a time without force.
 fn unwanted_force(force_n: f64) -> [String; 2] {
     with(
         told!(
@@ -176,7 +170,6 @@ fn unwanted_force(force_n: f64) -> [String; 2] {
     )
 }
 
-/// The loop and the rig file differ.
 fn other_ceiling(in_force_n: f64, in_file_n: f64) -> [String; 2] {
     with(
         told!(
@@ -187,7 +180,6 @@ fn other_ceiling(in_force_n: f64, in_file_n: f64) -> [String; 2] {
     )
 }
 
-/// One arm went on.
 fn half_stop(side: Side) -> [String; 2] {
     with(
         told!(
@@ -199,7 +191,6 @@ fn half_stop(side: Side) -> [String; 2] {
     )
 }
 
-/// A watchdog took too long.
 fn late(after_s: f64) -> [String; 2] {
     with(
         told!("The fault was raised after {after_s:.2} s, too late", "Die Störung kam nach {after_s:.2} s, zu spät"),
@@ -207,7 +198,6 @@ fn late(after_s: f64) -> [String; 2] {
     )
 }
 
-/// Somebody engaged an arm.
 fn engaged(side: Side) -> [String; 2] {
     with(
         told!("The {} arm was engaged during the check", "Arm {} wurde während der Prüfung gekoppelt", side_word(side)),

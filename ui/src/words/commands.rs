@@ -1,4 +1,4 @@
-//! Sentences for what is done to the loop: commands of the operator, devices, calibrations.
+//! Sentences for the operations of a session: operator commands, devices, calibrations.
 
 use nima_core::impedance::Mode;
 use nima_machine::{
@@ -12,7 +12,7 @@ use super::modes::mode_name;
 use super::side_word;
 use crate::language::{told, word};
 
-/// What was done to the loop; `devices` as for an [`event`](super::event).
+/// `devices` as for an [`event`](super::event).
 pub(crate) fn operation(operation: &Operation, devices: &[DeviceName]) -> String {
     match *operation {
         Operation::Command { command: of, .. } => told!("command: {}", "Befehl: {}", command(of)),
@@ -35,7 +35,6 @@ pub(crate) fn operation(operation: &Operation, devices: &[DeviceName]) -> String
     }
 }
 
-/// What the operator asked for.
 pub(crate) fn command(command: Command) -> String {
     match command {
         Command::SetMode(mode) => told!("mode {}", "Modus {}", name_of(mode)),

@@ -1,4 +1,4 @@
-//! Texts: the cause of each fault, and what the operator can do.
+//! Causes and remedies of faults.
 
 use nima_core::safety::Implausible;
 use nima_devices::Loss;
@@ -7,7 +7,6 @@ use nima_machine::messages::{FarStop, Fault, ForceSource};
 use super::Remedy;
 use crate::language::word;
 
-/// Why the force at the tip is unknown.
 fn unknown_because(source: ForceSource) -> &'static str {
     match source {
         ForceSource::Uncalibrated => word(

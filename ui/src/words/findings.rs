@@ -1,4 +1,4 @@
-//! Texts: what the test of a device finds.
+//! Causes and remedies of the problems that a device test finds.
 
 use nima_machine::rig::{PartKind, checkup::Finding};
 
@@ -9,7 +9,6 @@ use super::{
 };
 use crate::language::{Text, told, word};
 
-/// Cause and cure.
 pub(crate) fn finding_words(kind: PartKind, finding: &Finding) -> [String; 2] {
     let with_unit = |channel: usize, value: f64| {
         let (_, unit, scale) = channel_group(kind, channel).unwrap_or_default();
@@ -59,7 +58,6 @@ const FROZEN: [Text; 2] = [
     ),
 ];
 
-/// Too slow or too fast.
 fn wrong_rate(hz: f64, nominal_hz: f64) -> [String; 2] {
     let cure = if hz < nominal_hz {
         word(
@@ -81,7 +79,6 @@ fn wrong_rate(hz: f64, nominal_hz: f64) -> [String; 2] {
     ]
 }
 
-/// Missing readings.
 fn lost(count: u64) -> [String; 2] {
     [
         told!("{count} readings never arrived", "{count} Messwerte kamen nie an"),
@@ -93,7 +90,6 @@ fn lost(count: u64) -> [String; 2] {
     ]
 }
 
-/// Damaged frames.
 fn damaged(count: u64) -> [String; 2] {
     [
         if count == 1 {
@@ -109,7 +105,6 @@ fn damaged(count: u64) -> [String; 2] {
     ]
 }
 
-/// Refused readings.
 fn refused(count: u64) -> [String; 2] {
     [
         told!(
@@ -124,7 +119,6 @@ fn refused(count: u64) -> [String; 2] {
     ]
 }
 
-/// Late readings.
 fn late(kind: PartKind, p99_s: f64, most_s: f64) -> [String; 2] {
     let cure = match kind {
         PartKind::Sensor | PartKind::Servos | PartKind::Tracker => word(
@@ -149,7 +143,6 @@ fn late(kind: PartKind, p99_s: f64, most_s: f64) -> [String; 2] {
     ]
 }
 
-/// It did not rest.
 fn moved(kind: PartKind, channel: usize) -> [String; 2] {
     [
         told!(
@@ -161,7 +154,7 @@ fn moved(kind: PartKind, channel: usize) -> [String; 2] {
     ]
 }
 
-/// Too much noise; both with their unit.
+/// Both values have their unit.
 fn noisy(kind: PartKind, channel: usize, is: &str, most: &str) -> [String; 2] {
     let cure = match kind {
         PartKind::Sensor => word(
@@ -187,7 +180,6 @@ fn noisy(kind: PartKind, channel: usize, is: &str, most: &str) -> [String; 2] {
     ]
 }
 
-/// No gravity.
 fn gravity(size_m_s2: f64) -> [String; 2] {
     [
         told!(
@@ -203,7 +195,7 @@ fn gravity(size_m_s2: f64) -> [String; 2] {
     ]
 }
 
-/// Near the end of a range; both with their unit.
+/// Both values have their unit.
 fn at_the_end(kind: PartKind, channel: usize, is: &str, range: &str) -> [String; 2] {
     let cure = match kind {
         PartKind::Servos => word(
@@ -222,7 +214,6 @@ fn at_the_end(kind: PartKind, channel: usize, is: &str, range: &str) -> [String;
     ]
 }
 
-/// A marker that is not seen.
 fn hidden(tool: usize, share: f64) -> [String; 2] {
     let seen = if share <= 0.0 {
         word("never", "nie").to_owned()

@@ -1,4 +1,4 @@
-//! Texts: the source of the force at the tip, and why a gate reduced it.
+//! Texts: source of the tip force, and the reason why a gate reduced it.
 
 use nima_core::{
     safety::Reason,
@@ -110,7 +110,7 @@ impl Words for ForceSource {
     }
 }
 
-/// What the operator can do about a force that is unknown for this reason, a clause without a full stop.
+/// Remedy for a tip force that is unknown, a clause without a full stop.
 pub(super) fn cure_of_unknown(source: ForceSource) -> &'static str {
     match source {
         ForceSource::Uncalibrated => word(

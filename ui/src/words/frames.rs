@@ -1,4 +1,4 @@
-//! Texts about the frame calibrations: why a result got its verdict and what to do, what is missing, and what a session sees.
+//! Texts about the frame calibrations: reasons for verdicts with remedies, missing data, and phases of a session.
 
 use nima_core::calibration::frames::{Cause, Missing, Mistake, Move, Phase, SignedAxes, SignedAxis, Source};
 
@@ -72,7 +72,7 @@ impl Words for Move {
     }
 }
 
-/// Why a result got its verdict, and what to do.
+/// Reason for a verdict, with the remedy.
 pub(crate) fn cause(cause: &Cause) -> String {
     match cause {
         Cause::Proven => word("accurate on held-out data", "genau auf Testdaten").to_owned(),
@@ -220,7 +220,7 @@ pub(crate) fn axes_words(SignedAxes(axes): SignedAxes) -> String {
     axes.map(word).join(", ")
 }
 
-/// What the session sees now, with the share of the time that a pose has been held.
+/// Text of the phase, with the fraction (0 to 1) of the required holding time.
 pub(crate) fn phase(phase: &Phase) -> (f64, String) {
     match phase {
         Phase::Missing(Some(source)) => (0.0, source.words().to_owned()),

@@ -4,7 +4,6 @@ use nima_core::safety::Gate;
 
 use crate::language::word;
 
-/// Name and meaning of a gate.
 pub(crate) fn gate_words(gate: Gate) -> [&'static str; 2] {
     match gate {
         Gate::Permission => [

@@ -1,11 +1,11 @@
-//! What happens to the objects of a scene, in words. People count rings and pegs from 1, data from 0.
+//! Events of the objects of a scene. Texts count rings and pegs from 1, data from 0.
 
 use nima_core::task::Event;
 
 use super::names::side_word;
 use crate::language::{told, word};
 
-/// What happened. An event without a sentence of its own is told by its name and its values.
+/// An event without its own sentence is described by its name and values.
 pub(crate) fn happening(event: &Event) -> String {
     let number = |count: usize| count.saturating_add(1);
     match *event {

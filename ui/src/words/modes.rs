@@ -14,7 +14,7 @@ pub(crate) fn mode_meaning(mode: Mode) -> &'static str {
     words(mode)[1]
 }
 
-/// Name and explanation. The methods of others are on the screen where the rig file names one.
+/// Name and explanation. Methods of other authors appear on the screen only if the rig file names one.
 fn words(mode: Mode) -> [&'static str; 2] {
     match mode {
         Mode::Literal => [
@@ -80,7 +80,6 @@ fn words(mode: Mode) -> [&'static str; 2] {
     }
 }
 
-/// The same of a method of others.
 fn of_baseline(baseline: Baseline) -> [&'static str; 2] {
     match baseline {
         Baseline::ModelMediated => [

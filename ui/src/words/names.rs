@@ -1,4 +1,4 @@
-//! Texts: names and short clauses of the libraries that stand within other texts.
+//! Names and short clauses that are used within other texts.
 
 use nima_core::tip_force::GoalKind;
 use nima_devices::Loss;
@@ -9,7 +9,7 @@ use nima_machine::{
 
 use crate::language::{Language, current, told, word};
 
-/// A side as it stands within a sentence: before the noun in English, after it in German.
+/// Side within a sentence: before the noun in English, after it in German.
 pub(crate) fn side_word(side: Side) -> &'static str {
     match side {
         Side::Right => word("right", "rechts"),
@@ -17,7 +17,6 @@ pub(crate) fn side_word(side: Side) -> &'static str {
     }
 }
 
-/// A state of the loop.
 pub(crate) fn state_name(state: LoopState) -> &'static str {
     match state {
         LoopState::Disconnected => word("No device", "Kein Gerät"),
@@ -30,18 +29,17 @@ pub(crate) fn state_name(state: LoopState) -> &'static str {
     }
 }
 
-/// A name as it stands within a sentence: a German noun keeps its capital.
+/// Name within a sentence: lower case in English; a German noun keeps its capital.
 pub(crate) fn within(name: &str) -> String {
     if current() == Language::German { name.to_owned() } else { name.to_lowercase() }
 }
 
-/// A device by its role and make: `right handle (Haply)`.
+/// Device with its role and model: `right handle (Haply)`.
 pub(crate) fn device_name(name: DeviceName) -> String {
     let DeviceName { role, make } = name;
     role_name(role) + &make.map_or_else(String::new, |make| format!(" ({make})"))
 }
 
-/// What a device is in its rig.
 pub(crate) fn role_name(role: DeviceRole) -> String {
     match role {
         DeviceRole::Part(part) => part_name(part),
@@ -49,7 +47,6 @@ pub(crate) fn role_name(role: DeviceRole) -> String {
     }
 }
 
-/// A part of the rig.
 pub(crate) fn part_name(part: Part) -> String {
     match part {
         Part::Handle(side) => told!("{} handle", "Handgerät {}", side_word(side)),
@@ -62,7 +59,6 @@ pub(crate) fn part_name(part: Part) -> String {
     }
 }
 
-/// Why a device was lost.
 pub(crate) fn loss_words(loss: Loss) -> &'static str {
     match loss {
         Loss::Disconnected => word("the connection is gone", "Verbindung getrennt"),
@@ -73,7 +69,7 @@ pub(crate) fn loss_words(loss: Loss) -> &'static str {
     }
 }
 
-/// What is exchanged, a clause without a full stop.
+/// Swapped parts, a clause without a full stop.
 pub(crate) fn exchange_words(exchange: Exchange) -> &'static str {
     match exchange {
         Exchange::Handles => {
@@ -101,7 +97,7 @@ pub(crate) fn exchange_words(exchange: Exchange) -> &'static str {
     }
 }
 
-/// Why an arm cannot be engaged, a clause without a full stop. Where it stands in its workspace is told by the kinematics, in English.
+/// Reason why an arm cannot be engaged, a clause without a full stop. The reason from the kinematics is English in every language.
 pub(crate) fn obstacle_words(obstacle: &Obstacle) -> String {
     match obstacle {
         Obstacle::Start(start) => start.to_string(),
@@ -122,7 +118,7 @@ pub(crate) fn obstacle_words(obstacle: &Obstacle) -> String {
     }
 }
 
-/// What a loop lacks for real time, and what to do.
+/// Real-time property that the loop lacks, and the remedy.
 pub(crate) fn lack_words(lack: Lack) -> [&'static str; 2] {
     match lack {
         Lack::Priority => [
@@ -150,13 +146,12 @@ pub(crate) fn lack_words(lack: Lack) -> [&'static str; 2] {
     }
 }
 
-/// The same in one clause.
 pub(crate) fn scheduling_words(scheduling: Scheduling) -> Option<String> {
     let [cause, cure] = lack_words(scheduling.lack()?);
     Some(format!("{cause}: {cure}"))
 }
 
-/// A goal of a tip-force recording by its name, and what to do until it is met.
+/// Name of a goal of a tip-force recording, and the advice until it is met.
 pub(crate) fn goal_words(what: GoalKind) -> [&'static str; 2] {
     match what {
         GoalKind::Tilt => [

@@ -1,4 +1,4 @@
-//! Texts about the ready check: its points, and what they ask of a person.
+//! Texts about the ready check: its points, and their instructions to the person at the arm.
 
 use nima_machine::{
     messages::Watchdog,
@@ -9,7 +9,6 @@ use nima_machine::{
 use super::{Words as _, side_word};
 use crate::language::{told, word};
 
-/// Name of a point.
 pub(crate) fn check_name(check: Check) -> String {
     let of_arm = |side: Side, words: &str| told!("{} arm: {words}", "{}: {words}", capital(side_word(side)));
     match check {
@@ -34,7 +33,7 @@ pub(super) fn capital(word: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// What a person is to do; empty if nothing.
+/// Instruction to the person; empty if there is none.
 pub(crate) fn ask_words(ask: &Ask) -> String {
     match ask {
         Ask::Nothing => String::new(),
@@ -84,7 +83,7 @@ pub(crate) fn ask_words(ask: &Ask) -> String {
     }
 }
 
-/// The workspace's axis that is nearest to a direction.
+/// Workspace axis nearest to a direction.
 fn way(direction: &nalgebra::Vector3<f64>) -> &'static str {
     let axis = direction.iamax();
     match (axis, direction[axis] < 0.0) {
@@ -97,7 +96,7 @@ fn way(direction: &nalgebra::Vector3<f64>) -> &'static str {
     }
 }
 
-/// Symbol of a unit; empty for a number of things.
+/// Symbol of a unit; empty for a count.
 pub(crate) fn unit(unit: Unit) -> &'static str {
     match unit {
         Unit::Count => "",
@@ -109,7 +108,6 @@ pub(crate) fn unit(unit: Unit) -> &'static str {
     }
 }
 
-/// What was measured, and its limit.
 pub(crate) fn figure_words(figure: &Figure) -> String {
     let Figure { value, limit, unit: of } = figure;
     match of {
@@ -122,7 +120,6 @@ pub(crate) fn figure_words(figure: &Figure) -> String {
     }
 }
 
-/// Why a point is left out.
 pub(crate) fn lacks_words(lacks: Lacks) -> &'static str {
     match lacks {
         Lacks::Devices => word(
@@ -139,7 +136,6 @@ pub(crate) fn lacks_words(lacks: Lacks) -> &'static str {
     }
 }
 
-/// A cause with its cure.
 pub(super) fn with(cause: String, cure: &str) -> [String; 2] {
     [cause, cure.to_owned()]
 }

@@ -1,4 +1,4 @@
-//! Texts: why a command was refused, and what the operator can do.
+//! Reasons and remedies of refused commands.
 
 use nima_machine::{
     messages::{Fault, LoopState, Refusal},
@@ -8,7 +8,7 @@ use nima_machine::{
 use super::{Remedy as _, Words as _, exchange_words, force::cure_of_unknown, obstacle_words};
 use crate::language::{told, word};
 
-/// The reason, a clause without a full stop.
+/// Reason, a clause without a full stop.
 pub(crate) fn refused_because(why: Refusal) -> String {
     match why {
         Refusal::State(state) => in_state(state).to_owned(),
@@ -63,7 +63,7 @@ pub(crate) fn refused_because(why: Refusal) -> String {
     }
 }
 
-/// What the operator can do, a clause without a full stop.
+/// Remedy, a clause without a full stop.
 pub(crate) fn cure_of_refusal(why: Refusal) -> &'static str {
     match why {
         Refusal::State(LoopState::Stopped) => word("press Release stop first", "erst Halt lösen drücken"),
@@ -149,7 +149,7 @@ mod tests {
 
     use super::*;
 
-    /// The refusals whose words depend on nothing else.
+    /// Refusals whose text depends on nothing else.
     const REFUSALS: [Refusal; 15] = [
         Refusal::ForceUnknown(ForceSource::Uncalibrated),
         Refusal::ForceUnknown(ForceSource::NoOrientation),

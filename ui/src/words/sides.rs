@@ -1,4 +1,4 @@
-//! Texts: what the ready check finds when the instrument or the handle of one side is moved or pushed.
+//! Texts about the points of the ready check that move or push the instrument or the handle of one side.
 
 use nima_machine::rig::Exchange;
 
@@ -8,7 +8,6 @@ use super::{
 };
 use crate::language::{told, word};
 
-/// Right and left are exchanged: what, and what to do.
 pub(super) fn exchanged(exchange: Exchange) -> [String; 2] {
     let cure = match exchange {
         Exchange::Handles => word(
@@ -43,7 +42,6 @@ pub(super) fn exchanged(exchange: Exchange) -> [String; 2] {
     with(capital(exchange_words(exchange)), cure)
 }
 
-/// The arm was not moved, or the other one was too.
 pub(super) fn arm_stuck(by_m: f64) -> [String; 2] {
     with(
         told!(
@@ -59,7 +57,6 @@ pub(super) fn arm_stuck(by_m: f64) -> [String; 2] {
     )
 }
 
-/// The marker did not move with its arm, or the other one did too.
 pub(super) fn marker_stuck(by_m: f64) -> [String; 2] {
     with(
         told!(
@@ -76,7 +73,6 @@ pub(super) fn marker_stuck(by_m: f64) -> [String; 2] {
     )
 }
 
-/// No push was felt.
 pub(super) fn no_push(most_n: f64) -> [String; 2] {
     with(
         told!(
@@ -90,7 +86,6 @@ pub(super) fn no_push(most_n: f64) -> [String; 2] {
     )
 }
 
-/// The handle moved by itself.
 pub(super) fn handle_pulls(by_m: f64) -> [String; 2] {
     with(
         told!(
@@ -105,7 +100,6 @@ pub(super) fn handle_pulls(by_m: f64) -> [String; 2] {
     )
 }
 
-/// The handle was not moved.
 pub(super) fn handle_stuck(by_m: f64) -> [String; 2] {
     with(
         told!("The handle moved only {:.1} mm", "Das Handgerät bewegte sich nur um {:.1} mm", 1e3 * by_m),
@@ -116,7 +110,6 @@ pub(super) fn handle_stuck(by_m: f64) -> [String; 2] {
     )
 }
 
-/// The handle went another way than asked for.
 pub(super) fn handle_askew(by_deg: f64) -> [String; 2] {
     with(
         told!(
@@ -132,7 +125,6 @@ pub(super) fn handle_askew(by_deg: f64) -> [String; 2] {
     )
 }
 
-/// The trocar is not where it was.
 pub(super) fn trocar_moved(by_m: f64) -> [String; 2] {
     with(
         told!(

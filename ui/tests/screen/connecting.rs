@@ -102,7 +102,7 @@ fn another_handle_is_chosen_by_its_serial_number_and_sensors_are_exchanged_by_on
         let was = file.rig().unwrap().devices.unwrap();
         assert_eq!(serials(harness.state().rig()), [Some(4711), Some(4712)]);
         press(&mut harness, "Choose right handle");
-        let other = harness.get_by_label_contains("serial number 4712, firmware 3.2: now the left handle");
+        let other = harness.get_by_label_contains("serial number 4712, firmware 3.2: currently the left handle");
         other.click();
         harness.step();
         wait(&mut harness, "exchanged handles", |harness| serials(harness.state().rig()) == [Some(4712), Some(4711)]);

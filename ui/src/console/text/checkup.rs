@@ -1,4 +1,4 @@
-//! The test of a device: figures.
+//! Measurements of the device test.
 
 use crate::language::{Text, told};
 
@@ -37,17 +37,14 @@ pub(in crate::console) const UP_HOVER: Text = Text::of(
 );
 pub(in crate::console) const NO_AGE: Text = Text::of("no reading yet", "noch kein Messwert");
 
-/// Noise of some numbers of a reading.
 pub(in crate::console) fn noise_of(name: &str) -> String {
     told!("Noise of {name}", "Rauschen: {name}")
 }
 
-/// Range of some numbers of a reading.
 pub(in crate::console) fn span_of(name: &str) -> String {
     told!("Range of {name}", "Bereich: {name}")
 }
 
-/// Rate against the nominal one.
 pub(in crate::console) fn rate(hz: f64, nominal_hz: Option<f64>) -> String {
     match nominal_hz {
         Some(nominal_hz) => told!("{hz:.0} of {nominal_hz:.0} Hz", "{hz:.0} von {nominal_hz:.0} Hz"),
@@ -55,17 +52,15 @@ pub(in crate::console) fn rate(hz: f64, nominal_hz: Option<f64>) -> String {
     }
 }
 
-/// Ages, s.
+/// Median and 99th percentile of the ages, s.
 pub(in crate::console) fn age([p50_s, p99_s]: [f64; 2]) -> String {
     told!("p50 {:.0} ms, p99 {:.0} ms", "p50 {:.0} ms, p99 {:.0} ms", p50_s * 1e3, p99_s * 1e3)
 }
 
-/// Losses.
 pub(in crate::console) fn losses(lost: u64, damaged: u64, refused: u64) -> String {
     format!("{lost}, {damaged}, {refused}")
 }
 
-/// Upwards, as an axis, and the size of gravity.
 pub(in crate::console) fn up(axis: &str, off_deg: f64, size_m_s2: f64) -> String {
     told!(
         "{axis}, {off_deg:.0}\u{b0} off; {size_m_s2:.2} m/s\u{b2}",
@@ -73,7 +68,6 @@ pub(in crate::console) fn up(axis: &str, off_deg: f64, size_m_s2: f64) -> String
     )
 }
 
-/// Reached share of a range.
 pub(in crate::console) fn share(percent: f64) -> String {
     told!("{percent:.0} % of its range", "{percent:.0} % des Bereichs")
 }

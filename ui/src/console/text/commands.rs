@@ -1,4 +1,4 @@
-//! Names of the commands, what each does, where it is, and why it may not be possible now.
+//! Commands: names, effects, places on the screen, and reasons why a command is not available.
 
 use crate::language::{Text, told};
 
@@ -167,7 +167,7 @@ pub(in crate::console) const ON: Text = Text::of("Forward 1 s", "1 s vor");
 pub(in crate::console) const BACK_FINE: Text = Text::of("Back 10 ms", "10 ms zurück");
 pub(in crate::console) const ON_FINE: Text = Text::of("Forward 10 ms", "10 ms vor");
 
-/// Where the commands are.
+/// Places of the commands.
 pub(in crate::console) const AT_BAR: Text = Text::of("Top bar", "Kopfleiste");
 pub(in crate::console) const AT_VIEW_MENU: Text = Text::of("View menu", "Menü Ansicht");
 pub(in crate::console) const AT_ALARMS: Text = Text::of("Alarm strip", "Alarmleiste");
@@ -178,7 +178,7 @@ pub(in crate::console) const AT_PICTURE: Text = Text::of("Endoscope image", "End
 pub(in crate::console) const AT_PAST: Text = Text::of("Recorded session", "Aufgezeichnete Sitzung");
 pub(in crate::console) const AT_KEYS: Text = Text::of("Keyboard", "Tastatur");
 
-/// Why a command is not possible now.
+/// Reasons why a command is not available.
 pub(in crate::console) const IS_ENGAGED: Text =
     Text::of("The loop is engaged, or about to be", "Regelung gekoppelt oder kurz davor");
 pub(in crate::console) const RELEASE_FIRST: Text = Text::of("Press Release stop first", "Zuerst Halt lösen drücken");
@@ -210,7 +210,7 @@ pub(in crate::console) const CTRL: Text = Text::of("Ctrl ", "Ctrl ");
 pub(in crate::console) const SHIFT: Text = Text::of("Shift ", "Shift ");
 pub(in crate::console) const CTRL_SHIFT: Text = Text::of("Ctrl Shift ", "Ctrl Shift ");
 
-/// The palette.
+/// Command palette.
 pub(in crate::console) const SEARCH: Text = Text::of("Find a command", "Befehl suchen");
 pub(in crate::console) const NONE_FOUND: Text =
     Text::of("No command of this name is available here", "Kein Befehl dieses Namens ist hier verfügbar");
@@ -221,7 +221,7 @@ pub(in crate::console) const FOOT: Text = Text::of(
     "Enter führt aus, Ctrl P schließt die Liste, Escape hält den Arm an",
 );
 
-/// What is done by hand and has no name.
+/// Mouse and keyboard actions that are not commands.
 pub(in crate::console) const BY_HAND: [(Text, Text); 6] = [
     (
         Text::of("Wheel", "Mausrad"),
@@ -255,37 +255,30 @@ pub(in crate::console) const BY_HAND: [(Text, Text); 6] = [
     ),
 ];
 
-/// Name of a view's command.
 pub(in crate::console) fn view(name: &str) -> String {
     told!("View: {name}", "Ansicht: {name}")
 }
 
-/// Name of a panel's command.
 pub(in crate::console) fn panel(name: &str) -> String {
     told!("Panel: {name}", "Panel: {name}")
 }
 
-/// Name of the command that chooses a language, by its name in itself.
 pub(in crate::console) fn language(name: &str) -> String {
     told!("Language: {name}", "Sprache: {name}")
 }
 
-/// Name of the command that sets the size.
 pub(in crate::console) fn size(percent: u16) -> String {
     told!("Size {percent} %", "Größe {percent} %")
 }
 
-/// A name with its keys, on a button.
 pub(in crate::console) fn with_keys(name: &str, keys: &str) -> String {
     format!("{name} ({keys})")
 }
 
-/// Hover text of a command.
 pub(in crate::console) fn hover(does: &str, place: &str) -> String {
     format!("{does}\n{place}")
 }
 
-/// In the list of keys.
 pub(in crate::console) fn key_meaning(name: &str, does: &str) -> String {
     format!("{name}: {does}")
 }

@@ -137,17 +137,14 @@ pub(in crate::console) const R2_OVERALL_HOVER: Text = Text::of(
     "Vom Fit erklärter Anteil der Varianz; der Artikel nennt 0.95",
 );
 
-/// Number of recorded pushes.
 pub(in crate::console) fn taken_of(count: usize, asked: usize) -> String {
     told!("{count} recorded, at least {asked} needed", "{count} aufgezeichnet, mindestens {asked} nötig")
 }
 
-/// Number of recorded pushes, as a figure.
 pub(in crate::console) fn pushes(count: usize) -> String {
     told!("{count} pushes", "{count}-mal gedrückt")
 }
 
-/// Readings of the sensors at rest.
 pub(in crate::console) fn at_rest(wrist_n: f64, tissue_n: f64) -> String {
     told!(
         "wrist {wrist_n:.2} N, tissue {tissue_n:.2} N; touch nothing; if a sensor stays above 0.3 N, set it to zero",
@@ -156,27 +153,22 @@ pub(in crate::console) fn at_rest(wrist_n: f64, tissue_n: f64) -> String {
     )
 }
 
-/// During a push: keep holding.
 pub(in crate::console) fn hold(force_n: f64) -> String {
     told!("{force_n:.1} N; hold still", "{force_n:.1} N; stillhalten")
 }
 
-/// During a push: it may end now.
 pub(in crate::console) fn let_go(force_n: f64) -> String {
     told!("{force_n:.1} N; enough, release", "{force_n:.1} N; genug, loslassen")
 }
 
-/// A push was recorded.
 pub(in crate::console) fn push_taken(number: usize) -> String {
     told!("push {number} recorded", "Druck {number} aufgezeichnet")
 }
 
-/// A push was not recorded.
 pub(in crate::console) fn not_taken(why: &str) -> String {
     told!("not recorded: {why}", "nicht aufgezeichnet: {why}")
 }
 
-/// Number of pushes used in the fit, and of those left out.
 pub(in crate::console) fn used(pairs: usize, left_out: usize, weak: usize) -> String {
     told!(
         "{pairs}; not used: {left_out} contradictory, {weak} too weak",
@@ -184,12 +176,10 @@ pub(in crate::console) fn used(pairs: usize, left_out: usize, weak: usize) -> St
     )
 }
 
-/// Names of the two frames.
 pub(in crate::console) fn rotation(name: &str) -> String {
     told!("Rotation {name}", "Drehung {name}")
 }
 
-/// Coefficient of determination over all axes.
 pub(in crate::console) fn agreement(fitted: f64, held_out: f64) -> String {
     told!("{fitted:.3} fitted, {held_out:.3} held out", "Fit {fitted:.3}, Test {held_out:.3}")
 }

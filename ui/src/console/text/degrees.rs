@@ -55,22 +55,18 @@ pub(in crate::console) const EXCITATION_HOVER: Text = Text::of(
 pub(in crate::console) const NOT_COMPUTED: Text = Text::of("not computed", "nicht berechnet");
 pub(in crate::console) const NONE: Text = Text::of("none", "keiner");
 
-/// Period that the shares cover.
 pub(in crate::console) fn last_minutes(minutes: f64) -> String {
     told!("last {minutes:.0} min", "letzte {minutes:.0} min")
 }
 
-/// Number of motion columns that carry information, and number in use.
 pub(in crate::console) fn columns(rank: u8, of: usize, used: u8) -> String {
     told!("{rank} of {of} columns, {used} used", "{rank} von {of} Spalten, {used} verwendet")
 }
 
-/// The chart in one sentence.
 pub(in crate::console) fn chosen(shares: &str) -> String {
     told!("Degrees chosen: {shares}", "Gewählte Grade: {shares}")
 }
 
-/// Shares of both rules.
 pub(in crate::console) fn both(ours: &str, papers: &str) -> String {
     told!("This console  {ours}\nPaper's rule  {papers}", "Diese Konsole  {ours}\nRegel des Artikels  {papers}")
 }

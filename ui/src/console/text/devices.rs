@@ -1,4 +1,4 @@
-//! The panel of devices: connection, which one is which, their choice, their test.
+//! The Devices panel: connection, identification, choice and test of devices.
 
 use nima_machine::rig::{Part, PartKind};
 
@@ -88,7 +88,6 @@ pub(in crate::console) const ENGAGED: Text = Text::of(
 pub(in crate::console) const STOPPED: Text = Text::of("Press Release stop first", "Zuerst Halt lösen drücken");
 pub(in crate::console) const STARTING: Text = Text::of("The machine is starting", "Die Maschine startet");
 
-/// Why nothing can be exchanged or chosen now.
 pub(in crate::console) fn not_changeable(reason: &str) -> String {
     told!(
         "Devices cannot be swapped or chosen now. {reason}.",
@@ -96,12 +95,10 @@ pub(in crate::console) fn not_changeable(reason: &str) -> String {
     )
 }
 
-/// Why an arm cannot be engaged.
 pub(in crate::console) fn not_to_be_engaged(side: &str, obstacle: &impl std::fmt::Display) -> String {
     told!("The {side} arm cannot be engaged: {obstacle}", "Arm {side} lässt sich nicht koppeln: {obstacle}")
 }
 
-/// Identity of a device.
 pub(in crate::console) fn identity(product: &str, serial: &str, firmware: &str) -> String {
     let serial =
         if serial.is_empty() { String::new() } else { told!(", serial number {serial}", ", Seriennummer {serial}") };
@@ -115,7 +112,6 @@ pub(in crate::console) fn clear_faults_of(name: &str) -> String {
     told!("Clear faults of the {name}", "Störungen zurücksetzen: {name}")
 }
 
-/// Rate and losses of a device.
 pub(in crate::console) fn delivery(rate_hz: f64, lost: u64, damaged: u64, refused: u64) -> String {
     if lost + damaged + refused == 0 {
         return told!(
@@ -129,7 +125,6 @@ pub(in crate::console) fn delivery(rate_hz: f64, lost: u64, damaged: u64, refuse
     )
 }
 
-/// Number and longest duration of the outages.
 pub(in crate::console) fn outages(count: u64, longest_s: f64) -> String {
     let times = if count == 1 { word("once", "einmal").to_owned() } else { told!("{count} times", "{count}-mal") };
     told!(
@@ -138,7 +133,6 @@ pub(in crate::console) fn outages(count: u64, longest_s: f64) -> String {
     )
 }
 
-/// A device that was lost.
 pub(in crate::console) fn lost(cause: &str, delivery: &str) -> String {
     told!("lost: {cause}; {delivery}", "ausgefallen: {cause}; {delivery}")
 }
@@ -148,7 +142,6 @@ pub(in crate::console) fn of(what: &str, name: &str) -> String {
     format!("{what} {name}")
 }
 
-/// Heading of a column.
 pub(in crate::console) fn column(side: Option<nima_machine::rig::Side>) -> &'static str {
     match side {
         Some(nima_machine::rig::Side::Left) => word("Left", "Links"),
@@ -157,7 +150,7 @@ pub(in crate::console) fn column(side: Option<nima_machine::rig::Side>) -> &'sta
     }
 }
 
-/// A kind of part, on the button that exchanges them.
+/// Kind of part, on the button that swaps the devices of that kind.
 pub(in crate::console) fn kind(kind: PartKind) -> &'static str {
     match kind {
         PartKind::Handle => word("Handles", "Handgeräte"),
@@ -174,7 +167,7 @@ pub(in crate::console) fn exchange(of: PartKind) -> String {
     told!("Swap {}", "{} tauschen", within(kind(of)))
 }
 
-/// The name of the light beside a device.
+/// Accessible name of the light next to a device.
 pub(in crate::console) fn light(name: &str, motion: Option<&str>) -> String {
     match motion {
         Some(motion) => told!("Light of the {name}: {motion}", "Lampe {name}: {motion}"),
@@ -182,7 +175,7 @@ pub(in crate::console) fn light(name: &str, motion: Option<&str>) -> String {
     }
 }
 
-/// What a person does with a device whose number of this channel changes.
+/// Motion of the device that changes this channel.
 pub(in crate::console) fn motion(kind: PartKind, channel: usize) -> String {
     match (kind, channel) {
         (PartKind::Handle, 0..=2) => word("moved", "bewegt").to_owned(),
@@ -196,7 +189,6 @@ pub(in crate::console) fn motion(kind: PartKind, channel: usize) -> String {
     }
 }
 
-/// A candidate that another part of the rig has now.
 pub(in crate::console) fn candidate(identity: &str, other: Part) -> String {
     told!(
         "{identity}: currently the {}; the two will be swapped",
@@ -205,20 +197,17 @@ pub(in crate::console) fn candidate(identity: &str, other: Part) -> String {
     )
 }
 
-/// A device that tells no identity yet.
+/// Device without a reported identity.
 pub(in crate::console) const UNKNOWN_IDENTITY: Text = Text::of("Not connected", "Nicht verbunden");
 
-/// A candidate that was found.
 pub(in crate::console) fn found(identity: &str, place: &str) -> String {
     told!("{identity} at {place}", "{identity} an {place}")
 }
 
-/// A place where no device of this kind answers.
 pub(in crate::console) fn not_there(place: &str, cause: &str) -> String {
     format!("{place}: {cause}")
 }
 
-/// The change stands in the rig file that was in use.
 pub(in crate::console) fn saved(path: &std::path::Path) -> String {
     told!(
         "Saved in the rig file {}. The machine has restarted, idle.",
@@ -227,7 +216,6 @@ pub(in crate::console) fn saved(path: &std::path::Path) -> String {
     )
 }
 
-/// The change stands in a new rig file.
 pub(in crate::console) fn saved_as(name: &str, path: &std::path::Path) -> String {
     told!(
         "A built-in rig cannot be changed: saved as the new rig \"{name}\" in {}, which is now in use. The \
@@ -238,7 +226,6 @@ pub(in crate::console) fn saved_as(name: &str, path: &std::path::Path) -> String
     )
 }
 
-/// The change was not made.
 pub(in crate::console) fn not_changed(cause: &str) -> String {
     told!("Not changed: {cause}", "Nicht geändert: {cause}")
 }

@@ -1,4 +1,4 @@
-//! The endoscope's picture.
+//! The endoscope image.
 
 use std::time::Duration;
 
@@ -63,7 +63,6 @@ pub(in crate::console) const NO_PLACE: Text = Text::of(
     "Keine Kräfte im Bild: Lage der Kamera unbekannt; Kamera kalibrieren",
 );
 
-/// The check of the camera was too bad.
 pub(in crate::console) fn forces_off(off_px: f64) -> String {
     told!(
         "Forces are drawn {off_px:.0} px or more away from the tips: calibrate the camera; O hides them",
@@ -71,22 +70,19 @@ pub(in crate::console) fn forces_off(off_px: f64) -> String {
     )
 }
 
-/// No new picture for so long.
 pub(in crate::console) fn frozen(stood: Duration) -> String {
     told!("Image is frozen: no new image for {:.1} s", "Bild steht: seit {:.1} s nichts Neues", stood.as_secs_f64())
 }
 
-/// How old a late picture is.
 pub(in crate::console) fn late(late: Duration) -> String {
     told!("Image is {} ms old", "Bild ist {} ms alt", 10 * (late.as_millis() / 10))
 }
 
-/// A picture that cannot be shown.
 pub(in crate::console) fn damaged(why: &str) -> String {
     told!("Image is damaged: {why}", "Bild ist beschädigt: {why}")
 }
 
-/// A picture of another size, px.
+/// Sizes in px.
 pub(in crate::console) fn size([width, height]: [usize; 2], [wanted_width, wanted_height]: [usize; 2]) -> String {
     told!(
         "Image is {width} x {height} pixels, not {wanted_width} x {wanted_height}",
@@ -94,26 +90,22 @@ pub(in crate::console) fn size([width, height]: [usize; 2], [wanted_width, wante
     )
 }
 
-/// There is no picture.
 pub(in crate::console) fn lost(why: &str) -> String {
     told!("Image is lost: {why}", "Bild verloren: {why}")
 }
 
-/// The address cannot be used.
 pub(in crate::console) fn refused(why: &str) -> String {
     told!("No image: {why}", "Kein Bild: {why}")
 }
 
-/// What to do about an address that cannot be used.
+/// Remedy for an unusable address.
 pub(in crate::console) const REFUSED_CURE: Text =
     Text::of("Correct endoscope.url in the rig file", "endoscope.url in der Aufbaudatei korrigieren");
 
-/// Age and rate of the picture.
 pub(in crate::console) fn figures(age: Duration, rate_hz: f64) -> String {
     told!("{} ms old, {rate_hz:.0} pictures a second", "{} ms alt, {rate_hz:.0} Bilder/s", age.as_millis())
 }
 
-/// Age of a recorded picture.
 pub(in crate::console) fn recorded(age: Duration) -> String {
     told!("Recorded picture, {} ms old then", "Aufgezeichnetes Bild, damals {} ms alt", age.as_millis())
 }
@@ -121,7 +113,6 @@ pub(in crate::console) fn recorded(age: Duration) -> String {
 pub(in crate::console) const SEARCHING: Text =
     Text::of("Looking for the picture of this moment", "Sucht das Bild dieses Moments");
 
-/// There is no recorded picture of a moment.
 pub(in crate::console) fn none_then(why: Option<&str>) -> String {
     why.map_or_else(
         || {
@@ -135,7 +126,6 @@ pub(in crate::console) fn none_then(why: Option<&str>) -> String {
     )
 }
 
-/// How far the picture is zoomed, and how to get back.
 pub(in crate::console) fn zoomed(zoom: f32) -> String {
     told!(
         "Zoom {zoom:.1}; drag to move, double-click to show all",
@@ -143,21 +133,18 @@ pub(in crate::console) fn zoomed(zoom: f32) -> String {
     )
 }
 
-/// A tip that is not in the view.
 pub(in crate::console) fn tip(side: &str) -> String {
     let after = side.to_lowercase();
     told!("{side} tip", "Spitze {after}")
 }
 
-/// The whole picture in words.
 pub(in crate::console) fn picture(standing: &str) -> String {
     told!("Endoscope image: {standing}", "Endoskopbild: {standing}")
 }
 
-/// A picture that comes as it should.
+/// Image without a problem.
 pub(in crate::console) const LIVE: Text = Text::of("live", "live");
 
-/// Label of a force at a tip, N.
 pub(in crate::console) fn force(size_n: f64) -> String {
     format!("{size_n:.1} N")
 }

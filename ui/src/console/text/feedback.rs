@@ -1,10 +1,10 @@
-//! The feedback panel: mode, gain, delay, dead band.
+//! The Feedback panel: mode, gain, delay, dead band.
 
 use nima_core::limits::{self, GAIN_ABOVE_ONE, Limits, SLIDER_DEAD_BAND_M_S, SLIDER_DELAY_S};
 
 use crate::language::{Text, told};
 
-/// Meaning of the gain, which changes at most so fast (1/s).
+/// Hover text of the gain, with its maximum rate of change, 1/s.
 pub(in crate::console) fn gain_hover(rate_per_s: f64) -> String {
     let Limits { min, max, .. } = limits::GAIN;
     let most = GAIN_ABOVE_ONE.max;
@@ -17,7 +17,6 @@ pub(in crate::console) fn gain_hover(rate_per_s: f64) -> String {
     )
 }
 
-/// Meaning of the delay.
 pub(in crate::console) fn delay_hover() -> String {
     let Limits { min, max, unit } = SLIDER_DELAY_S.per(1e-3, "ms");
     told!(
@@ -30,7 +29,6 @@ pub(in crate::console) fn delay_hover() -> String {
     )
 }
 
-/// Meaning of the dead band.
 pub(in crate::console) fn dead_band_hover() -> String {
     let Limits { min, max, unit } = SLIDER_DEAD_BAND_M_S.per(1e-3, "mm/s");
     told!(
@@ -49,7 +47,6 @@ pub(in crate::console) const HOLD_HOVER: Text = Text::of(
      im Artikel, und „Warum keine Kraft?“ zeigt, wie viel nicht dargestellt wird (N).",
 );
 pub(in crate::console) const GAIN: Text = Text::of("Gain", "Verstärkung");
-/// What the box above the usual gain does.
 pub(in crate::console) fn allow_above_1_hover() -> String {
     let most = GAIN_ABOVE_ONE.max;
     let max = limits::GAIN.max;
@@ -69,7 +66,6 @@ pub(in crate::console) const LINK_DELAY: Text = Text::of("Link delay", "Verzöge
 pub(in crate::console) const DEAD_BAND: Text = Text::of("Dead band", "Totband");
 pub(in crate::console) const HOLD: Text = Text::of("Keep force at standstill", "Kraft im Stillstand halten");
 
-/// The present gain, while it ramps to the chosen one.
 pub(in crate::console) fn gain_in_use(gain: f64) -> String {
     told!("in use {gain:.2}", "wirksam {gain:.2}")
 }

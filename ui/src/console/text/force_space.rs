@@ -20,7 +20,7 @@ pub(in crate::console) fn canvas(words: &str) -> String {
     told!("Force space. {words}", "Kraftraum. {words}")
 }
 
-/// The measured force is not known now; two lines, separated by a semicolon.
+/// Two lines, separated by a semicolon.
 pub(in crate::console) fn unknown(seconds: f64) -> String {
     told!(
         "Last {seconds:.0} s; the measured force is currently unknown",
@@ -28,7 +28,7 @@ pub(in crate::console) fn unknown(seconds: f64) -> String {
     )
 }
 
-/// Not enough data for the ellipsoid yet; two lines, separated by a semicolon.
+/// Two lines, separated by a semicolon.
 pub(in crate::console) fn too_short(seconds: f64) -> String {
     told!(
         "Last {seconds:.0} s; the error ellipsoid needs one second of data",
@@ -36,7 +36,7 @@ pub(in crate::console) fn too_short(seconds: f64) -> String {
     )
 }
 
-/// The ellipsoid (mean and half axes in N, share of samples inside in percent); two lines, separated by a semicolon.
+/// Two lines, separated by a semicolon. Mean and half axes in N, `percent` of samples inside.
 pub(in crate::console) fn error(seconds: f64, mean_n: f64, [a, b, c]: [f64; 3], percent: f64) -> String {
     told!(
         "Error, last {seconds:.0} s: mean {mean_n:.2} N, 95 % half axes; {a:.2}, {b:.2}, {c:.2} N (contains \

@@ -1,4 +1,4 @@
-//! The traces of force over time.
+//! The Traces panel: force over time.
 
 use crate::language::{Text, told, word};
 
@@ -44,7 +44,7 @@ pub(in crate::console) fn plot(axis: &str, side: &str) -> String {
     told!("Force along {axis}, {side} hand", "Kraft längs {axis}, Hand {side}")
 }
 
-/// What that plot shows: the force now (signed) and the largest in this time with their units, measured and rendered.
+/// For measured and rendered force: the current value (signed) and the maximum over `seconds`, both with their unit.
 pub(in crate::console) fn summary([measured, rendered]: [[String; 2]; 2], seconds: f64) -> String {
     let told = |[now, most]: [String; 2]| {
         told!("{now} now, maximum {most} in {seconds:.0} s", "{now} jetzt, Maximum {most} in {seconds:.0} s")
@@ -52,7 +52,6 @@ pub(in crate::console) fn summary([measured, rendered]: [[String; 2]; 2], second
     told!("Measured {}; rendered {}", "Gemessen {}; dargestellt {}", told(measured), told(rendered))
 }
 
-/// Switch: forces of which side.
 pub(in crate::console) fn forces_of(side: &str) -> String {
     told!("Shows the forces of the {side} hand", "Zeigt die Kräfte der Hand {side}")
 }
@@ -74,9 +73,9 @@ pub(in crate::console) const TWIST_HOVER: Text = Text::of(
      Ring. Es wird nicht in der Hand dargestellt.",
 );
 
-/// The torque about the shaft (mNm): of what the jaws hold, and at the wrist sensor, each where it is known.
+/// Torques about the shaft in mNm, of the object in the jaws and at the wrist sensor; `None` if unknown.
 pub(in crate::console) fn twist([jaws_mnm, wrist_mnm]: [Option<f64>; 2]) -> String {
-    // Not `-0.0`.
+    // Avoids `-0.0`.
     let told =
         |mnm: f64, whose: &str| told!("{:+.2} mNm {whose}", "{:+.2} mNm {whose}", (mnm * 100.0).round() / 100.0 + 0.0);
     let both = [

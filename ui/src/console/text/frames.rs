@@ -253,17 +253,14 @@ pub(crate) const UNDO: Text = Text::of("Restore previous values", "Vorige Werte 
 pub(in crate::console) const UNDONE: Text =
     Text::of("The previous values are in the rig file again", "Die vorigen Werte stehen wieder in der Aufbaudatei");
 
-/// What the technician is to hold.
 pub(in crate::console) fn hold(name: &str) -> String {
     told!("Hold still: {name}", "Stillhalten: {name}")
 }
 
-/// What is to be moved, and where to.
 pub(in crate::console) fn moved(what: &str, way: &str) -> String {
     told!("{what}: {way}, then hold still", "{what}: {way}, dann stillhalten")
 }
 
-/// How much is there, and what is missing most.
 pub(in crate::console) fn coverage(count: usize, units: &str, missing: Option<&str>) -> String {
     let missing = missing.map_or_else(
         || word("complete", "vollständig").to_owned(),
@@ -272,7 +269,6 @@ pub(in crate::console) fn coverage(count: usize, units: &str, missing: Option<&s
     format!("{count} {units}; {missing}")
 }
 
-/// The picture of a change in one sentence.
 pub(in crate::console) fn effect(change: Option<[f64; 2]>) -> String {
     change.map_or_else(
         || {
@@ -284,7 +280,7 @@ pub(in crate::console) fn effect(change: Option<[f64; 2]>) -> String {
             .to_owned()
         },
         |[m, deg]| {
-            // A point has no angle, and a rotation no place.
+            // A point has no angle, and a rotation has no position.
             let moved = (m > 1e-9).then(|| told!("moved by {:.2} mm", "verschoben um {:.2} mm", m * 1e3));
             let turned = (deg > 1e-6).then(|| told!("turned by {deg:.2} deg", "gedreht um {deg:.2} deg"));
             let words: Vec<_> = moved.into_iter().chain(turned).collect();
@@ -293,12 +289,10 @@ pub(in crate::console) fn effect(change: Option<[f64; 2]>) -> String {
     )
 }
 
-/// Length of the scale.
 pub(in crate::console) fn scale(length_m: f64) -> String {
     told!("{} mm", "{} mm", (length_m * 1e4).round() / 10.0)
 }
 
-/// How the mount that was found compares with the rig file's.
 pub(in crate::console) fn mount_found(off_deg: f64, agrees: bool) -> String {
     let verdict = if agrees {
         word("it agrees with the rig file", "stimmt mit der Aufbaudatei überein")
@@ -311,12 +305,10 @@ pub(in crate::console) fn mount_found(off_deg: f64, agrees: bool) -> String {
     )
 }
 
-/// Which axes are exchanged.
 pub(in crate::console) fn mount_axes(axes: &str) -> String {
     told!("The sensor's x, y, z are the rig file's {axes}", "x, y, z des Sensors sind {axes} der Aufbaudatei")
 }
 
-/// The rig file that was written.
 pub(in crate::console) fn written(record: &std::path::Path, rig: &std::path::Path) -> String {
     told!("Saved: {}; in use: {}", "Gespeichert: {}; aktiv: {}", record.display(), rig.display())
 }

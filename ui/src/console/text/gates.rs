@@ -55,27 +55,24 @@ pub(in crate::console) const CLOSED: Text = Text::of("closed", "geschlossen");
 pub(in crate::console) const LIMITING: Text = Text::of("limiting", "begrenzt");
 pub(in crate::console) const ENERGY_OFF: Text = Text::of("off", "aus");
 
-/// Switch: gates of which side.
 pub(in crate::console) fn gates_of(side: &str) -> String {
     told!("Shows why there is no force in the {side} hand", "Zeigt, warum in der Hand {side} keine Kraft ist")
 }
 
-/// Summary: no force, because that at the tip is not known; what its source is, or why it is unknown.
+/// `source`: source of the tip force, or the reason why it is unknown.
 pub(in crate::console) fn none_unknown(source: &str) -> String {
     told!("No force; tip force: {source}", "Keine Kraft; Kraft an der Spitze: {source}")
 }
 
-/// Summary: no force, and why the loop cannot be engaged; a sentence.
+/// `why`: a sentence.
 pub(in crate::console) fn none_idle_closed(why: &str) -> String {
     told!("No force: the loop is idle. {why}", "Keine Kraft: Regelung im Leerlauf. {why}")
 }
 
-/// Summary: a force is rendered.
 pub(in crate::console) fn rendered(rendered_n: f64) -> String {
     told!("Force in the hand: {rendered_n:.1} N", "Kraft in der Hand: {rendered_n:.1} N")
 }
 
-/// Summary: the dead band reduces the force.
 pub(in crate::console) fn withheld_by_dead_band(withheld_n: f64) -> String {
     told!(
         "{withheld_n:.1} N not rendered: the hand is slower than the dead band",
@@ -83,12 +80,10 @@ pub(in crate::console) fn withheld_by_dead_band(withheld_n: f64) -> String {
     )
 }
 
-/// Summary: a gate reduces the force.
 pub(in crate::console) fn withheld(withheld_n: f64) -> String {
     told!("{withheld_n:.1} N not rendered", "{withheld_n:.1} N nicht dargestellt")
 }
 
-/// Summary: the force is still under way over the link.
 pub(in crate::console) fn on_its_way(delay_ms: f64) -> String {
     told!(
         "No force yet: the link delays it by {delay_ms:.0} ms",
@@ -96,22 +91,18 @@ pub(in crate::console) fn on_its_way(delay_ms: f64) -> String {
     )
 }
 
-/// Age at which a force has faded to zero.
 pub(in crate::console) fn zero_after(age_ms: f64) -> String {
     told!("zero after {age_ms:.0} ms", "null nach {age_ms:.0} ms")
 }
 
-/// How much of the force the governor keeps back.
 pub(in crate::console) fn governed(percent: f64) -> String {
     told!("{percent:.0} % withheld", "{percent:.0} % zurückgehalten")
 }
 
-/// Energy that the hand may still get back.
 pub(in crate::console) fn energy_left(stored_mj: f64) -> String {
     told!("{stored_mj:.0} mJ left", "{stored_mj:.0} mJ übrig")
 }
 
-/// How often a gate acted, and why it acted last.
 pub(in crate::console) fn acted(ticks: u64, percent: f64, why: &str) -> String {
     told!(
         "Acted in {ticks} ticks ({percent:.1} %); last reason: {why}",

@@ -157,12 +157,10 @@ pub(in crate::console) const P95: Text = Text::of("95 % below", "95 % unter");
 pub(in crate::console) const UNDETERMINED: Text = Text::of("undetermined", "unbestimmt");
 pub(in crate::console) const LARGEST: Text = Text::of("largest", "größter");
 
-/// A pose was recorded.
 pub(in crate::console) fn pose_taken(number: usize) -> String {
     told!("pose {number} recorded", "Pose {number} aufgezeichnet")
 }
 
-/// A pose was refused because the tool was touched.
 pub(in crate::console) fn touched(by_n: f64) -> String {
     told!(
         "{by_n:.1} N too much: something touches the tool; release it",
@@ -170,7 +168,6 @@ pub(in crate::console) fn touched(by_n: f64) -> String {
     )
 }
 
-/// The tool was touched while poses were recorded.
 pub(in crate::console) fn was_touched(seconds: f64) -> String {
     told!(
         "Something touched the tool for {seconds:.0} s while it was still",
@@ -185,22 +182,18 @@ pub(in crate::console) const WAS_TOUCHED_HOVER: Text = Text::of(
      beginnen drücken",
 );
 
-/// Poses left out of the fit.
 pub(in crate::console) fn left_out(numbers: &str) -> String {
     told!("poses {numbers}", "Posen {numbers}")
 }
 
-/// Number of recorded directions.
 pub(in crate::console) fn recorded_of(recorded: usize, asked: usize) -> String {
     told!("{recorded} of {asked} recorded", "{recorded} von {asked} aufgezeichnet")
 }
 
-/// A force and its limit.
 pub(in crate::console) fn of_allowed(force_n: f64, limit_n: f64) -> String {
     told!("{force_n:.2} N of {limit_n} N allowed", "{force_n:.2} N von {limit_n} N erlaubt")
 }
 
-/// The chosen model.
 pub(in crate::console) fn chosen(model: &str) -> String {
     told!("{model} (chosen)", "{model} (gewählt)")
 }

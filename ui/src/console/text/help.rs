@@ -7,7 +7,6 @@ pub(in crate::console) const NEXT_STEP: Text = Text::of("Next step", "Nächster 
 pub(in crate::console) const BEGIN: Text = Text::of("Start", "Beginnen");
 pub(in crate::console) const SKIP_THE_TOUR: Text = Text::of("Skip tour", "Überspringen");
 
-/// Position within the tour.
 pub(in crate::console) fn step_of(step: usize, steps: usize) -> String {
     told!("{step} of {steps}", "{step} von {steps}")
 }

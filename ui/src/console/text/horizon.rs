@@ -1,4 +1,4 @@
-//! The panel that compares the prediction errors of the modes.
+//! The Prediction error panel, which compares the modes.
 
 use crate::language::{Text, told};
 
@@ -13,7 +13,6 @@ pub(in crate::console) const COMPARE_HOVER: Text = Text::of(
 );
 pub(in crate::console) const IN_USE: Text = Text::of(" (in use)", " (aktiv)");
 
-/// The prediction horizon, and the meaning of the line in the bars.
 pub(in crate::console) fn ahead(delay_ms: f64) -> String {
     told!(
         "Mean error {delay_ms:.0} ms ahead, last seconds; line: delayed DFR",
@@ -29,12 +28,10 @@ pub(in crate::console) fn trend(seconds: usize, mode: &str, error: &str, dfr: &s
     )
 }
 
-/// The name of the trend.
 pub(in crate::console) fn trend_name(trend: &str) -> String {
     told!("Error over the last minutes. {trend}", "Fehler der letzten Minuten. {trend}")
 }
 
-/// The meaning of the trend.
 pub(in crate::console) fn trend_meaning(trend: &str) -> String {
     told!(
         "{trend}\nMean prediction error (N) of each second, for up to three minutes",

@@ -1,4 +1,4 @@
-//! The line to the machine with the arm.
+//! The link to the machine with the arm.
 
 use crate::language::Text;
 

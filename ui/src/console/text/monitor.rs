@@ -1,4 +1,4 @@
-//! A rig at another machine that is only watched.
+//! A rig at another machine, shown without control.
 
 use crate::language::{Text, told};
 
@@ -26,17 +26,14 @@ pub(in crate::console) const NOT_OF_DEVICES: Text = Text::of(
     "Zähler und Messwerte der Geräte sowie die Kalibrierungen stehen an der Konsole des Aufbaus",
 );
 
-/// The title of the window.
 pub(in crate::console) fn title(rig: &str) -> String {
     told!("{rig}: watching", "{rig}: nur Ansicht")
 }
 
-/// Which rig.
 pub(in crate::console) fn rig_and_scene(rig: &str, scene: &str) -> String {
     format!("{rig}, {scene}")
 }
 
-/// Nothing has come for some time.
 pub(in crate::console) fn silent(seconds: f64) -> String {
     told!(
         "No data from the rig for {seconds:.0} s: the display is out of date",
@@ -44,7 +41,6 @@ pub(in crate::console) fn silent(seconds: f64) -> String {
     )
 }
 
-/// The alarm at the rig.
 pub(in crate::console) fn alarm(priority: &str, cause: &str) -> String {
     format!("{priority}: {cause}")
 }

@@ -30,30 +30,26 @@ pub(in crate::console) const UNCHECKED: Text = Text::of("trained but not checked
 pub(in crate::console) const HANDLE: Text = Text::of("View, handle", "Bildlage, Handgerät");
 pub(in crate::console) const FUTURE: Text = Text::of("in the future", "in der Zukunft");
 
-/// Accessible name of a button that makes a calibration.
+/// Accessible name of a button that starts a calibration.
 pub(in crate::console) fn button(verb: &str, arm: &str, calibration: &str) -> String {
     let after = arm.to_lowercase();
     told!("{verb} {arm} arm, {calibration}", "{verb}: Arm {after}, {calibration}")
 }
 
-/// Sensor and tool above an arm's lines.
 pub(in crate::console) fn of_arm(arm: &str, sensor: &str, tool: &str) -> String {
     let after = arm.to_lowercase();
     told!("{arm} arm: sensor {sensor}, {tool}", "Arm {after}: Sensor {sensor}, {tool}")
 }
 
-/// An arm whose sensor has not told who it is.
 pub(in crate::console) fn of_unknown(arm: &str, why: &str) -> String {
     let after = arm.to_lowercase();
     told!("{arm} arm: {why}", "Arm {after}: {why}")
 }
 
-/// When it was made.
 pub(in crate::console) fn made(day: &str, age: &str) -> String {
     format!("{day}, {age}")
 }
 
-/// Age in days.
 pub(in crate::console) fn days(days: u64) -> String {
     match days {
         0 => word("less than a day old", "weniger als einen Tag alt").to_owned(),
@@ -62,7 +58,6 @@ pub(in crate::console) fn days(days: u64) -> String {
     }
 }
 
-/// A verdict with the error on held-out data.
 pub(in crate::console) fn verdict(verdict: &str, error: &str) -> String {
     if error.is_empty() {
         verdict.to_owned()
@@ -71,17 +66,15 @@ pub(in crate::console) fn verdict(verdict: &str, error: &str) -> String {
     }
 }
 
-/// A verdict that somebody has overridden.
 pub(in crate::console) fn overridden(verdict: &str, name: &str) -> String {
     told!("{verdict}, accepted by {name}", "{verdict}, übernommen von {name}")
 }
 
-/// What the last ready check has found.
 pub(in crate::console) fn checked(day: &str, found: &str) -> String {
     told!("ready check on {day}: {found}", "Startprüfung vom {day}: {found}")
 }
 
-/// How much of the time with force a network was outside its training data, as shares; what to do if that is much.
+/// Fractions of the time with force, 0 to 1, in which the network was outside its training data and not used.
 pub(in crate::console) fn in_use(outside: f64, without: f64) -> String {
     let shares = told!(
         "outside its training {:.0} % of the time, not used {:.0} %",
@@ -97,12 +90,10 @@ pub(in crate::console) fn in_use(outside: f64, without: f64) -> String {
     }
 }
 
-/// A force.
 pub(in crate::console) fn newton(newton: f64) -> String {
     format!("{newton:.3} N")
 }
 
-/// A value with its limit.
 pub(in crate::console) fn within(value: f64, limit: f64, unit: &str) -> String {
     told!("{value:.2} {unit}, limit {limit:.2}", "{value:.2} {unit}, Grenze {limit:.2}")
 }

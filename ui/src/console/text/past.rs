@@ -1,4 +1,4 @@
-//! Recorded sessions: their list, and the past on the screen.
+//! Recorded sessions: their list, and playback.
 
 use std::{
     collections::BTreeMap,
@@ -118,12 +118,11 @@ pub(in crate::console) const SAVE_HOVER: Text = Text::of(
 pub(in crate::console) const SAVE_DISABLED_HOVER: Text =
     Text::of("Set From and To first: From must be before To", "Erst Von und Bis setzen: Von muss vor Bis liegen");
 
-/// A factor of speed.
 pub(in crate::console) fn speed(factor: f64) -> String {
     format!("{factor}\u{d7}")
 }
 
-/// A time of a session, s.
+/// Time of a session, s, with milliseconds.
 pub(in crate::console) fn clock(t_s: f64) -> String {
     let hours = (t_s / 3600.0).floor();
     let minutes = (t_s / 60.0).floor() % 60.0;
@@ -131,12 +130,12 @@ pub(in crate::console) fn clock(t_s: f64) -> String {
     if hours > 0.0 { format!("{hours}:{minutes:02}:{seconds:06.3}") } else { format!("{minutes}:{seconds:06.3}") }
 }
 
-/// The same to the second.
+/// Time of a session, s, in whole seconds.
 pub(in crate::console) fn short_clock(t_s: f64) -> String {
     clock(t_s.floor()).trim_end_matches(".000").to_owned()
 }
 
-/// The time on the screen, and the length of the session, s.
+/// Time on the screen, and length of the session, s.
 pub(in crate::console) fn position(t_s: f64, end_s: f64) -> String {
     told!("{} of {}", "{} von {}", clock(t_s), short_clock(end_s))
 }
@@ -147,12 +146,10 @@ pub(in crate::console) fn when(time_ns: u64) -> String {
     format!("{}.{} UTC", utc.trim_end_matches('Z'), time_ns / 100_000_000 % 10)
 }
 
-/// A moment of a session.
 pub(in crate::console) fn of_session(when: &str, name: &str) -> String {
     format!("{when}  \u{b7}  {name}")
 }
 
-/// Date and time of a session's beginning.
 pub(in crate::console) fn began(utc: Option<&str>) -> String {
     utc.map_or_else(
         || word("unknown date", "Datum unbekannt").to_owned(),
@@ -160,37 +157,32 @@ pub(in crate::console) fn began(utc: Option<&str>) -> String {
     )
 }
 
-/// A stretch of a session that begins at this time, s.
 pub(in crate::console) fn stretch(from_s: f64) -> String {
     told!("from {}", "ab {}", short_clock(from_s))
 }
 
-/// Size of a file.
 pub(in crate::console) fn megabytes(bytes: u64) -> String {
     told!("{:.0} MB", "{:.0} MB", bytes as f64 * 1e-6)
 }
 
-/// Which part of the session was read, 0 to 1.
+/// `share`: fraction of the session that was read, 0 to 1.
 pub(in crate::console) fn read(share: f64) -> String {
     told!("{:.0} % read", "{:.0} % gelesen", 100.0 * share)
 }
 
-/// An alarm of the moment on the screen.
 pub(in crate::console) fn alarm_then(word: &str, cause: &str) -> String {
     told!("{word} then: {cause}", "{word} damals: {cause}")
 }
 
-/// Below the pointer on the time line.
 pub(in crate::console) fn at(t_s: f64, words: &str) -> String {
     format!("{}  {words}", clock(t_s))
 }
 
-/// One of two sessions that are compared, and its time.
 pub(in crate::console) fn half(name: &str, position: &str) -> String {
     format!("{name}  \u{b7}  {position}")
 }
 
-/// Largest forces in a short time: the measured one with its unit or the sign for one that is not known, and the rendered one, N.
+/// `measured` has its unit, or is the sign for an unknown force; rendered force in N.
 pub(in crate::console) fn largest(t_s: f64, measured: &str, rendered_n: f32) -> String {
     told!(
         "{}\nLargest forces: measured {measured}, rendered {rendered_n:.2} N",
@@ -199,22 +191,18 @@ pub(in crate::console) fn largest(t_s: f64, measured: &str, rendered_n: f32) -> 
     )
 }
 
-/// Why what comes after a part is only plotted.
 pub(in crate::console) fn limited(why: &str) -> String {
     told!("Cannot be replayed in full: {why}", "Nicht vollständig wiederzugeben: {why}")
 }
 
-/// The session cannot be shown.
 pub(in crate::console) fn refused(why: &str) -> String {
     told!("This session cannot be shown: {why}", "Diese Sitzung ist nicht darstellbar: {why}")
 }
 
-/// Entries are missing in a journal.
 pub(in crate::console) fn hole(lost: u64) -> String {
     told!("{lost} entries of the recording are missing here", "hier fehlen {lost} Einträge der Aufzeichnung")
 }
 
-/// A replay is not what was recorded.
 pub(in crate::console) fn differs(t_s: f64) -> String {
     told!(
         "recorded by another version of this program, or the file was changed: it differs at {t_s:.3} s",
@@ -222,17 +210,14 @@ pub(in crate::console) fn differs(t_s: f64) -> String {
     )
 }
 
-/// A part of the file is missing.
 pub(in crate::console) fn without(name: &str) -> String {
     told!("the file has no {name}", "in der Datei fehlt {name}")
 }
 
-/// A part of the file cannot be used.
 pub(in crate::console) fn unusable(name: &str, why: &str) -> String {
     told!("its {name} cannot be used: {why}", "{name} darin ist unbrauchbar: {why}")
 }
 
-/// How a device was.
 pub(in crate::console) fn device(name: DeviceName, standing: Standing) -> String {
     let name = device_name(name);
     let how = match standing {
@@ -244,10 +229,10 @@ pub(in crate::console) fn device(name: DeviceName, standing: Standing) -> String
     format!("{name}: {how}")
 }
 
-/// The calibrations of a side, from what its file tells; in force since the beginning, or since this time, s.
+/// Calibrations of a side, from the metadata of the session; used since this time, s, or since the beginning.
 pub(in crate::console) fn calibrations(side: &str, table: &BTreeMap<String, String>, since_s: Option<f64>) -> String {
     let told = |key: &str| table.get(key).filter(|value| !value.is_empty());
-    // The verdict, and the error on data that were not used.
+    // Verdict, and error on held-out data.
     let result = |verdict: &str, error_n: &str| {
         let error_n = told(error_n).and_then(|error_n| error_n.parse::<f64>().ok());
         match (told(verdict), error_n) {
@@ -281,32 +266,26 @@ pub(in crate::console) fn calibrations(side: &str, table: &BTreeMap<String, Stri
     told!("{side} arm: {gravity}, {network}{since}", "Arm {side}: {gravity}, {network}{since}")
 }
 
-/// Where a report is.
 pub(in crate::console) fn reported(path: &Path) -> String {
     told!("Report: {}", "Bericht: {}", path.display())
 }
 
-/// There is no report.
 pub(in crate::console) fn not_reported(why: &str) -> String {
     told!("No report: {why}", "Kein Bericht: {why}")
 }
 
-/// Where a stretch is.
 pub(in crate::console) fn saved(path: &Path) -> String {
     told!("Saved: {}", "Gespeichert: {}", path.display())
 }
 
-/// A stretch was not saved.
 pub(in crate::console) fn not_saved(why: &str) -> String {
     told!("Not saved: {why}", "Nicht gespeichert: {why}")
 }
 
-/// There is a file of this name.
 pub(in crate::console) fn taken(path: &Path) -> String {
     told!("{} already exists", "{} gibt es schon", path.display())
 }
 
-/// A session was not deleted.
 pub(in crate::console) fn not_deleted(path: &Path, error: &io::Error) -> String {
     told!("{} was not deleted: {error}", "{} wurde nicht gelöscht: {error}", path.display())
 }

@@ -31,27 +31,22 @@ pub(in crate::console) const BY: Text = Text::of("Checked by", "Prüfer");
 pub(in crate::console) const BY_HOVER: Text =
     Text::of("This name is written into the record", "Dieser Name kommt ins Protokoll");
 
-/// A point with its figure or cause.
 pub(in crate::console) fn line(check: &str, words: &str) -> String {
     format!("{check}: {words}")
 }
 
-/// A point that the rig cannot have.
 pub(in crate::console) fn left_out(check: &str, why: &str) -> String {
     told!("{check}: skipped, {why}", "{check}: ausgelassen, {why}")
 }
 
-/// Where the record is.
 pub(in crate::console) fn saved(path: &std::path::Path) -> String {
     told!("Saved in {}", "Gespeichert in {}", path.display())
 }
 
-/// It could not be kept.
 pub(in crate::console) fn not_saved(reason: &str) -> String {
     told!("The record was not saved: {reason}", "Protokoll nicht gespeichert: {reason}")
 }
 
-/// Since when it goes on, s.
 pub(in crate::console) fn took(seconds: f64) -> String {
     format!("{seconds:.0} s")
 }

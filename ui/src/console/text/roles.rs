@@ -114,7 +114,7 @@ pub(in crate::console) const NOTE_STOPPED: Text = Text::of(
     "Stopped: no force, no motion. The demonstration waits until you press Release stop, then Engage.",
     "Angehalten: keine Kraft, keine Bewegung. Die Vorführung wartet, bis der Halt gelöst und gekoppelt wird.",
 );
-/// Why the loop ended an engagement without a fault.
+/// Reason why the loop ended an engagement without a fault.
 pub(in crate::console) const HAND_GONE: Text = Text::of(
     "The governor found no hand at the handle and ended the engagement",
     "Der Wächter fand keine Hand am Handgerät und hat die Kopplung beendet",
@@ -137,7 +137,7 @@ pub(in crate::console) const BARS_HOVER: Text = Text::of(
      die größte Kraft, die die Hand erreichen kann.",
 );
 
-/// How far the handle went since it was let go, mm.
+/// Travel of the handle since its release, mm.
 pub(in crate::console) fn handle_went(travel_mm: f64) -> String {
     if travel_mm < 10.0 {
         told!("The handle moved {travel_mm:.1} mm.", "Weg des Handgeräts: {travel_mm:.1} mm.")
@@ -146,7 +146,6 @@ pub(in crate::console) fn handle_went(travel_mm: f64) -> String {
     }
 }
 
-/// A fault that the demonstration releases by itself, in so many seconds.
 pub(in crate::console) fn recovers_from_fault(cause: &str, left_s: f64) -> String {
     let what = told!(
         "Fault: {cause}. The loop removed force and motion at once",
@@ -155,7 +154,6 @@ pub(in crate::console) fn recovers_from_fault(cause: &str, left_s: f64) -> Strin
     recovers(&what, left_s)
 }
 
-/// What ended the engagement, and in how many seconds the chapter restarts.
 pub(in crate::console) fn recovers(what: &str, left_s: f64) -> String {
     if left_s > 0.0 {
         told!(
@@ -170,7 +168,7 @@ pub(in crate::console) fn recovers(what: &str, left_s: f64) -> String {
     }
 }
 
-/// A fault that only a person releases: `stopped` because Stop was pressed, else because the rig has devices.
+/// A fault that only a person releases: `stopped` if Stop was pressed, otherwise because the rig has devices.
 pub(in crate::console) fn fault_waits(cause: &str, stopped: bool) -> String {
     if stopped {
         told!(
@@ -190,10 +188,10 @@ pub(in crate::console) fn meaning_and_key(meaning: &str, key: &str) -> String {
     told!("{meaning}\nKey {key}", "{meaning}\nTaste {key}")
 }
 
-/// In the place of a bar.
+/// Replaces a bar whose force is unknown.
 pub(in crate::console) const UNKNOWN: Text = Text::of("unknown", "unbekannt");
 
-/// Both forces of a hand, the measured one with its unit or "unknown", and the ceiling, N.
+/// `measured` has its unit, or is "unknown".
 pub(in crate::console) fn hand(name: &str, measured: &str, rendered_n: f64, ceiling_n: f64) -> String {
     told!(
         "{name}: measured {measured}, rendered {rendered_n:.1} N, ceiling {ceiling_n:.0} N",
@@ -201,7 +199,6 @@ pub(in crate::console) fn hand(name: &str, measured: &str, rendered_n: f64, ceil
     )
 }
 
-/// Label of the ceiling's mark.
 pub(in crate::console) fn ceiling(ceiling_n: f64) -> String {
     told!("ceiling {ceiling_n:.0} N", "Höchstkraft {ceiling_n:.0} N")
 }

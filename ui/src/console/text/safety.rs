@@ -38,12 +38,12 @@ pub(in crate::console) const ASKED: Text = Text::of("requested", "Soll");
 pub(in crate::console) const HAND: Text = Text::of("hand", "Hand");
 pub(in crate::console) const NEVER: Text = Text::of("never", "nie");
 
-/// Addition for the side, if there are two arms.
+/// Suffix that names the side of a rig with two arms.
 pub(in crate::console) fn of_hand(side: &str) -> String {
     told!(", {side} hand", ", Hand {side}")
 }
 
-/// When the state was entered (s on the loop's clock), and why.
+/// Time at which the state was entered, s on the loop's clock, and the cause.
 pub(in crate::console) fn since(t_s: f64, why: &str) -> String {
     told!("since {t_s:.1} s: {why}", "seit {t_s:.1} s: {why}")
 }
@@ -53,7 +53,7 @@ pub(in crate::console) fn interlock(whose: &str, state: &str) -> String {
     told!("Interlock{whose}: {state}", "Verriegelung{whose}: {state}")
 }
 
-/// A gate in one sentence; `whose` from [`of_hand`].
+/// Gate in one sentence; `whose` from [`of_hand`].
 pub(in crate::console) fn gate(name: &str, whose: &str, standing: &str, ticks: u64) -> String {
     told!(
         "Gate {name}{whose}: {standing}, acted in {ticks} ticks",

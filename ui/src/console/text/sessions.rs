@@ -13,7 +13,7 @@ pub(in crate::console) const CURE: Text = Text::of(
     "Platz schaffen oder Ordner wechseln; ist die Aufzeichnung beendet, den Aufbau neu starten",
 );
 
-/// On the button that keeps a session: how long it has been recorded, and whether it is kept.
+/// Label of the button that keeps a session.
 pub(in crate::console) fn recorded_for(seconds: u64, kept: bool) -> String {
     let what = if kept { word("Kept", "Gesichert") } else { word("Rec", "Rec") };
     let hours = seconds / 3600;
@@ -26,7 +26,6 @@ pub(in crate::console) fn recorded_for(seconds: u64, kept: bool) -> String {
     }
 }
 
-/// Below the pointer.
 pub(in crate::console) fn hover(shown: &Shown) -> String {
     let what = if shown.kept {
         word(
@@ -66,12 +65,10 @@ pub(in crate::console) fn hover(shown: &Shown) -> String {
     )
 }
 
-/// The folder cannot be used.
 pub(in crate::console) fn no_folder(folder: &Path, error: &io::Error) -> String {
     told!("the folder {} cannot be used: {error}", "der Ordner {} ist nicht nutzbar: {error}", folder.display())
 }
 
-/// The mark cannot be written or removed.
 pub(in crate::console) fn not_kept(path: &Path, error: &io::Error) -> String {
     told!(
         "cannot change whether {} is kept: {error}",
@@ -80,7 +77,6 @@ pub(in crate::console) fn not_kept(path: &Path, error: &io::Error) -> String {
     )
 }
 
-/// The disk does not answer.
 pub(in crate::console) fn slow(waits: Duration) -> String {
     told!(
         "the disk has not responded for {:.1} s; after 2 s a part of the session is lost",
@@ -89,7 +85,6 @@ pub(in crate::console) fn slow(waits: Duration) -> String {
     )
 }
 
-/// Entries are missing.
 pub(in crate::console) fn lost(entries: u64) -> String {
     told!(
         "the disk is too slow: {entries} entries of this session are lost; a replay ends at the first of them",
@@ -97,7 +92,6 @@ pub(in crate::console) fn lost(entries: u64) -> String {
     )
 }
 
-/// Pictures are missing.
 pub(in crate::console) fn pictures_lost(pictures: u64) -> String {
     told!(
         "the disk is too slow: {pictures} endoscope images are missing from this session, but nothing else",
@@ -105,22 +99,19 @@ pub(in crate::console) fn pictures_lost(pictures: u64) -> String {
     )
 }
 
-/// Cause of an alarm.
 pub(in crate::console) fn cause(why: &str) -> String {
     told!("Recording: {why}", "Aufzeichnung: {why}")
 }
 
-/// In the log of a session: a moment that the operator marked.
+/// Entry of the session log.
 pub(in crate::console) fn mark(number: usize) -> String {
     told!("mark {number}", "Marke {number}")
 }
 
-/// The cause of an alarm has appeared.
 pub(in crate::console) fn alarm(cause: &str) -> String {
     told!("alarm: {cause}", "Alarm: {cause}")
 }
 
-/// And it has ended.
 pub(in crate::console) fn alarm_over(cause: &str) -> String {
     told!("alarm ended: {cause}", "Alarm beendet: {cause}")
 }

@@ -145,7 +145,7 @@ pub(in crate::console) const ENDOSCOPE_FORMS: Text = Text::of(
 pub(in crate::console) const NO_ENDOSCOPE: Text =
     Text::of("None: the Surgeon view draws the field", "Keins: die Ansicht Chirurg zeichnet das OP-Feld");
 
-/// An address that works: size of the picture, and pictures a second where it moves.
+/// Size of the image in px, and frame rate; `None` for a still image.
 pub(in crate::console) fn endoscope_sends([width, height]: [usize; 2], rate_hz: Option<f64>) -> String {
     match rate_hz {
         Some(rate_hz) => told!(
@@ -156,34 +156,28 @@ pub(in crate::console) fn endoscope_sends([width, height]: [usize; 2], rate_hz: 
     }
 }
 
-/// The address is in the rig's file.
 pub(in crate::console) fn endoscope_written(path: &str) -> String {
     told!("Written: {path}. Start the rig to use the address.", "Geschrieben: {path}. Zum Nutzen der Adresse starten.")
 }
 
-/// A rig in few words: what it runs on.
 pub(in crate::console) fn of_devices(count: usize, emulated: bool) -> String {
     let devices =
         if count == 1 { word("1 device", "1 Gerät").to_owned() } else { told!("{count} devices", "{count} Geräte") };
     if emulated { told!("{devices}, emulated", "{devices}, emuliert") } else { devices }
 }
 
-/// A file that cannot be used.
 pub(in crate::console) fn unusable(cause: &str) -> String {
     told!("Cannot be used: {cause}", "Nicht nutzbar: {cause}")
 }
 
-/// The name is taken.
 pub(in crate::console) fn taken(path: &std::path::Path) -> String {
     told!("A rig with this name exists: {}", "Ein Aufbau heißt schon so: {}", path.display())
 }
 
-/// Where a new rig file is.
 pub(in crate::console) fn made(path: &std::path::Path) -> String {
     told!("Written: {}", "Geschrieben: {}", path.display())
 }
 
-/// The rig did not start; which one is running instead.
 pub(in crate::console) fn not_started(cause: &str, instead: Option<&str>) -> String {
     match instead {
         Some(rig) => {
@@ -193,7 +187,6 @@ pub(in crate::console) fn not_started(cause: &str, instead: Option<&str>) -> Str
     }
 }
 
-/// A device and its state.
 pub(in crate::console) fn answers(name: &str, product: &str, serial: &str) -> String {
     format!("{name}: {product} {serial}").trim_end().to_owned()
 }

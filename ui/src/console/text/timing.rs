@@ -56,12 +56,10 @@ pub(in crate::console) const FRAME_HOVER_ROUGH: Text = Text::of(
 pub(in crate::console) const GRANTED: Text = Text::of("granted", "gewährt");
 pub(in crate::console) const REFUSED: Text = Text::of("refused", "verweigert");
 
-/// Range of the last bar of a histogram.
 pub(in crate::console) fn and_more(from_us: f64) -> String {
     told!("{from_us:.0} µs or more", "{from_us:.0} µs oder mehr")
 }
 
-/// Range of any other bar.
 pub(in crate::console) fn from_to(from_us: f64, to_us: f64) -> String {
     told!("{from_us:.0} to {to_us:.0} µs", "{from_us:.0} bis {to_us:.0} µs")
 }
@@ -71,7 +69,6 @@ pub(in crate::console) fn bar(name: &str, range: &str, ticks: &str, share: &str)
     told!("{name}: {range}\n{ticks} ticks, {share}", "{name}: {range}\n{ticks} Takte, {share}")
 }
 
-/// A histogram in one sentence.
 pub(in crate::console) fn histogram(name: &str, late: &str, total: &str, deadline_us: f64) -> String {
     told!(
         "{name} histogram: {late} of {total} ticks exceeded the deadline of {deadline_us:.0} µs",
@@ -79,17 +76,14 @@ pub(in crate::console) fn histogram(name: &str, late: &str, total: &str, deadlin
     )
 }
 
-/// Label of the deadline.
 pub(in crate::console) fn deadline(deadline_us: f64) -> String {
     told!("deadline {deadline_us:.0} µs", "Frist {deadline_us:.0} µs")
 }
 
-/// Explanation of the height scale of a histogram.
 pub(in crate::console) fn log_scale(top: &str) -> String {
     told!("log scale, maximum {top}", "log. Skala, Maximum {top}")
 }
 
-/// Title of the strip of missed periods.
 pub(in crate::console) fn missed(minutes: usize, count: &str) -> String {
     told!("Missed in the last {minutes} min: {count}", "Versäumt in den letzten {minutes} min: {count}")
 }
@@ -104,7 +98,6 @@ pub(in crate::console) fn missed_at(age_s: usize, count: &str) -> String {
     told!("{age_s} s ago: {count} periods missed", "vor {age_s} s: {count} Takte versäumt")
 }
 
-/// Number of ticks, and their rate.
 pub(in crate::console) fn ticks_at(ticks: &str, rate_hz: f64) -> String {
     told!("{ticks} at {rate_hz:.0} Hz", "{ticks} mit {rate_hz:.0} Hz")
 }

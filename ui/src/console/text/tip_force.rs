@@ -275,22 +275,18 @@ pub(in crate::console) const RECORD_GO_ON: Text = Text::of("Resume recording", "
 pub(in crate::console) const PHASE_PAUSED: Text = Text::of("paused", "pausiert");
 pub(in crate::console) const PHASE_RECORDING: Text = Text::of("recording", "zeichnet auf");
 
-/// The check failed.
 pub(in crate::console) fn not_judged(error: &str) -> String {
     told!("The network could not be evaluated: {error}", "Das Netz ließ sich nicht bewerten: {error}")
 }
 
-/// The training failed.
 pub(in crate::console) fn not_trained(error: &str) -> String {
     told!("Not trained: {error}. The recording is kept.", "Nicht trainiert: {error}. Die Aufzeichnung bleibt.")
 }
 
-/// State of a recording.
 pub(in crate::console) fn state(phase: &str) -> String {
     told!("State: {phase}", "Zustand: {phase}")
 }
 
-/// Task of the person at the arm during the check.
 pub(in crate::console) fn check_task(work_s: f64, free_s: f64) -> String {
     told!(
         "{work_s:.0} s of work on the tissue, then {free_s:.0} s without touching it",
@@ -298,22 +294,18 @@ pub(in crate::console) fn check_task(work_s: f64, free_s: f64) -> String {
     )
 }
 
-/// Result of the check.
 pub(in crate::console) fn verdict(reason: &str) -> String {
     told!("Verdict: {reason}", "Urteil: {reason}")
 }
 
-/// Share of samples for which the network was uncertain.
 pub(in crate::console) fn doubt(percent: f64, rows: usize) -> String {
     told!("{percent:.1} % of {rows} rows", "{percent:.1} % von {rows} Zeilen")
 }
 
-/// The background thread could not be started.
 pub(in crate::console) fn no_thread(error: &impl std::fmt::Display) -> String {
     told!("The background task could not be started: {error}", "Hintergrundaufgabe nicht gestartet: {error}")
 }
 
-/// A recording could not be saved.
 pub(in crate::console) fn not_written(path: &std::path::Path, error: &impl std::fmt::Display) -> String {
     told!(
         "The recording could not be written to {}: {error}",
@@ -322,7 +314,6 @@ pub(in crate::console) fn not_written(path: &std::path::Path, error: &impl std::
     )
 }
 
-/// Why the check cannot be passed: the training data were incomplete.
 pub(in crate::console) fn trained_on_too_little(goal: &str) -> String {
     told!(
         "the recording used for training is incomplete ({goal}); record more",
@@ -330,7 +321,6 @@ pub(in crate::console) fn trained_on_too_little(goal: &str) -> String {
     )
 }
 
-/// Length of the recording, compared with the paper's.
 pub(in crate::console) fn rows_and_seconds(rows: usize, seconds: f64, paper_rows: usize, paper_s: f64) -> String {
     told!(
         "{rows}, {seconds:.0} s (paper: {paper_rows}, {paper_s:.0} s)",
@@ -338,17 +328,14 @@ pub(in crate::console) fn rows_and_seconds(rows: usize, seconds: f64, paper_rows
     )
 }
 
-/// What is missing, and the requirement that it is for.
 pub(in crate::console) fn advice(when: &str, advice: &str, goal: &str) -> String {
     format!("{when}: {advice} ({goal})")
 }
 
-/// No rows are being recorded.
 pub(in crate::console) fn nothing_taken(why: &str) -> String {
     told!("not recording: {why}", "keine Aufzeichnung: {why}")
 }
 
-/// The sensor under the tissue is being zeroed.
 pub(in crate::console) fn taking_zero(percent: f64) -> String {
     told!(
         "setting the sensor under the tissue to zero: {percent:.0} %",
@@ -356,12 +343,10 @@ pub(in crate::console) fn taking_zero(percent: f64) -> String {
     )
 }
 
-/// Size of the training.
 pub(in crate::console) fn networks_on_rows(networks: usize, rows: usize) -> String {
     told!("{networks} networks on {rows} rows", "{networks} Netze mit {rows} Zeilen")
 }
 
-/// A requirement that the recording did not meet.
 pub(in crate::console) fn not_complete(goal: &str) -> String {
     told!(
         "The recording is incomplete ({goal}): you can accept this network only under your name",
@@ -369,32 +354,26 @@ pub(in crate::console) fn not_complete(goal: &str) -> String {
     )
 }
 
-/// Legend: loss of a network on held-out rows.
 pub(in crate::console) fn held_out(network: usize) -> String {
     told!("{network} held out", "{network} Test")
 }
 
-/// Legend: loss of a network on its training rows.
 pub(in crate::console) fn training(network: usize) -> String {
     told!("{network} training", "{network} Training")
 }
 
-/// The plot of the losses in one sentence.
 pub(in crate::console) fn losses(networks: usize, epochs: usize) -> String {
     told!("Losses of {networks} networks over {epochs} epochs", "Verluste von {networks} Netzen über {epochs} Epochen")
 }
 
-/// Progress of the check.
 pub(in crate::console) fn rows_of(rows: usize, asked: usize) -> String {
     told!("{rows} of {asked}", "{rows} von {asked}")
 }
 
-/// Size of a recording.
 pub(in crate::console) fn rows_and_time(rows: usize, seconds: f64) -> String {
     told!("{rows} rows, {seconds:.0} s", "{rows} Zeilen, {seconds:.0} s")
 }
 
-/// Progress of the training.
 pub(in crate::console) fn time_left(percent: f64, elapsed_s: f64, left_s: f64) -> String {
     told!(
         "{percent:.0} %, {elapsed_s:.0} s, at most {left_s:.0} s left",

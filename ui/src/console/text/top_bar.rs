@@ -54,18 +54,16 @@ pub(in crate::console) const NOT_ENGAGED: Text = Text::of("Not engaged", "Nicht 
 pub(in crate::console) const NOT_RELEASED: Text = Text::of("Not released", "Nicht gelöst");
 pub(in crate::console) const NOT_SET: Text = Text::of("Not set", "Nicht gesetzt");
 
-/// A refused command: what was not done, for which arm if there are two, why, and what to do.
+/// Refused command; `arm` is empty for a rig with one arm.
 pub(in crate::console) fn refused(what: &str, arm: &str, cause: &str, cure: &str) -> String {
     let arm = if arm.is_empty() { String::new() } else { told!(" ({arm} arm)", " (Arm {arm})") };
     format!("{what}{arm}: {cause}; {cure}")
 }
 
-/// A missing device.
 pub(in crate::console) fn device(name: &str, cause: &str) -> String {
     format!("{name}: {cause}")
 }
 
-/// Names of scene and rig.
 pub(in crate::console) fn scene_and_rig(scene: &str, rig: &str) -> String {
     told!("Scene: {scene}\nRig: {rig}", "Szene: {scene}\nAufbau: {rig}")
 }
@@ -75,7 +73,6 @@ pub(in crate::console) fn state_meaning(meaning: &str) -> String {
     told!("State of the control loop\n{meaning}", "Zustand der Regelung\n{meaning}")
 }
 
-/// State of one of two arms that differ.
 pub(in crate::console) fn state_of_side(side: &str, state: &str) -> String {
     format!("{side}: {state}")
 }

@@ -88,7 +88,6 @@ pub(in crate::console) const NO_RESULT: Text = Text::of("No result", "Kein Ergeb
 pub(in crate::console) const FOLLOWING_CHECK: Text = Text::of("Next: ready check", "Weiter: Startprüfung");
 pub(in crate::console) const DONE: Text = Text::of("(done)", "(fertig)");
 
-/// Caption of the picture of a pose.
 pub(in crate::console) fn tilt_off(tilt_deg: f64) -> String {
     told!(
         "outline: target   solid: current tool   tilt error {tilt_deg:.0} deg",
@@ -96,38 +95,31 @@ pub(in crate::console) fn tilt_off(tilt_deg: f64) -> String {
     )
 }
 
-/// Caption of the picture of directions.
 pub(in crate::console) fn rings_and_discs(name: &str) -> String {
     told!("{name} (rings: to do, discs: recorded)", "{name} (Ringe: offen, Scheiben: aufgezeichnet)")
 }
 
-/// A map in one sentence.
 pub(in crate::console) fn fields_filled(title: &str, filled: usize, fields: usize) -> String {
     told!("{title}: {filled} of {fields} fields filled", "{title}: {filled} von {fields} Feldern gefüllt")
 }
 
-/// A check that has passed, with the measured value.
 pub(in crate::console) fn met(measured: &str) -> String {
     told!("{measured}, passed", "{measured}, OK")
 }
 
-/// Button that goes on with the calibration that is to be made after a saved one.
 pub(in crate::console) fn following(arm: &str, calibration: &str) -> String {
     let after = arm.to_lowercase();
     told!("{measured}, OK", "Weiter: Arm {after}, {}", within(calibration))
 }
 
-/// Title of a wizard.
 pub(in crate::console) fn title(wizard: &str) -> String {
     told!("{wizard} calibration", "Kalibrierung: {wizard}")
 }
 
-/// A picture of directions in one sentence.
 pub(in crate::console) fn recorded(name: &str, count: usize) -> String {
     told!("{name}: {count} recorded", "{name}: {count} aufgezeichnet")
 }
 
-/// Where values were written.
 pub(in crate::console) fn written(path: &Path) -> String {
     told!("Saved in {}", "Gespeichert in {}", path.display())
 }

@@ -1,11 +1,11 @@
-//! Texts: what another program is told of a state.
+//! Texts about a state, for another program.
 
 use nima_core::safety::State;
 use nima_machine::messages::LoopState;
 
 use crate::{language::word, words::Remedy as _};
 
-/// What is wrong in a state, and what to do, beside a code for another program; nothing in a state in which all is well.
+/// Cause and remedy, sent next to the state's code; empty if the state needs no action.
 pub(super) fn trouble_of(state: LoopState) -> String {
     match state {
         State::Faulted(fault) => format!("{}. {}", fault.cause(), fault.cure()),

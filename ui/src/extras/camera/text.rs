@@ -1,4 +1,4 @@
-//! The wizard of the endoscope's camera.
+//! The Camera wizard.
 
 use nima_endoscope::Bend;
 
@@ -178,27 +178,22 @@ pub(super) const NEEDS_LENS: Text = Text::of(
 pub(super) const NEEDS_PLACE: Text =
     Text::of("No good position yet: touch the marked corners", "Noch keine gute Lage: die markierten Ecken berühren");
 
-/// Why there is no such board.
 pub(super) fn no_board(why: &str) -> String {
     told!("No board: {why}", "Keine Tafel: {why}")
 }
 
-/// Number of views, and how it stands with the present one.
 pub(super) fn views(count: usize, told: &str) -> String {
     told!("{count} captured; {told}", "{count} aufgenommen; {told}")
 }
 
-/// The picture in words.
 pub(super) fn picture(told: &str) -> String {
     told!("Endoscope image: {told}", "Endoskopbild: {told}")
 }
 
-/// The map in words.
 pub(super) fn covered(share: f64) -> String {
     told!("{:.0} % of the image covered", "{:.0} % des Bildes abgedeckt", 100.0 * share)
 }
 
-/// A view that was not used.
 pub(super) fn left_out(number: usize, why: &str) -> String {
     told!("View {number} left out: {why}", "Ansicht {number} ausgelassen: {why}")
 }
@@ -214,7 +209,6 @@ pub(super) fn bend(bend: &Bend, sd: &Bend) -> String {
     format!("k1 {k1:.4} ± {:.4}, k2 {k2:.4}, p1 {p1:.4}, p2 {p2:.4}", sd.k1)
 }
 
-/// What is to be touched.
 pub(super) fn touch(corner: usize) -> String {
     told!(
         "Touch the marked corner with the tip (corner {})",
@@ -223,12 +217,10 @@ pub(super) fn touch(corner: usize) -> String {
     )
 }
 
-/// How many corners are touched.
 pub(super) fn touched(count: usize, tip: &str) -> String {
     told!("{count} corners touched; {tip}", "{count} Ecken berührt; {tip}")
 }
 
-/// Why it may be saved.
 pub(super) fn proof(lens_px: Option<f64>, place: Option<(f64, bool)>) -> String {
     let lens = lens_px
         .map_or(word("The lens comes from the rig file", "Das Objektiv ist das der Aufbaudatei").to_owned(), |px| {

@@ -4,7 +4,6 @@ use nima_camera::{Ask, Cause, Lack, LeftOut, Offer, PlaceError, Region, Unseen, 
 
 use crate::language::{told, word};
 
-/// What is missing for a good calibration, and what to do.
 pub(super) fn camera_cause(cause: &Cause) -> String {
     match cause {
         Cause::TooFew { used, needed } => {
@@ -65,7 +64,6 @@ pub(super) fn camera_cause(cause: &Cause) -> String {
     }
 }
 
-/// Why a view was not used.
 pub(super) fn left_out(why: LeftOut) -> &'static str {
     match why {
         LeftOut::Blurred => word("blurred", "unscharf"),
@@ -74,7 +72,6 @@ pub(super) fn left_out(why: LeftOut) -> &'static str {
     }
 }
 
-/// Why no board is found.
 pub(super) fn unseen(unseen: Unseen) -> String {
     match unseen {
         Unseen::Nothing => word("no board detected", "keine Tafel zu sehen").to_owned(),
@@ -89,7 +86,6 @@ pub(super) fn unseen(unseen: Unseen) -> String {
     }
 }
 
-/// What became of the board in a picture.
 pub(super) fn offer(offer: Offer) -> &'static str {
     match offer {
         Offer::Taken => word("captured", "aufgenommen"),
@@ -103,7 +99,6 @@ pub(super) fn offer(offer: Offer) -> &'static str {
     }
 }
 
-/// The view that is wanted next.
 pub(super) fn ask(ask: Ask) -> String {
     match ask {
         Ask::Flat => {
@@ -143,7 +138,6 @@ fn region([column, row]: [usize; 2]) -> &'static str {
     }
 }
 
-/// Why the camera has no place.
 pub(super) fn place_error(error: PlaceError) -> String {
     match error {
         PlaceError::TooFew { touched, needed } => told!(
@@ -163,7 +157,6 @@ pub(super) fn place_error(error: PlaceError) -> String {
     }
 }
 
-/// What makes the camera's place useless.
 pub(super) fn place_lack(lack: &Lack) -> String {
     match lack {
         Lack::NotRigid { corner: [column, row], by_m } => told!(

@@ -1,4 +1,4 @@
-//! The panel that measures computing time against accuracy, and the strip below the gain slider.
+//! The Trade-off panel (computing time versus accuracy), and the strip below the gain slider.
 
 use nima_study::stability_map::Verdict;
 
@@ -74,27 +74,22 @@ pub(super) const STABLE_GAIN_HOVER: Text = Text::of(
      Schraffiert: die Hand zittert.",
 );
 
-/// The background thread could not be started.
 pub(super) fn not_started(error: &impl std::fmt::Display) -> String {
     told!("The measurement could not be started: {error}", "Messung nicht gestartet: {error}")
 }
 
-/// Progress of the measurement.
 pub(super) fn measured(percent: f32) -> String {
     told!("Trade-off measured: {percent:.0} %", "Abwägung gemessen: {percent:.0} %")
 }
 
-/// The loop now uses this choice.
 pub(super) fn applied(choice: &str) -> String {
     told!("Applied: {choice}", "Angewendet: {choice}")
 }
 
-/// The loop could not be restarted with the choice.
 pub(super) fn not_applied(reason: &str) -> String {
     told!("Not applied: {reason}", "Nicht angewendet: {reason}")
 }
 
-/// All figures of a point.
 pub(super) fn point(name: &str, [median_us, p99_us]: [&str; 2], delay_ms: f64, [error_n, ratio]: [&str; 2]) -> String {
     told!(
         "{name}\none tick: median {median_us} µs, p99 {p99_us} µs\nmean error at {delay_ms:.0} ms: {error_n} N, \
@@ -104,12 +99,10 @@ pub(super) fn point(name: &str, [median_us, p99_us]: [&str; 2], delay_ms: f64, [
     )
 }
 
-/// Title of the error axis.
 pub(super) fn error_axis(unit: &str) -> String {
     told!("Mean error ({unit})", "Mittlerer Fehler ({unit})")
 }
 
-/// The plot in one sentence.
 pub(super) fn plot(points: usize) -> String {
     told!(
         "Trade-off plot: {points} points, time per tick versus prediction error",
@@ -117,7 +110,6 @@ pub(super) fn plot(points: usize) -> String {
     )
 }
 
-/// Verdict of the stability map for this gain.
 pub(super) fn stable_up_to(verdict: Verdict, greatest: f64, stiffness_n_m: f64) -> String {
     let verdict = match verdict {
         Verdict::Stable => word("stable", "stabil"),

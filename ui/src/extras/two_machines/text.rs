@@ -1,4 +1,4 @@
-//! The panel of the line to the machine with the arm.
+//! The Link panel.
 
 use crate::language::Text;
 

@@ -1,4 +1,4 @@
-//! Texts: what the line to the other machine does, and what the operator can do.
+//! State of the link to the other machine, and remedies.
 
 use nima_network::{
     control::{Cause, Refusal},
@@ -9,7 +9,7 @@ use nima_network::{
 use super::line::LineReport;
 use crate::language::{told, word};
 
-/// The state, a clause without a full stop.
+/// State, a clause without a full stop.
 pub(super) fn state_in_words(state: LinkState) -> String {
     match link_trouble(state) {
         None => word("connected to the other machine", "mit der Gegenstelle verbunden").to_owned(),
@@ -17,7 +17,7 @@ pub(super) fn state_in_words(state: LinkState) -> String {
     }
 }
 
-/// Why nothing passes, and what to do, clauses without a full stop; `None` if all is well.
+/// Cause and remedy of a broken link, clauses without a full stop; `None` if the link works.
 pub(super) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
     let cause = match state {
         LinkState::Open => return None,
@@ -94,7 +94,7 @@ pub(super) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
     Some([cause.to_owned(), cure.to_owned()])
 }
 
-/// A figure of a line.
+/// One measurement of the link.
 #[derive(Clone)]
 pub(super) struct LinkRow {
     pub(super) name: &'static str,
@@ -103,7 +103,6 @@ pub(super) struct LinkRow {
     pub(super) meaning: &'static str,
 }
 
-/// The figures of a line, one to a row.
 pub(super) fn link_rows(report: &LineReport) -> Vec<LinkRow> {
     let figures = &report.figures;
     let state = match report.state {
@@ -126,7 +125,6 @@ fn ms(seconds: f64) -> String {
     format!("{:.1} ms", seconds * 1e3)
 }
 
-/// What a message takes.
 fn times(figures: &Figures) -> Vec<LinkRow> {
     let mut rows = Vec::new();
     let mut row = |name, value, meaning| rows.push(LinkRow { name, value, meaning });
@@ -177,7 +175,6 @@ fn times(figures: &Figures) -> Vec<LinkRow> {
     rows
 }
 
-/// What is lost, and what it takes of the network.
 fn amounts(report: &LineReport) -> Vec<LinkRow> {
     let figures = &report.figures;
     let counts = &report.figures.counts;

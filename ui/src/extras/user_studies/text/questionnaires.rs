@@ -19,7 +19,6 @@ pub(in crate::extras::user_studies) const FREE_TEXT: Text =
 pub(in crate::extras::user_studies) const FREE_TEXT_HINT: Text = Text::of("May be left empty", "Darf leer bleiben");
 pub(in crate::extras::user_studies) const NOT_ANSWERED: Text = Text::of("not yet", "noch nicht");
 
-/// A questionnaire.
 pub(in crate::extras::user_studies) fn questionnaire(which: Questionnaire) -> &'static str {
     match which {
         Questionnaire::NasaTlx => word("NASA-TLX", "NASA-TLX"),
@@ -30,7 +29,6 @@ pub(in crate::extras::user_studies) fn questionnaire(which: Questionnaire) -> &'
     }
 }
 
-/// Of whom a questionnaire is about, and about what.
 pub(in crate::extras::user_studies) fn asked(which: Questionnaire, participant: &str, after: Option<Label>) -> String {
     let about = after.map_or_else(
         || word("the whole session", "die ganze Sitzung").to_owned(),
@@ -39,17 +37,14 @@ pub(in crate::extras::user_studies) fn asked(which: Questionnaire, participant: 
     told!("{}, {participant}, about {about}", "{}, {participant}, über {about}", questionnaire(which))
 }
 
-/// What is missing in a questionnaire.
 pub(in crate::extras::user_studies) fn missing(what: &[String]) -> String {
     told!("Missing: {}", "Es fehlt: {}", what.join(", "))
 }
 
-/// So many pairs were not compared.
 pub(in crate::extras::user_studies) fn missing_pairs(count: usize) -> String {
     if count == 1 { word("1 pair", "1 Paar").to_owned() } else { told!("{count} pairs", "{count} Paare") }
 }
 
-/// A statement by its number.
 pub(in crate::extras::user_studies) fn statement(number: usize) -> String {
     told!("statement {number}", "Aussage {number}")
 }

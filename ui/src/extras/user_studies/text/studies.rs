@@ -153,7 +153,6 @@ pub(in crate::extras::user_studies) const BREAK_BACK: Text = Text::of(
 );
 pub(in crate::extras::user_studies) const BREAK_DONE: Text = Text::of("The break is over", "Die Pause ist vorbei");
 
-/// A study in the list.
 pub(in crate::extras::user_studies) fn standing(
     finished: usize,
     participants: usize,
@@ -166,7 +165,6 @@ pub(in crate::extras::user_studies) fn standing(
     )
 }
 
-/// Whether it is blind, in a word.
 pub(in crate::extras::user_studies) fn blindness(blind: bool, unblinded: bool) -> &'static str {
     match (blind, unblinded) {
         (false, _) => word("not blind", "nicht verblindet"),
@@ -175,7 +173,6 @@ pub(in crate::extras::user_studies) fn blindness(blind: bool, unblinded: bool) -
     }
 }
 
-/// Name of a button in the list.
 pub(in crate::extras::user_studies) fn open_named(name: &str) -> String {
     told!("Open {name}", "{name} öffnen")
 }
@@ -184,7 +181,6 @@ fn attempt(attempt: u32) -> String {
     if attempt > 1 { told!(", attempt {attempt}", ", Anlauf {attempt}") } else { String::new() }
 }
 
-/// What a participant does next; `trials` in all.
 pub(in crate::extras::user_studies) fn next(step: &Step, trials: u32) -> String {
     match step {
         Step::Practice { number, attempt: nth } => {
@@ -212,7 +208,7 @@ pub(in crate::extras::user_studies) fn next(step: &Step, trials: u32) -> String 
     }
 }
 
-/// On the button of the next step; `None` if there is none.
+/// Label of the button of the next step; `None` if the step has no button.
 pub(in crate::extras::user_studies) fn begin(step: &Step) -> Option<&'static str> {
     match step {
         Step::Practice { .. } => Some(word("Start the practice trial", "Übungsversuch beginnen")),
@@ -223,7 +219,6 @@ pub(in crate::extras::user_studies) fn begin(step: &Step) -> Option<&'static str
     }
 }
 
-/// What a participant has done.
 pub(in crate::extras::user_studies) fn done(
     practice: usize,
     trials: usize,
@@ -238,13 +233,11 @@ pub(in crate::extras::user_studies) fn done(
     )
 }
 
-/// The order of a participant's labels.
 pub(in crate::extras::user_studies) fn order(labels: &[Label]) -> String {
     let labels: Vec<String> = labels.iter().map(ToString::to_string).collect();
     told!("Order {}", "Reihenfolge {}", labels.join(" "))
 }
 
-/// The trial on the screen.
 pub(in crate::extras::user_studies) fn trial(trial: TrialId, trials: u32, label: Option<Label>) -> String {
     let nth = attempt(trial.attempt);
     match (trial.phase, label) {
@@ -258,13 +251,11 @@ pub(in crate::extras::user_studies) fn trial(trial: TrialId, trials: u32, label:
     }
 }
 
-/// Time on the screen, minutes and seconds.
 pub(in crate::extras::user_studies) fn clock(seconds: f64) -> String {
     let whole = if seconds.is_finite() { seconds.max(0.0) as u64 } else { 0 };
     format!("{}:{:02}", whole / 60, whole % 60)
 }
 
-/// How long a break lasts.
 pub(in crate::extras::user_studies) fn break_least(least_s: f64) -> String {
     told!(
         "Time until the break may end; the study requires at least {}",
@@ -273,12 +264,10 @@ pub(in crate::extras::user_studies) fn break_least(least_s: f64) -> String {
     )
 }
 
-/// Time of a trial, of its limit.
 pub(in crate::extras::user_studies) fn time_of(seconds: f64, limit_s: f64) -> String {
     told!("{} of {}", "{} von {}", clock(seconds), clock(limit_s))
 }
 
-/// Trials of a learning curve.
 pub(in crate::extras::user_studies) fn curve(participant: &str, practice: usize, trials: usize) -> String {
     told!(
         "Learning of {participant}: {practice} practice trials, {trials} trials completed",
@@ -286,7 +275,6 @@ pub(in crate::extras::user_studies) fn curve(participant: &str, practice: usize,
     )
 }
 
-/// What is drawn of them.
 pub(in crate::extras::user_studies) fn curve_marks(curve: Option<&LearningCurve>) -> String {
     let marks = word("Rings: practice. Discs: trials that count.", "Ringe: Übung. Scheiben: zählende Versuche.");
     match curve {
@@ -312,7 +300,6 @@ pub(in crate::extras::user_studies) fn curve_marks(curve: Option<&LearningCurve>
     }
 }
 
-/// Facts of a study: its rig, who has finished, whether it is blind.
 pub(in crate::extras::user_studies) fn facts(
     rig: &str,
     finished: usize,
@@ -326,7 +313,6 @@ pub(in crate::extras::user_studies) fn facts(
     )
 }
 
-/// What was left out.
 pub(in crate::extras::user_studies) fn left_out(participant: &str, trial: Option<u32>) -> String {
     trial.map_or_else(
         || told!("{participant}: excluded", "{participant}: ausgeschlossen"),
@@ -334,27 +320,23 @@ pub(in crate::extras::user_studies) fn left_out(participant: &str, trial: Option
     )
 }
 
-/// Who opened it, when and why.
 pub(in crate::extras::user_studies) fn unblinded(who: &str, at: &str, why: &str) -> String {
     told!("Unblinded by {who} at {at}: {why}", "Entblindet von {who}, {at}: {why}")
 }
 
-/// A label and its condition.
 pub(in crate::extras::user_studies) fn stands_for(label: Label, name: &str) -> String {
     format!("{label}: {name}")
 }
 
-/// Where the report is.
 pub(in crate::extras::user_studies) fn report_written(page: &Path) -> String {
     told!("Written: {}", "Geschrieben: {}", page.display())
 }
 
-/// It was not written.
 pub(in crate::extras::user_studies) fn report_failed(why: &str) -> String {
     told!("Not written: {why}", "Nicht geschrieben: {why}")
 }
 
-/// Ticks that did not reach the score, for the journal.
+/// Entry of the journal.
 pub(in crate::extras::user_studies) fn note_lost(trial: TrialId, lost: u64) -> String {
     told!(
         "trial {}: {lost} ticks of the loop are missing from the score",
@@ -363,12 +345,10 @@ pub(in crate::extras::user_studies) fn note_lost(trial: TrialId, lost: u64) -> S
     )
 }
 
-/// The recording of a trial has a hole or an early end.
 pub(in crate::extras::user_studies) fn record_failed(why: &str) -> String {
     told!("The recording of the trial is incomplete: {why}", "Die Aufzeichnung des Versuchs ist unvollständig: {why}")
 }
 
-/// A trial by its number.
 pub(in crate::extras::user_studies) fn of_trial(number: u32) -> String {
     told!("Trial {number}", "Versuch {number}")
 }

@@ -114,7 +114,7 @@ pub(in crate::extras::user_studies) const MAKE_HOVER: Text = Text::of(
     "Zieht Reihenfolgen und Labels zufällig und versiegelt die Zuordnung der Labels zu Bedingungen",
 );
 
-/// A ready study, by its name in commands.
+/// Name and description of a template, by its name on the command line.
 pub(in crate::extras::user_studies) fn ready(name: &str) -> [&'static str; 2] {
     match name {
         "paper" => [
@@ -135,27 +135,24 @@ pub(in crate::extras::user_studies) fn ready(name: &str) -> [&'static str; 2] {
     }
 }
 
-/// A measure in a list.
 pub(in crate::extras::user_studies) fn measure(key: &str, words: &str) -> String {
     format!("{key}: {}", words.trim_end_matches('.'))
 }
 
-/// A secondary measure, on the button that leaves it off.
+/// Label of the button that removes a secondary measure.
 pub(in crate::extras::user_studies) fn leave_off(key: &str) -> String {
     format!("{key} \u{00d7}")
 }
 
-/// What it is, and what the button does.
 pub(in crate::extras::user_studies) fn leave_off_hover(meaning: &str) -> String {
     told!("{meaning} Click to remove it.", "{meaning} Klick entfernt sie.")
 }
 
-/// Name of the control of a rule, for those who do not see the table.
+/// Accessible name of the control of a rule.
 pub(in crate::extras::user_studies) fn of_rule(what: &str, number: usize) -> String {
     told!("Rule {number}: {what}", "Regel {number}: {what}")
 }
 
-/// How a rule compares.
 pub(in crate::extras::user_studies) fn comparison(is: Comparison) -> &'static str {
     match is {
         Comparison::Above => word("above", "über"),
@@ -164,7 +161,6 @@ pub(in crate::extras::user_studies) fn comparison(is: Comparison) -> &'static st
     }
 }
 
-/// What a rule leaves out.
 pub(in crate::extras::user_studies) fn excludes(what: Excludes) -> &'static str {
     match what {
         Excludes::Trial => word("the trial", "den Versuch"),
@@ -172,7 +168,6 @@ pub(in crate::extras::user_studies) fn excludes(what: Excludes) -> &'static str 
     }
 }
 
-/// Whether the orders are balanced.
 pub(in crate::extras::user_studies) fn balance(participants: usize, rows: usize) -> String {
     if rows > 0 && participants.is_multiple_of(rows) {
         told!(
@@ -188,12 +183,10 @@ pub(in crate::extras::user_studies) fn balance(participants: usize, rows: usize)
     }
 }
 
-/// Where the new study will be.
 pub(in crate::extras::user_studies) fn place(folder: &Path) -> String {
     told!("The study will be created in {}", "Die Studie wird angelegt in {}", folder.display())
 }
 
-/// A study that was made.
 pub(in crate::extras::user_studies) fn made(folder: &Path) -> String {
     told!(
         "Created: {}. Copy the commitment now and keep it elsewhere.",
@@ -202,7 +195,7 @@ pub(in crate::extras::user_studies) fn made(folder: &Path) -> String {
     )
 }
 
-/// Name of the control of a condition, for those who do not see the table.
+/// Accessible name of the control of a condition.
 pub(in crate::extras::user_studies) fn of_condition(what: &str, number: usize) -> String {
     format!("{what} {number}")
 }

@@ -45,10 +45,10 @@ fn page(sessions: &[Figures]) -> String {
         _ => format!("{} sessions", sessions.len()),
     };
     let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width\">\n<title>{0}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{0}</h1>\n\
-         <p class=\"note\">NIMA Console, research use only. Forces are those of the tissue on the instrument's tip. Times are seconds \
-         from the beginning of the session.</p>\n",
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
+         content=\"width=device-width\">\n<title>{0}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{0}</h1>\n<p \
+         class=\"note\">NIMA Console, research use only. Forces act from the tissue on the instrument's tip. \
+         Times are seconds since the start of the session.</p>\n",
         escape(&title)
     );
     if sessions.len() > 1 {
@@ -83,8 +83,8 @@ fn name(session: &Figures) -> String {
 
 fn definitions() -> String {
     let rows = [
-        ["peak, mean", "largest and mean length of the force vector"],
-        ["integral", "the length of the force, integrated over time"],
+        ["peak, mean", "maximum and mean magnitude of the force"],
+        ["integral", "magnitude of the force, integrated over time"],
         [
             "force volume",
             "volume of the ellipsoid whose half axes are the standard deviations of the force along its three principal axes \
@@ -95,8 +95,9 @@ fn definitions() -> String {
             "change of the force vector from one sample to the next, over the time between them; sensor noise adds to it",
         ],
         [
-            "error at the horizon",
-            "how wrong each mode is about the force one link delay ahead; the delayed force is \"Direct (DFR)\"",
+            "prediction error",
+            "error of each mode's prediction of the force one link delay ahead; the delayed force is \"Direct \
+             (DFR)\"",
         ],
         ["gates", "the checks between a mode's force and the hand; each can reduce the force"],
     ];
@@ -135,7 +136,7 @@ mod tests {
             mark(3.25, MarkLevel::Mark, "mark 2"),
         ];
         let page = page(&[Figures { marks, ..session("rig") }]);
-        assert!(page.contains("<td>marks of the operator</td><td>1.500 s, 3.250 s</td>"), "{page}");
+        assert!(page.contains("<td>operator marks</td><td>1.500 s, 3.250 s</td>"), "{page}");
         assert!(page.contains("<td>faults</td><td>0</td>") && page.contains("alarm: late"), "{page}");
     }
 

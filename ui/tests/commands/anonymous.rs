@@ -271,7 +271,10 @@ fn an_anonymous_session_has_a_report_and_a_table_and_can_be_cut_again() {
     let again = at("again.mcap");
     let one = at("one.csv");
     let both = at("both.csv");
-    refused(&["export", &session, "--out", &one, "--arm", "left", "--anonymous"], "--anonymous is for a session");
+    refused(
+        &["export", &session, "--out", &one, "--arm", "left", "--anonymous"],
+        "--anonymous applies only to sessions",
+    );
     done(&["export", &session, "--out", &out, "--anonymous", "--from", "0.5"]);
     done(&["export", &out, "--out", &again, "--from", "1"]);
     for (session, table) in [(&session, &one), (&again, &both)] {
@@ -292,7 +295,7 @@ fn an_anonymous_session_has_a_report_and_a_table_and_can_be_cut_again() {
     let page = std::fs::read(folder.path().join("pages/report.html")).unwrap();
     assert_eq!(found(&page), [""; 0]);
     let page = String::from_utf8(page).unwrap();
-    assert!(page.contains("An anonymous session") && page.contains("Forces of the left arm over time"));
+    assert!(page.contains("Anonymous session") && page.contains("Forces of the left arm over time"));
     let path = folder.path().display().to_string();
     assert!(!page.contains(&path), "the page tells no folder");
 }

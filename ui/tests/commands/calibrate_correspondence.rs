@@ -107,7 +107,7 @@ fn a_refused_set_is_written_only_under_a_name_and_still_fails() {
         let more = ["--out", out.to_str().unwrap(), "--override", name, "--override-reason", "bench only"];
         one_line(&calibrate(&path, &more))
     };
-    assert!(with(" ").contains("--override needs the name"));
+    assert!(with(" ").contains("--override requires the name"));
     assert!(!out.exists());
     assert!(with("A. Technician").contains("Insufficient motion"));
     let record: CorrespondenceRecord = store::read(&out).unwrap().unwrap();

@@ -45,7 +45,7 @@ fn the_handle_that_leads_a_simulated_rig_is_tested_and_keeps_the_real_clock() {
     run.args(["run", "--virtual", "--seconds", "1", "--rig"]).arg(&path);
     let refused = run.env("NIMA_DATA_DIR", folder.path()).output().unwrap();
     let why = String::from_utf8(refused.stderr).unwrap();
-    assert!(!refused.status.success() && why.contains("remove --virtual"), "{why}");
+    assert!(!refused.status.success() && why.contains("omit --virtual"), "{why}");
 }
 
 #[test]

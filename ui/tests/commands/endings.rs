@@ -183,7 +183,7 @@ fn whatever_signal_ends_a_run_its_figures_are_printed() {
             let told = String::from_utf8_lossy(&output.stderr);
             assert!(output.status.success(), "{signal}: {} {told}", output.status);
             assert!(figures.contains("right arm ended: Engaged") && figures.contains("work us"), "{signal}: {figures}");
-            assert!(told.contains("nima: ended as asked: force and drives are off"), "{signal}: {told}");
+            assert!(told.contains("nima: ended on request: force and drives are off"), "{signal}: {told}");
         }
     });
 }
@@ -251,7 +251,7 @@ fn an_export_that_is_ended_leaves_nothing_behind() {
         let status = export.ended();
         let mut told = String::new();
         export.0.stderr.take().unwrap().read_to_string(&mut told).unwrap();
-        assert!(!status.success() && told.lines().count() == 1 && told.contains("ended as asked"), "{out}: {told}");
+        assert!(!status.success() && told.lines().count() == 1 && told.contains("ended on request"), "{out}: {told}");
         assert_eq!(there(), ["session.mcap"]);
     }
 }

@@ -106,11 +106,11 @@ fn a_table_has_the_values_of_the_messages_and_identify_makes_the_same_of_both() 
 
     refused(&["export", &session, "--out", &at("new.csv")], "choose one with --arm");
     refused(&["identify", &session], "choose one with --arm");
-    refused(&["export", &session, "--out", &left, "--arm", "left"], "it is there already");
-    refused(&["export", &session, "--out", &at("new.txt")], "ends in .csv, .mcap, .json or .xml");
+    refused(&["export", &session, "--out", &left, "--arm", "left"], "it already exists");
+    refused(&["export", &session, "--out", &at("new.txt")], "end in .csv, .mcap, .json or .xml");
     refused(&["export", &session, "--out", &at("new.mcap"), "--arm", "left"], "keeps both arms");
     refused(&["export", &session, "--out", &at("new.csv"), "--arm", "middle"], "right or left");
-    refused(&["export", &session, "--out", &at("new.csv"), "--from", "4.5"], "beyond the end");
+    refused(&["export", &session, "--out", &at("new.csv"), "--from", "4.5"], "after the end");
     refused(&["export", &session, "--out", &at("new.csv"), "--from", "3", "--to", "2"], "is not before --to 2");
     refused(&["export", &session, "--out", &at("no/such/new.mcap")], "cannot write");
     refused(&["identify", &left, "--arm", "left"], "is a table");
@@ -135,8 +135,8 @@ fn a_layout_for_viewers_comes_out_of_a_session_and_stays_in_an_anonymous_one() {
         assert!(text.starts_with(begin) && text.contains("right") && !text.contains("left"), "{text:.300}");
         assert!(text == std::fs::read_to_string(of_shared).unwrap(), "{name} differs in the anonymous session");
     }
-    refused(&["export", &session, "--out", &at("layout.json")], "it is there already");
-    refused(&["export", &session, "--out", &at("other.json"), "--from", "1"], "leave out --arm");
+    refused(&["export", &session, "--out", &at("layout.json")], "it already exists");
+    refused(&["export", &session, "--out", &at("other.json"), "--from", "1"], "omit --arm");
 }
 
 #[test]

@@ -46,7 +46,7 @@ fn the_figures_are_those_of_the_tables_and_the_page_compares_both_sessions() {
         close(&arm["forces"][number]["mean_n"], mean_n);
     }
     let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
-    for expected in ["first.mcap", "second.mcap", "Comparison", "What happened", "closed properly", "<svg"] {
+    for expected in ["first.mcap", "second.mcap", "Comparison", "<h2>Events</h2>", "closed properly", "<svg"] {
         assert!(page.contains(expected), "{expected} is not on the page");
     }
     assert!(!page.contains("NaN") && !page.contains("<script"));

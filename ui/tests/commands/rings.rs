@@ -77,7 +77,7 @@ fn the_score_of_a_session_is_that_of_its_run() {
     let figures = json(&["report", &whole, "--out", &at("pages"), "--json"]);
     assert_eq!(figures["sessions"][0]["happenings"]["ring_transferred"], 2, "{figures}");
     let page = std::fs::read_to_string(folder.path().join("pages/report.html")).unwrap();
-    for words in ["What happened to the objects", "ring transferred", "ring 1 passed to the right instrument"] {
+    for words in ["Events of the objects", "ring transferred", "ring 1 passed to the right instrument"] {
         assert!(page.contains(words), "{words}");
     }
     let reader = Reader::open(Path::new(&whole)).unwrap();

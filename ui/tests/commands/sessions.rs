@@ -71,8 +71,8 @@ fn sessions_are_listed_kept_and_deleted_and_nothing_else_is() {
     assert!(done(data, &["sessions"]).contains("a.mcap: closed") && at("a.mcap.kept").exists());
     done(data, &["sessions", "--unkeep", "a"]);
     for name in ["../mine", "../mine.mcap", "mine", "link", "link.mcap", "/etc/passwd", "", ".", "a.mcap.kept", "A"] {
-        refused(data, &["sessions", "--delete", name], "there is no session");
-        refused(data, &["sessions", "--keep", name], "there is no session");
+        refused(data, &["sessions", "--delete", name], "not found in");
+        refused(data, &["sessions", "--keep", name], "not found in");
     }
     refused(data, &["sessions", "--delete", "a", "--keep", "b"], "cannot be used with");
     for name in ["a", "killed.mcap", "empty"] {

@@ -1,4 +1,4 @@
-//! What the page says of one arm.
+//! The part of the page about one arm.
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,4 @@
-//! The report of sessions: one page that needs nothing beside it.
+//! The report of sessions: one self-contained page.
 
 mod arms;
 pub(crate) mod html;
@@ -16,21 +16,18 @@ use nima_session::report::Figures;
 use crate::command::output;
 use html::{escape, table};
 
-/// Name of the page in its folder.
 pub(crate) const PAGE: &str = "report.html";
 pub(crate) const STYLE: &str = include_str!("style.css");
 
-/// Reads the sessions and writes their page into this folder, which is made if it is missing.
+/// Reads the sessions and writes their page into this folder, which is created if missing.
 pub(crate) fn write(sessions: &[PathBuf], folder: &Path) -> anyhow::Result<PathBuf> {
     write_figures(&read(sessions)?, sessions, folder)
 }
 
-/// The figures of these sessions.
 pub(crate) fn read(sessions: &[PathBuf]) -> anyhow::Result<Vec<Figures>> {
     sessions.iter().map(|path| Ok(Figures::read(path)?)).collect()
 }
 
-/// Writes the page of these figures.
 pub(crate) fn write_figures(figures: &[Figures], sessions: &[PathBuf], folder: &Path) -> anyhow::Result<PathBuf> {
     let inputs: Vec<&Path> = sessions.iter().map(PathBuf::as_path).collect();
     output::folder(folder, &[PAGE], &inputs)?;
@@ -38,7 +35,6 @@ pub(crate) fn write_figures(figures: &[Figures], sessions: &[PathBuf], folder: &
     Ok(folder.join(PAGE))
 }
 
-/// The whole page.
 fn page(sessions: &[Figures]) -> String {
     let title = match sessions {
         [one] => format!("Session {}", name(one)),
@@ -74,7 +70,6 @@ fn page(sessions: &[Figures]) -> String {
     page
 }
 
-/// Name of the session's file without its folder.
 fn name(session: &Figures) -> String {
     Path::new(&session.file)
         .file_name()

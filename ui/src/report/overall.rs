@@ -1,4 +1,4 @@
-//! What the page says of a session as a whole, and of several beside each other.
+//! The part of the page about a session as a whole, and the comparison of several sessions.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use super::{
     name,
 };
 
-/// Most rows of the list of what happened.
+/// Maximum number of rows in the list of events.
 const MARKS: usize = 1000;
 const ABOUT: [(&str, &str); 13] = [
     ("started", "started (UTC)"),
@@ -30,7 +30,7 @@ const ABOUT: [(&str, &str); 13] = [
     ("delay_s", "delay of the link at the start (s)"),
 ];
 
-/// What tables of calibrations tell of how good these are.
+/// Metadata keys about the quality of a calibration, with their names on the page.
 const CALIBRATIONS: [(&str, &str); 7] = [
     ("gravity_verdict", "gravity: verdict"),
     ("network_verdict", "network: verdict"),
@@ -41,7 +41,7 @@ const CALIBRATIONS: [(&str, &str); 7] = [
     ("network_doubt_share", "network: fraction of the check outside its training"),
 ];
 
-/// What it is, and whether anything went wrong.
+/// Properties of the session, and warnings.
 pub(super) fn summary(session: &Figures) -> String {
     let mut rows =
         vec![vec!["file".to_owned(), escape(&name(session))], vec!["length".to_owned(), time(session.length_s)]];
@@ -109,7 +109,7 @@ fn of_level(session: &Figures, level: MarkLevel) -> impl Iterator<Item = &Mark> 
     session.marks.iter().filter(move |mark| mark.level == level)
 }
 
-/// How often what happened to the objects of the scene; nothing without them.
+/// Number of events of each kind, for the objects of the scene; empty without events.
 pub(super) fn happenings(session: &Figures) -> String {
     let Some(happenings) = &session.happenings else { return String::new() };
     let rows: Vec<_> =
@@ -118,7 +118,6 @@ pub(super) fn happenings(session: &Figures) -> String {
     format!("<section>\n<h2>Events of the objects</h2>\n{body}</section>\n")
 }
 
-/// Everything that happened, in order.
 pub(super) fn marks(session: &Figures) -> String {
     let row = |mark: &Mark| vec![time(mark.t_s), mark.level.word().to_owned(), escape(&mark.words)];
     let rows: Vec<_> = session.marks.iter().take(MARKS).map(row).collect();
@@ -132,7 +131,6 @@ pub(super) fn marks(session: &Figures) -> String {
     format!("<section>\n<h2>Events</h2>\n{body}{more}</section>\n")
 }
 
-/// Calibrations that were in force.
 pub(super) fn calibrations(session: &Figures) -> String {
     let mut rows = Vec::new();
     for (of, table) in &session.calibrations {
@@ -140,7 +138,7 @@ pub(super) fn calibrations(session: &Figures) -> String {
             "right" | "left" => format!("{of}, from the start"),
             number => format!("number {number}, activated later"),
         };
-        // Whether it may be used comes first.
+        // The verdict comes first.
         let (verdicts, others): (Vec<_>, Vec<_>) = table.iter().partition(|(key, _)| key.ends_with("_verdict"));
         for (key, value) in verdicts.into_iter().chain(others) {
             let known = CALIBRATIONS.iter().find(|(known, _)| known == key);
@@ -165,7 +163,7 @@ pub(super) fn calibrations(session: &Figures) -> String {
     format!("<section>\n<h2>Calibrations in use</h2>\n{body}</section>\n")
 }
 
-/// Periods missed, and percentiles.
+/// Missed periods, and percentiles.
 pub(super) fn timing(session: &Figures) -> String {
     let Some(timing) = &session.timing else { return String::new() };
     let names = ["wake-up delay (us)", "work per tick (us)", "sample to force (us)"];
@@ -191,7 +189,7 @@ pub(super) fn timing(session: &Figures) -> String {
     )
 }
 
-/// A column for each session.
+/// One column per session.
 pub(super) fn comparison(sessions: &[Figures]) -> String {
     let names: Vec<String> = sessions.iter().map(|session| escape(&name(session))).collect();
     let heads: Vec<&str> = std::iter::once("").chain(names.iter().map(String::as_str)).collect();
@@ -217,7 +215,6 @@ pub(super) fn comparison(sessions: &[Figures]) -> String {
     table(&heads, &rows)
 }
 
-/// A number of an arm, where there is one.
 type OfArm = (&'static str, fn(&ArmFigures) -> Option<String>);
 
 const OF_ARM: [OfArm; 8] = [

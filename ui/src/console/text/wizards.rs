@@ -83,7 +83,7 @@ pub(in crate::console) const SWITCH_DISABLED_HOVER: Text = Text::of(
 );
 pub(in crate::console) const MET: Text = Text::of("met", "erreicht");
 pub(in crate::console) const FINE: Text = Text::of("passed", "OK");
-pub(in crate::console) const WAITING: Text = Text::of("OK", "wartet");
+pub(in crate::console) const WAITING: Text = Text::of("waiting", "wartet");
 pub(in crate::console) const NO_RESULT: Text = Text::of("No result", "Kein Ergebnis");
 pub(in crate::console) const FOLLOWING_CHECK: Text = Text::of("Next: ready check", "Weiter: Startprüfung");
 pub(in crate::console) const DONE: Text = Text::of("(done)", "(fertig)");
@@ -109,7 +109,7 @@ pub(in crate::console) fn met(measured: &str) -> String {
 
 pub(in crate::console) fn following(arm: &str, calibration: &str) -> String {
     let after = arm.to_lowercase();
-    told!("{measured}, OK", "Weiter: Arm {after}, {}", within(calibration))
+    told!("Next: {arm} arm, {}", "Weiter: Arm {after}, {}", within(calibration))
 }
 
 pub(in crate::console) fn title(wizard: &str) -> String {

@@ -129,7 +129,7 @@ mod tests {
 
     use super::*;
 
-    /// OpenIGTLink would show the rendered forces, and thereby the condition.
+    /// `OpenIGTLink` would show the rendered forces, and thereby the condition.
     #[test]
     fn a_trial_of_a_blind_study_is_not_shown_by_openigtlink() {
         let servers = Servers(vec![Show::Igtl.start("127.0.0.1:0".parse().unwrap()).unwrap()]);

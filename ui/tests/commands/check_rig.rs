@@ -1,4 +1,4 @@
-//! `nima check rig`, as a user types it: on the simulated rig with a person at the arm, and what it refuses.
+//! `nima check rig`, as a user types it: on the simulated rig with a person at the arm, and its refusals.
 
 use std::{
     path::Path,

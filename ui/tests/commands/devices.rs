@@ -63,7 +63,7 @@ fn an_unknown_kind_names_the_known_ones_in_one_line() {
     assert!(!output.status.success() && told.lines().count() == 1 && told.contains("serial=PORT@BAUD"), "{told}");
 }
 
-/// Whoever tests an emulated rig before its emulators run is not sent to look for plugs.
+/// The test of an emulated rig without running emulators must not suggest checking plugs.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_emulated_rig_that_nobody_serves_names_the_command_that_does() {

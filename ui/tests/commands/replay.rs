@@ -111,7 +111,8 @@ fn what_cannot_be_replayed_is_told_in_one_line() {
     assert!(line.contains("make its folder first"), "{line}");
 }
 
-/// Runs this script in a shell with a disk of 9 MB of its own in the folder `disk`; `None` if this system lets nobody mount one.
+/// Runs this script in a shell with a separate disk of 9 MB in the folder `disk`; `None` if users cannot mount one on this
+/// system.
 #[cfg(target_os = "linux")]
 fn on_a_small_disk(folder: &Path, script: &str) -> Option<std::process::Output> {
     std::fs::create_dir_all(folder.join("disk")).unwrap();

@@ -1,4 +1,4 @@
-//! The devices panel on an emulated rig: which device is which, their test, and other devices for a part.
+//! The Devices panel on an emulated rig: identification of devices, their test, and other devices for a part.
 #![cfg(target_os = "linux")]
 
 use std::{path::Path, time::Duration};
@@ -27,16 +27,16 @@ use nima_tests::{
 use crate::bench::{comes, press, toured, until};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
-/// Far longer than emulators and devices need to start; a machine on which they do not is too busy.
+/// Far longer than emulators and devices need to start; a slower machine is too busy.
 const WITHIN: Duration = Duration::from_secs(40);
 const NIMA: &str = env!("CARGO_BIN_EXE_nima");
 
-/// A console with the devices panel in front, on the simulated rig; its data folder is `folder`.
+/// A console with the Devices panel in front, on the simulated rig; its data folder is `folder`.
 fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     let folder = folder.to_path_buf();
     let plan = plan("peg_transfer");
     let handle = start_simulated(&plan, 1.0).unwrap();
-    // The loop of an emulated rig runs in real time, as its devices do.
+    // The loop of an emulated rig runs in real time, like its devices.
     let mut harness = Harness::builder().with_size(SIZE).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
         let mut kept = toured(&folder);
         kept.now.layout = Layout { front: vec![Panel::Devices], ..Layout::default() };
@@ -47,11 +47,11 @@ fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     harness
 }
 
-/// The emulated rig at places of its own, as a file in the user's folder, is started from the start page.
+/// The emulated rig at its own addresses, as a file in the user's folder, is started from the start page.
 fn on_emulated_rig(folder: &Path) -> (Harness<'static, ConsoleApp>, RigFile) {
     let mut file = rig_file(&elsewhere(folder));
     file.set("name", "Bench rig");
-    // Emulated handles know their hands, as real ones do: who wants them exchanged says so.
+    // Emulated handles report their hands, as real ones do: swapping them must be explicit.
     file.set("devices.right.handle.hand", "right");
     file.set("devices.left.handle.hand", "left");
     file.save(&folder.join("rigs/bench.toml")).unwrap();
@@ -66,7 +66,7 @@ fn on_emulated_rig(folder: &Path) -> (Harness<'static, ConsoleApp>, RigFile) {
     (harness, file)
 }
 
-/// What the rows say of their devices.
+/// Texts of the device rows.
 fn told(harness: &Harness<'_, ConsoleApp>) -> Vec<String> {
     let rows = harness.query_all_by_label_contains("per second").chain(harness.query_all_by_label_contains("connect"));
     rows.filter_map(|row| row.accesskit_node().value()).collect()

@@ -1,5 +1,5 @@
-//! The console driven by accessible names on a real running loop: what is pressed must reach the loop, and what the loop
-//! does must come back to the screen.
+//! The console driven by accessible names on a real running loop: input must reach the loop, and its effects must appear on
+//! the screen.
 
 use std::time::Duration;
 
@@ -33,7 +33,7 @@ fn console() -> Harness<'static, ConsoleApp> {
     harness
 }
 
-/// True when a tick like that comes within some seconds of loop time (a peg's turn takes less than three).
+/// True when such a tick arrives within this loop time (one peg takes less than 3 s).
 fn ever(harness: &mut Harness<'_, ConsoleApp>, seconds: f64, good: impl Fn(&Tick) -> bool) -> bool {
     let t_s = |harness: &Harness<'_, ConsoleApp>| harness.state().tick().map_or(0.0, |tick| tick.t_s);
     let from_s = t_s(harness);

@@ -1,4 +1,4 @@
-//! The endoscope's picture in the surgeon's view, from an emulated camera over TCP, and each of its faults in words.
+//! The endoscope image in the Surgeon view, from an emulated camera over TCP, and a text for each of its faults.
 
 use egui::{
     Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Rect, Shape, TouchPhase, pos2, vec2,
@@ -22,12 +22,12 @@ use nima_tests::plan;
 
 use crate::bench::{Console, TIMEOUT, comes, press, shown, until};
 
-/// Small pictures, so that a busy machine keeps up.
+/// Small images, so that a busy machine keeps up.
 pub(crate) fn camera() -> (Serving, Endoscope) {
     lenses(None)
 }
 
-/// The same with a second lens so far to the right of the first one, m.
+/// Like [`camera`], with a second lens at this distance to the right of the first one, m.
 pub(crate) fn lenses(baseline_m: Option<f64>) -> (Serving, Endoscope) {
     let scene = Scene::load("bimanual").unwrap();
     let mut camera = usual(&scene);
@@ -54,7 +54,7 @@ pub(crate) fn surgeon(endoscope: Endoscope, size: [f32; 2]) -> Console {
     harness
 }
 
-/// Waits until the picture is told so, and painted so.
+/// Waits until this text is reported and painted.
 pub(crate) fn told(harness: &mut Console, words: &str) {
     let is_told = comes(harness, TIMEOUT, |harness| {
         harness.query_by_label_contains(words).is_some() && (words.ends_with("live") || is_painted(harness, words))
@@ -103,7 +103,7 @@ fn the_picture_is_shown_with_the_forces_in_it_and_each_of_its_faults_in_words() 
         serving.faults.set(EmulatedFault::None);
         told(&mut harness, "Endoscope image: live");
     }
-    // The loop went on: nothing of the picture concerns it.
+    // The loop continued: the image does not affect it.
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged);
 }
 
@@ -118,7 +118,7 @@ fn a_key_hides_the_forces() {
     assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "Forces are hidden; O draws them at the tips")));
 }
 
-/// Greatest opacity of the letters of these words, wherever they are painted.
+/// Opacities of the letters of this text, wherever it is painted.
 fn opacities(harness: &Console, words: &str) -> Vec<u8> {
     fn of(shape: &Shape, words: &str, found: &mut Vec<u8>) {
         match shape {
@@ -145,11 +145,11 @@ fn the_forces_fade_where_the_check_of_the_camera_was_worse_than_ten_pixels() {
         (serving, harness)
     };
     let faint = |harness: &Console| opacities(harness, "ceiling 4 N").iter().filter(|most| **most < 128).count();
-    // The picture is half as wide as the one for which the 10 px are said.
+    // The image is half as wide as the one to which the limit of 10 px applies.
     let (_serving, mut good) = checked(Some(4.0));
     assert!(comes(&mut good, TIMEOUT, |harness| is_painted(harness, "Forces are drawn at the tips")));
     let (_serving, mut faded) = checked(Some(14.0));
-    // The gauges beside the picture have the same words.
+    // The gauges next to the image have the same text.
     assert!(comes(&mut faded, TIMEOUT, |harness| {
         is_painted(harness, "14 px beside the tips") && faint(harness) > faint(&good)
     }));
@@ -188,7 +188,7 @@ fn a_key_chooses_the_half_of_two_lenses_and_the_forces_go_with_it() {
     }
 }
 
-/// Forces are drawn, in both halves of the view if they should be.
+/// Whether forces are drawn, in both halves of the view if `both`.
 fn has_forces(harness: &Console, both: bool) -> bool {
     let mut places = Vec::new();
     for clipped in &harness.output().shapes {
@@ -202,7 +202,7 @@ fn has_forces(harness: &Console, both: bool) -> bool {
     if both { places.iter().any(is_left) && !places.iter().all(is_left) } else { !places.is_empty() }
 }
 
-/// From where to where the picture is shown, in shares of its width.
+/// Start and end of the displayed parts of the image, as fractions of its width.
 fn halves(harness: &Console) -> Vec<[f32; 2]> {
     let shares = |shape: &Shape| match shape {
         Shape::Mesh(mesh) if is_picture(shape) => Some([mesh.vertices[0].uv.x, mesh.vertices[3].uv.x]),
@@ -239,7 +239,7 @@ fn without_an_endoscope_the_field_is_drawn_as_ever() {
     harness.get_by_label("Operating field");
 }
 
-/// Where the picture is, also beyond the view, and the part of it that is shown.
+/// Position of the image, including parts outside the view, and its displayed part.
 fn picture(harness: &Console) -> Option<(Rect, Rect)> {
     harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
         Shape::Mesh(mesh)
@@ -258,7 +258,7 @@ fn place(harness: &Console) -> Rect {
     picture(harness).unwrap().0
 }
 
-/// Turns the wheel over a place until the picture rests.
+/// Turns the wheel at a position until the image rests.
 fn wheel(harness: &mut Console, at: Pos2, turned: f32) {
     harness.event(Event::PointerMoved(at));
     harness.step();
@@ -315,7 +315,7 @@ fn the_wheel_zooms_a_drag_moves_and_a_double_click_shows_all() {
     let moved = place(&harness).min.y - zoomed.min.y;
     assert!((moved - 50.0).abs() < 12.0, "moved by {moved}");
 
-    // Away from the tips, which are told at the edge.
+    // Away from the tips, which are marked at the edge.
     wheel(&mut harness, whole.left_bottom() + vec2(4.0, -4.0), 800.0);
     assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "Right tip")), "the tip is still to be found");
     assert!(place(&harness).width() < 8.1 * whole.width());
@@ -337,7 +337,7 @@ fn edges_are_cut_off_by_the_rig_file_and_on_the_screen() {
     harness.run_steps(2);
     let (on_screen, part) = picture(&harness).unwrap();
     assert_eq!(part, Rect::from_min_max(pos2(0.1, 0.2), pos2(0.75, 1.0)));
-    // What is left is as large as it can be, and not distorted.
+    // The remaining part is as large as possible, and not distorted.
     assert!((on_screen.height() - by_file.height()).abs() < 1.0);
     let proportions = on_screen.width() / on_screen.height();
     assert!((proportions - 640.0 * 0.65 / (360.0 * 0.8)).abs() < 0.01, "{proportions}");

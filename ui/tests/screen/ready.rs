@@ -1,4 +1,4 @@
-//! The ready check on its page, walked by accessible names on the simulated rig.
+//! The ready check on its page, driven by accessible names on the simulated rig.
 
 use std::path::Path;
 
@@ -60,7 +60,7 @@ fn all_calibrations_stand_on_one_page_and_each_is_repeated_by_its_button() {
     read(&mut console, "Right arm: sensor SIM-S1-0001, Simulated grasper");
     assert!(shows(&console, "Accepted, held-out error 0.0") && shows(&console, ", less than a day old"));
     assert!(shows(&console, "not calibrated"), "the correspondence is missing");
-    // What the check of the bias finds in the meantime comes without a click.
+    // The result of the bias check appears without a click.
     read(&mut console, "N without contact, passed");
     pick(&mut console, "Recalibrate Right arm, gravity");
     read(&mut console, "release it: nothing may touch the tool");

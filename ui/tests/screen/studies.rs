@@ -1,4 +1,4 @@
-//! User studies in the window: from a ready study to a report by clicks, and blind until the unblinding.
+//! User studies in the window: from a template to a report by clicks, and blind until unblinding.
 
 use std::{
     fs,
@@ -28,10 +28,10 @@ use crate::bench::{
 };
 
 pub(crate) const SIZE: [f32; 2] = [1600.0, 1000.0];
-/// How much faster than real time a trial goes.
+/// Speed of a trial, as a multiple of real time.
 const SPEED: f64 = 6.0;
 const AT: &str = "2026-01-01T09:00:00Z";
-/// Makes a study among the user's data in which the right hand touches tissue for so many seconds.
+/// Creates a study among the user's data in which the right hand touches tissue for this duration.
 pub(crate) fn make(data: &Path, head: &str, seconds: f64, rest: &str) -> PathBuf {
     let text = study_file(&format!("participants = 2\n{head}"), seconds, &format!("{BLIND}{rest}"));
     let file = StudyFile::from_toml(&text).unwrap();
@@ -48,7 +48,7 @@ pub(crate) fn console(data: &Path, options: Options) -> Console {
     shown_at(SPEED, &plan("peg_transfer"), SIZE, move |app| app.with_settings(toured(&data)).with_options(options))
 }
 
-/// Opens the study that [`make`] has made.
+/// Opens the study created by [`make`].
 pub(crate) fn open(window: &mut Console) {
     until(window, "any tick", |_| true);
     window.key_press(Key::F8);
@@ -57,7 +57,7 @@ pub(crate) fn open(window: &mut Console) {
     read(window, "Next step");
 }
 
-/// Begins the next trial and engages.
+/// Starts the next trial and engages.
 pub(crate) fn begin(window: &mut Console, button: &str) {
     pick(window, button);
     wait(window, "a trial", |window| window.state().in_trial());
@@ -66,7 +66,7 @@ pub(crate) fn begin(window: &mut Console, button: &str) {
     until(window, "engaged", |tick| tick.state == LoopState::Engaged);
 }
 
-/// Does the next trial to its end.
+/// Completes the next trial.
 fn trial(window: &mut Console, button: &str) {
     begin(window, button);
     wait(window, "the end of the trial", |window| !window.state().in_trial());
@@ -123,8 +123,8 @@ fn from_a_ready_study_to_the_end_of_its_first_trial_by_clicks() {
     window.run_steps(5);
     assert!(window.state().tick().unwrap().guide_m.is_some(), "it cannot be let go");
     wait(&mut window, "the end", |window| !window.state().in_trial());
-    // A task without an end has no time of completion.
-    read(&mut window, "Trial 1: the time is over");
+    // A task without an end has no completion time.
+    read(&mut window, "Trial 1: the time limit is reached");
     let study = Study::read(&place).unwrap();
     let made = &study.state().progress("P01").unwrap().trials;
     assert!(made.len() == 1 && !made[0].simulated, "{made:?}");
@@ -153,7 +153,7 @@ fn tick(window: &mut Console, name: &str) {
     window.run_steps(2);
 }
 
-/// The middles of the circles around tips.
+/// Centres of the circles around tips.
 fn circles(window: &Console) -> Vec<Pos2> {
     fn add(shape: &Shape, found: &mut Vec<Pos2>) {
         match shape {
@@ -167,7 +167,7 @@ fn circles(window: &Console) -> Vec<Pos2> {
     found
 }
 
-/// Whether a circle is in the undimmed part of the round picture.
+/// Whether a circle is in the undimmed part of the round image.
 fn is_in_picture(window: &Console, at: Pos2) -> bool {
     let rect = window.get_by_role_and_label(Role::Canvas, "Operating field").rect();
     let clear = 0.57 * rect.height().min(rect.width());
@@ -316,7 +316,7 @@ fn questionnaires_break_notes_exclusion_unblinding_and_report_are_done_on_the_sc
             rate(&mut window, name, value);
         }
         assert!(shows(&window, "Missing: frustration, 15 pairs") && !can_press(&window, "Submit"));
-        // A tap whose press and release come in one frame, on the middle of the line.
+        // A tap whose press and release arrive in one frame, on the middle of the line.
         window.get_by_role_and_label(Role::Slider, "Frustration").click();
         window.run_steps(2);
         assert!(shows(&window, "Missing: 15 pairs"), "{:?}", texts(&window));
@@ -391,7 +391,7 @@ fn a_closed_window_ends_its_trial_and_writes_no_figures_of_it() {
     assert!(!summary.exists(), "it has the errors of the modes");
 }
 
-/// Completes the next trial of this participant in so many seconds.
+/// Completes the next trial of this participant in this time.
 fn complete(study: &mut Study, participant: &str, seconds: u32) {
     let mut scorer = Scorer::new(&TaskFile::from_toml("name = 'x'\nkind = 'peg_transfer'").unwrap());
     scorer.happening(&Happening { t_s: 0.0, event: Event::Begun });

@@ -1,4 +1,4 @@
-//! The camera's wizard, walked by accessible names with an emulated endoscope before which a board is held.
+//! The Camera wizard, driven by accessible names, with a board in front of an emulated endoscope.
 
 use std::{
     path::Path,
@@ -25,10 +25,10 @@ use crate::{
     language, picture,
 };
 
-/// A small picture, so that a busy machine keeps up.
+/// A small image, so that a busy machine keeps up.
 const SIZE_PX: [usize; 2] = [640, 360];
 
-/// An emulated endoscope, the board's place before it, and the poses in which a person holds it.
+/// An emulated endoscope, the board in front of it, and the poses in which a person holds it.
 struct Bench {
     _serving: Serving,
     pose: Arc<Mutex<Isometry3<f64>>>,
@@ -57,7 +57,7 @@ impl Bench {
         Self { url: serving.endpoint.clone(), _serving: serving, pose, poses }
     }
 
-    /// The board is held at another place.
+    /// Moves the board to another pose.
     fn hold(&mut self, number: u32) {
         *self.pose.lock().unwrap() = (self.poses)(2.2 * f64::from(number) + 0.5);
     }
@@ -103,7 +103,7 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
     language::fits(&mut console, "lens");
     picture::same(&console, "wizard-camera-lens");
     pick(&mut console, "Next");
-    // The board lies still, but the tip stays where it is: that is no place.
+    // The board is at rest, but the tip does not move between corners: no pose results.
     for touched in 0..4 {
         read(&mut console, "Touch the marked corner with the tip");
         pick(&mut console, "Tip is on the corner");

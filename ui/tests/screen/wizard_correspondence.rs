@@ -1,4 +1,4 @@
-//! The correspondence wizard walked by accessible names on a real running loop, with a simulated person who pushes.
+//! The correspondence wizard driven by accessible names on a real running loop, with a simulated person who pushes.
 
 use std::{
     path::Path,
@@ -75,7 +75,7 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
     assert!(off_deg < 0.5, "{off_deg} degrees off");
     let lines = harness.state().in_force().lines();
     assert!(lines.iter().any(|line| line.starts_with("Correspondence: 2") && line.contains("pushes")), "{lines:?}");
-    // Saving started the loop, and with it its clock, anew: the pushes go on where they were.
+    // Saving restarted the loop and its clock: the pushes continue.
     pick(&mut harness, "Back");
     pick(&mut harness, "Back");
     read(&mut harness, &format!("Pushes: {} recorded of 9", record.pairs + 1));

@@ -1,4 +1,4 @@
-//! The gravity wizard walked from its first to its last step by accessible names, with good data and with bad.
+//! The gravity wizard from its first to its last step by accessible names, with good data and with bad.
 
 use std::{
     path::Path,
@@ -31,7 +31,7 @@ fn gravity_scene(flaw: Option<Flaw>) -> Scene {
     scene
 }
 
-/// Goes on from the checks to the poses. On a busy computer a check may fail again between the look at the button and the
+/// Continues from the checks to the poses. On a busy computer a check may fail again between the test of the button and the
 /// click, which then does nothing.
 fn leave_the_checks(console: &mut Console) {
     let began = Instant::now();
@@ -62,7 +62,7 @@ fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
     leave_the_checks(&mut console);
     wait(&mut console, "some poses", |c| shows(c, "4 of 12 recorded"));
     language::fits(&mut console, "poses");
-    // Back and closing lose nothing that was good.
+    // Back and closing lose no good data.
     pick(&mut console, "Back");
     pick(&mut console, "Back to the monitor");
     wait(&mut console, "the monitor", |c| shows(c, "Calibrate gravity…") && c.state().tick().is_some());
@@ -98,7 +98,7 @@ fn a_hand_on_the_tool_is_told_and_cannot_be_saved_without_a_name() {
     let mut console = console(gravity_scene(Some(Flaw::Touches)), folder.path());
     pick(&mut console, "Calibrate gravity…");
     leave_the_checks(&mut console);
-    // While it is touched, or afterwards for who looked away.
+    // While it is touched, or afterwards.
     let told = ["something touches it", "something touches the tool", "Something touched the tool"];
     wait(&mut console, "the touch", |c| told.iter().any(|words| shows(c, words)));
     assert_eq!(files(folder.path()), 0);
@@ -133,14 +133,14 @@ fn a_wrong_sign_is_named_and_an_override_is_written_into_the_file() {
     wait(&mut console, "enough poses", |c| shows(c, "8 of 12 recorded"));
     pick(&mut console, "Next");
     wait(&mut console, "the verdict", |c| shows(c, "Poor data") && shows(c, "sign"));
-    // The switch cures it without a new pose; and back again.
+    // The switch fixes it without a new pose; and back again.
     for verdict in ["Accepted", "Poor data"] {
         pick(&mut console, "Back");
         pick(&mut console, "Back");
         let by_arm = console.query_all_by_label_contains("Take the orientation from the arm").next().unwrap();
         assert!(by_arm.accesskit_node().is_disabled(), "what is in the poses cannot be changed");
         console.query_all_by_label_contains("points down at rest").next().unwrap().click();
-        // The sensor is looked at anew: the way on is shut until then, from the second frame on.
+        // The sensor is checked again: the next step is disabled until then, from the second frame on.
         console.step();
         console.step();
         assert!(!can_press(&console, "Next"));

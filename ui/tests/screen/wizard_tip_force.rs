@@ -1,4 +1,5 @@
-//! The tip-force wizard walked by accessible names, fed by a simulated rig on the virtual clock: minutes of work take seconds.
+//! The tip-force wizard driven by accessible names, with data from a simulated rig on the virtual clock: minutes of work take
+//! seconds.
 
 use std::{
     path::{Path, PathBuf},
@@ -38,10 +39,10 @@ use crate::{
     virtual_rig::{VirtualRig, records},
 };
 
-/// Ticks of the virtual clock between two pictures of the window.
+/// Ticks of the virtual clock between two frames of the window.
 const TICKS: usize = 250;
 
-/// A window with nothing but the wizard.
+/// A window with only the wizard.
 struct Bench {
     wizards: Wizards,
     binding: Binding,
@@ -89,7 +90,7 @@ impl Console {
         Self { rig: VirtualRig::start(scene, calibrations), window }
     }
 
-    /// The rig works on for a moment, then the window is drawn.
+    /// Advances the rig for a moment, then draws the window.
     fn step(&mut self) {
         let wizards = &mut self.window.state_mut().wizards;
         let ticks = self.rig.go_on(TICKS, wizards.prompt());
@@ -134,7 +135,7 @@ impl Console {
         self.step();
     }
 
-    /// As the label of the bar says.
+    /// The number in the label of the bar.
     fn rows(&self) -> usize {
         let label = self.window.get_by_label_contains(" s (paper: ").accesskit_node().label().unwrap();
         label.trim_start_matches("Rows: ").split(',').next().unwrap().parse().unwrap()
@@ -164,7 +165,7 @@ fn model_path(folder: &Path) -> PathBuf {
     Store::open(folder).path_of("tip-force", &records().0.head.sensor, "safetensors").unwrap()
 }
 
-/// The real console on a running loop, with what the wizard has.
+/// The real console on a running loop, with the data of the wizards.
 fn real_console(wizards: Wizards, folder: &Path) -> Harness<'static, ConsoleApp> {
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load("isolation").unwrap();
@@ -190,7 +191,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     console.press("Next");
     console.press("Small (16)");
     console.press("Start training");
-    // Looking elsewhere does not end it.
+    // Another page does not end it.
     console.press("Back");
     assert!(console.shows("All goals are met"));
     console.press("Next");
@@ -226,7 +227,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     answers_in_the_loop(folder.path());
 }
 
-/// On the virtual clock the network that was kept answers, and errs less than the wrist force does.
+/// On the virtual clock the accepted network is used, with a smaller error than the wrist force.
 fn answers_in_the_loop(folder: &Path) {
     let rig = RigConfig::load("simulated").unwrap();
     let mut scene = Scene::load("isolation").unwrap();

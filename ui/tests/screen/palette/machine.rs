@@ -1,4 +1,4 @@
-//! What acts on the machine: stop, release, engage, alarms, the instrument that is driven.
+//! Commands for the machine: stop, release, engage, alarms, mouse control.
 
 use eframe::App as _;
 use egui::{Key, accesskit::Role as Kind};
@@ -38,7 +38,7 @@ fn stop_release_engage_and_the_traces() {
     let greyed = rows(&mut console);
     assert!(greyed.contains(&("Engage".to_owned(), false)), "not before the stop is released: {greyed:?}");
     for (action, state) in [(Action::Release, LoopState::Idle), (Action::Engage, LoopState::Engaged)] {
-        // The button waits a moment after every change of state, and so does the command.
+        // Button and command wait a moment after every change of state.
         console.run_steps(30);
         open(&mut console);
         write_into(&mut console, FIELD, &entry(action).title);

@@ -1,4 +1,4 @@
-//! What belongs to a part of the window: the endoscope's picture, a recorded session.
+//! Commands of a part of the window: the endoscope image, a recorded session.
 
 use egui::Key;
 use nima_console::console::{commands::Action, wizards::Which};

@@ -1,4 +1,4 @@
-//! Who finds what: roles, and a participant in a trial.
+//! Available commands: by role, and for a participant in a trial.
 
 use nima_console::console::{
     Options,

@@ -37,7 +37,7 @@ use super::{
     stiffness::ContactStiffness,
     text,
 };
-use crate::words::{loss_words, role_name};
+use crate::words::{loss_words, quoted, role_name};
 
 /// Period of the degree histograms, s.
 pub const DEGREES_S: f64 = 120.0;
@@ -368,7 +368,7 @@ impl Live {
                 Standing::Lost(_) => true,
             };
             let (cause, cure) = match (entry.view.report().trouble, health.standing) {
-                (Some(trouble), _) => (trouble.to_string(), trouble.cure()),
+                (Some(trouble), _) => (quoted(&trouble), trouble.cure()),
                 (None, Standing::Lost(loss)) => {
                     (loss_words(loss).to_owned(), text::alarms::DEVICE_MISSING_CURE.get().to_owned())
                 }

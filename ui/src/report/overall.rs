@@ -53,7 +53,7 @@ pub(super) fn summary(session: &Figures) -> String {
     rows.push(vec!["end".to_owned(), end(session).to_owned()]);
     rows.push(vec!["gaps in the journal".to_owned(), holes(session)]);
     if let Some(pictures) = &session.pictures {
-        rows.push(vec!["endoscope's pictures".to_owned(), of_pictures(pictures)]);
+        rows.push(vec!["endoscope images".to_owned(), of_pictures(pictures)]);
     }
     let faults = of_level(session, MarkLevel::Error).count();
     rows.push(vec!["faults".to_owned(), faults.to_string()]);

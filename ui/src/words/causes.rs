@@ -11,6 +11,7 @@ use super::{
     Remedy as _, cure_of_refusal,
     findings::finding_words,
     names::role_name,
+    quoted,
     ready::{capital, with},
     refused_because, side_word,
     sides::{arm_stuck, exchanged, handle_askew, handle_pulls, handle_stuck, marker_stuck, no_push, trocar_moved},
@@ -236,7 +237,10 @@ fn missing(place: usize, roster: &Roster) -> [String; 2] {
     let trouble = roster.get(place).and_then(|entry| entry.view.report().trouble);
     let name = name(place, roster);
     match trouble {
-        Some(trouble) => [told!("The {name} is missing: {trouble}", "{name} fehlt: {trouble}"), trouble.cure()],
+        Some(trouble) => {
+            let why = quoted(&trouble);
+            [told!("The {name} is missing: {why}", "{name} fehlt: {why}"), trouble.cure()]
+        }
         None => with(
             told!("The {name} is missing, or drops out", "{name} fehlt oder fällt aus"),
             word("Check plug, cable and power; see Devices", "Stecker, Kabel und Strom prüfen; siehe Geräte"),

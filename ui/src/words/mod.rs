@@ -42,6 +42,11 @@ pub(crate) use numbers::{newtons, newtons_in_three, newtons_read, three_digits};
 pub(crate) use ready::{ask_words, check_name, figure_words, lacks_words, unit};
 pub(crate) use refusals::{cure_of_refusal, refused_because};
 
+/// Message of a library, which is English in every language: a whole sentence, in quotation marks within German text.
+pub(crate) fn quoted(message: &impl std::fmt::Display) -> String {
+    crate::language::told!("{message}", "„{message}“")
+}
+
 /// A value with texts for its cause and its remedy.
 pub(crate) trait Remedy {
     /// One sentence.

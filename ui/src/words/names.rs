@@ -1,6 +1,6 @@
 //! Names and short clauses that are used within other texts.
 
-use nima_core::tip_force::GoalKind;
+use nima_core::{kinematics::StartError, tip_force::GoalKind};
 use nima_devices::Loss;
 use nima_machine::{
     messages::{Lack, LoopState, Scheduling},
@@ -97,10 +97,10 @@ pub(crate) fn exchange_words(exchange: Exchange) -> &'static str {
     }
 }
 
-/// Reason why an arm cannot be engaged, a clause without a full stop. The reason from the kinematics is English in every language.
+/// Reason why an arm cannot be engaged, with its remedy, a clause without a full stop.
 pub(crate) fn obstacle_words(obstacle: &Obstacle) -> String {
     match obstacle {
-        Obstacle::Start(start) => start.to_string(),
+        Obstacle::Start(start) => start_words(*start),
         Obstacle::Waiting(Awaited::Servos) => {
             word("the servos have not responded yet", "die Servos haben noch nicht geantwortet").to_owned()
         }
@@ -115,6 +115,39 @@ pub(crate) fn obstacle_words(obstacle: &Obstacle) -> String {
             "der Rechner des Folgearms lehnt das Koppeln ab; sein Bildschirm zeigt den Grund",
         )
         .to_owned(),
+    }
+}
+
+/// Reason why an arm cannot start from its current position, with the remedy.
+fn start_words(error: StartError) -> String {
+    match error {
+        StartError::Period { period_s } => told!(
+            "the period of the kinematics is {period_s} s, outside its range: use more than 0 and at most 0.02 s",
+            "der Takt der Kinematik ist {period_s} s, außerhalb seines Bereichs: mehr als 0 und höchstens 0.02 s verwenden"
+        ),
+        StartError::ShortShaft { shaft_m, insertion_max_m } => told!(
+            "the shaft of {shaft_m} m is too short for an insertion of {insertion_max_m} m: correct one of them",
+            "der Schaft von {shaft_m} m ist zu kurz für eine Einführtiefe von {insertion_max_m} m: eines davon berichtigen"
+        ),
+        StartError::NotFinite { joint } => told!(
+            "joint {joint} reports an invalid angle: check the arm's connection",
+            "Gelenk {joint} meldet einen ungültigen Winkel: Verbindung des Arms prüfen"
+        ),
+        StartError::AtLimit { joint, angle_deg, limit_deg } => told!(
+            "joint {joint} is at {angle_deg:.1} degrees (limit {limit_deg:.1}): move the arm off the limit by hand",
+            "Gelenk {joint} steht bei {angle_deg:.1} Grad (Grenze {limit_deg:.1}): Arm von Hand von der Grenze weg bewegen"
+        ),
+        StartError::BesideTrocar { miss_m, most_m } => told!(
+            "the shaft's axis misses the trocar by {:.1} mm (limit {:.1} mm): move the arm to the ready pose",
+            "die Schaftachse verfehlt den Trokar um {:.1} mm (Grenze {:.1} mm): Arm in die Startpose bewegen",
+            1e3 * miss_m,
+            1e3 * most_m
+        ),
+        StartError::NotInserted { insertion_m } => told!(
+            "the tip is inserted only {:.1} mm: insert the instrument into the body before starting",
+            "die Spitze ist nur {:.1} mm eingeführt: Instrument vor dem Start in den Körper einführen",
+            1e3 * insertion_m
+        ),
     }
 }
 

@@ -27,8 +27,9 @@ pub(crate) fn refused_because(why: Refusal) -> String {
         Refusal::Obstacle(obstacle @ Obstacle::FarEnd) => obstacle_words(&obstacle),
         Refusal::Obstacle(Obstacle::Exchanged(exchange)) => exchange_words(exchange).to_owned(),
         Refusal::Obstacle(obstacle) => told!(
-            "the arm cannot start from its current position: {obstacle}",
-            "der Arm kann von hier nicht starten: {obstacle}"
+            "the arm cannot start from its current position: {}",
+            "der Arm kann von hier nicht starten: {}",
+            obstacle_words(&obstacle)
         ),
         Refusal::EndoscopeUnseen => {
             word("the tracker does not see the endoscope", "der Tracker sieht das Endoskop nicht").to_owned()

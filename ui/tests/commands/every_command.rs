@@ -106,7 +106,7 @@ fn a_hole_in_a_recording_is_told_and_nothing_is_made_of_it() {
     assert_eq!(figures["compared"].as_u64(), Some(1900), "the delay fills again after the hole");
     let output = nima(&["identify", hole.to_str().unwrap()]);
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(text.contains("HOLES                  1, the longest 2.001 s") && !text.contains("NaN"), "{text}");
+    assert!(text.contains("GAPS                   1, the longest 2.001 s") && !text.contains("NaN"), "{text}");
 }
 
 #[test]

@@ -91,7 +91,7 @@ impl ConsoleApp {
     /// Saves a calibration and activates it.
     pub(super) fn save(&mut self, saving: Saving) {
         let saved = self.saved(saving);
-        // Before the restart, after which the sensor must be opened first.
+        // Read before the restart: afterwards the sensor must be opened first.
         let following = saved.as_ref().ok().and_then(|(rig, _)| self.following(rig));
         let told = match saved {
             Ok((rig, words)) => match self.restart(rig, self.live.scene.clone()) {

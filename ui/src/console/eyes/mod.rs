@@ -113,7 +113,7 @@ impl Eyes {
         let address = match url.parse::<Address>() {
             Ok(address) => address,
             Err(error) => {
-                self.refused = Some(text::eyes::refused(&error.to_string()));
+                self.refused = Some(text::eyes::refused(&crate::words::quoted(&error)));
                 return;
             }
         };
@@ -125,7 +125,7 @@ impl Eyes {
                 feed.set_tone(self.settings.tone());
                 self.feed = Some(feed);
             }
-            Err(error) => self.refused = Some(text::eyes::refused(&error.to_string())),
+            Err(error) => self.refused = Some(text::eyes::refused(&crate::words::quoted(&error))),
         }
     }
 
@@ -195,7 +195,7 @@ impl Eyes {
             Standing::Live => [text::eyes::LIVE.get().to_owned(), String::new()],
             Standing::Still => [text::eyes::STILL.get().to_owned(), String::new()],
             Standing::Wrong(wrong) => wrong_told(wrong),
-            Standing::Lost(trouble) => [text::eyes::lost(&trouble.to_string()), trouble.cure().to_owned()],
+            Standing::Lost(trouble) => [text::eyes::lost(&crate::words::quoted(trouble)), trouble.cure().to_owned()],
         }
     }
 
@@ -242,7 +242,7 @@ impl Eyes {
             let instrument = |side| Some(Instrument { side, pose: pose(side)?, trocar_m: trocar(live, side) });
             tips.extend(seen.draw(live.sides().filter_map(instrument), self.hides_forces));
         }
-        // Of two halves, the half under the pointer.
+        // If there are two halves: the half under the pointer.
         let pointed = response.hover_pos().and_then(|at| halves.iter().find(|half| half.within.contains(at)));
         if let Some(half) = pointed.or(halves.first()) {
             self.aim.obey(&response, half.within, &half.place);
@@ -342,7 +342,7 @@ pub(in crate::console) fn wrong_told(wrong: &Wrong) -> [String; 2] {
         Wrong::Frozen(stood) => (text::eyes::frozen(*stood), text::eyes::FROZEN_CURE.get()),
         Wrong::Black => (text::eyes::BLACK.get().to_owned(), text::eyes::BLACK_CURE.get()),
         Wrong::Late(late) => (text::eyes::late(*late), text::eyes::LATE_CURE.get()),
-        Wrong::Damaged(damage) => (text::eyes::damaged(&damage.to_string()), text::eyes::DAMAGED_CURE.get()),
+        Wrong::Damaged(damage) => (text::eyes::damaged(&crate::words::quoted(damage)), text::eyes::DAMAGED_CURE.get()),
         Wrong::Size(has, wanted) => (text::eyes::size(*has, *wanted), text::eyes::SIZE_CURE.get()),
     };
     [words, cure.to_owned()]

@@ -271,7 +271,7 @@ fn refusal_ui(ui: &mut Ui, live: &Live) {
         _ => text::top_bar::NOT_SET.get(),
     };
     let arm = if live.is_bimanual() { side_word(side) } else { "" };
-    // The list of devices knows why an arm has no device.
+    // Take the reason from the list of devices.
     let missing = live.missing().next().filter(|_| why == Refusal::State(LoopState::Disconnected));
     let words = match missing {
         Some(Missing { name, cause, cure, .. }) => {

@@ -30,7 +30,7 @@ pub struct Shown {
     pub(super) reach: Option<Reach>,
     /// Unknown in sessions of older versions.
     opening_rad: [Option<f32>; SIDES],
-    /// Marked places, each with whether a lump is there, which is shown only after the trial.
+    /// Marked places, each with whether it is on a lump (shown only after the trial).
     pub(super) marks: Vec<(Vector3<f32>, bool)>,
     pub(super) loops: [LoopSeen; SIDES],
     pub(super) ended: bool,

@@ -31,7 +31,7 @@ pub(super) fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera
     };
     let name_at = at(pose.tip_m + along * NAME_ABOVE_M[usize::from(figures)]);
     let name_at = name_at.filter(|place| live.is_bimanual() && free(place));
-    // The name of a hand that is held high is there.
+    // The name of a raised hand takes this place.
     let beside_name = |place: &Pos2| name_at.is_none_or(|name| name.distance(*place) > NAMES_APART);
     if let Some(place) = at(*trocar_m).filter(free).filter(beside_name) {
         label(

@@ -103,24 +103,21 @@ pub(in crate::console) const REFUSED_CURE: Text =
     Text::of("Correct endoscope.url in the rig file", "endoscope.url in der Aufbaudatei korrigieren");
 
 pub(in crate::console) fn figures(age: Duration, rate_hz: f64) -> String {
-    told!("{} ms old, {rate_hz:.0} pictures a second", "{} ms alt, {rate_hz:.0} Bilder/s", age.as_millis())
+    told!("{} ms old, {rate_hz:.0} images per second", "{} ms alt, {rate_hz:.0} Bilder/s", age.as_millis())
 }
 
 pub(in crate::console) fn recorded(age: Duration) -> String {
-    told!("Recorded picture, {} ms old then", "Aufgezeichnetes Bild, damals {} ms alt", age.as_millis())
+    told!("Recorded image, {} ms old then", "Aufgezeichnetes Bild, damals {} ms alt", age.as_millis())
 }
 
 pub(in crate::console) const SEARCHING: Text =
-    Text::of("Looking for the picture of this moment", "Sucht das Bild dieses Moments");
+    Text::of("Searching for the image of this moment", "Sucht das Bild dieses Moments");
 
 pub(in crate::console) fn none_then(why: Option<&str>) -> String {
     why.map_or_else(
         || {
-            word(
-                "No picture came in the two seconds before this moment",
-                "Kein Bild in den zwei Sekunden vor diesem Moment",
-            )
-            .to_owned()
+            word("No image in the two seconds before this moment", "Kein Bild in den zwei Sekunden vor diesem Moment")
+                .to_owned()
         },
         |why| told!("The image of this moment cannot be read: {why}", "Bild dieses Moments nicht lesbar: {why}"),
     )

@@ -32,9 +32,9 @@ pub(in crate::console) fn delay_hover() -> String {
 pub(in crate::console) fn dead_band_hover() -> String {
     let Limits { min, max, unit } = SLIDER_DEAD_BAND_M_S.per(1e-3, "mm/s");
     told!(
-        "Speed of the hand, {min} to {max} {unit}, below which no force is rendered: at standstill an impedance cannot \
-         be identified. The paper uses 1 mm/s; 0 is no dead band. The force fades in and reaches its full \
-         size at twice this speed. No effect while \"Keep force at standstill\" is on.",
+        "Hand speed, {min} to {max} {unit}, below which no force is rendered: at standstill an impedance cannot \
+         be identified. The paper uses 1 mm/s; 0 switches the dead band off. The force fades in and reaches its \
+         full magnitude at twice this speed. No effect while \"Keep force at standstill\" is on.",
         "Handgeschwindigkeit, {min} bis {max} {unit}, unter der keine Kraft dargestellt wird: im Stillstand ist eine \
          Impedanz nicht identifizierbar. Der Artikel verwendet 1 mm/s; 0 heißt kein Totband. Die Kraft blendet ein und ist \
          bei der doppelten Geschwindigkeit voll da. Ohne Wirkung, solange „Kraft im Stillstand halten“ ein ist."

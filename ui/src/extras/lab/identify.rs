@@ -203,7 +203,7 @@ fn in_words(figures: &Figures) -> String {
     let holes = match figures.holes {
         0 => String::new(),
         count => format!(
-            "\nHOLES                  {count}, the longest {:.3} s: window and delay began anew after each",
+            "\nGAPS                   {count}, the longest {:.3} s: window and delay restarted after each",
             figures.longest_hole_s
         ),
     };

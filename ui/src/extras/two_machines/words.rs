@@ -216,8 +216,7 @@ fn amounts(report: &LineReport) -> Vec<LinkRow> {
         word("Messages", "Nachrichten"),
         told!("{}, {} late, {} lost", "{}, {} verspätet, {} verloren", counts.delivered, counts.late, counts.lost),
         word(
-            "Messages that arrived, those that arrived too late for playout, and lost messages, of which no copy \
-             arrived.",
+            "Messages that arrived, messages too late for playout, and lost messages (no copy arrived).",
             "Angekommene Nachrichten, davon für die Ausgabe verspätete; verloren sind solche, von denen keine Kopie \
              ankam.",
         ),

@@ -229,11 +229,11 @@ fn the_words_over_a_recorded_picture_are_those_of_its_moment() {
         drawn(past)
     };
     let live = words(&mut past, 3.0);
-    assert!(live.contains("Recorded picture, ") && live.contains(" ms old then"), "{live}");
+    assert!(live.contains("Recorded image, ") && live.contains(" ms old then"), "{live}");
     let frozen = words(&mut past, 4.8);
     assert!(frozen.contains("Image is frozen: no new image for 0."), "{frozen}");
     let none = words(&mut past, 6.4);
-    assert!(none.contains("No picture came in the two seconds before this moment"), "{none}");
+    assert!(none.contains("No image in the two seconds before this moment"), "{none}");
 }
 
 fn texts(shape: &egui::Shape, all: &mut String) {

@@ -112,7 +112,7 @@ pub(super) fn look(curves: &Mutex<Curves>) -> MutexGuard<'_, Curves> {
     curves.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What to train on, and where to save the data.
+/// Inputs of the training, and the store for its data.
 #[derive(Debug)]
 pub(super) struct Order {
     pub(super) recorder: Recorder,

@@ -231,8 +231,8 @@ impl Drop for Load {
 
 fn table(cases: &[Case]) -> String {
     let mut out = String::from(
-        "| beside the loop | class | ticks | missed | wake-up us p50 | p99 | p99.9 | max | work us p50 | p99 |\n\
-         |---|---|---|---|---|---|---|---|---|---|\n",
+        "| load | class | ticks | missed | wake-up us p50 | p99 | p99.9 | max | work us p50 | p99 \
+         |\n|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for Case { beside, asked, figures, skipped } in cases {
         // Writing to a String cannot fail.

@@ -103,8 +103,8 @@ pub(in crate::extras::user_studies) const EVERY: Text = Text::of("After this man
 pub(in crate::extras::user_studies) const LEAST: Text = Text::of("Minimum duration", "Mindestdauer");
 pub(in crate::extras::user_studies) const QUESTIONNAIRES: Text = Text::of("Questionnaires", "Fragebögen");
 pub(in crate::extras::user_studies) const QUESTIONNAIRES_HOVER: Text = Text::of(
-    "Published questionnaires with their scores, and two of our own",
-    "Publizierte mit ihrer Auswertung und zwei eigene",
+    "Published questionnaires with their scores, and two additional ones",
+    "Publizierte mit ihrer Auswertung und zwei zusätzliche",
 );
 pub(in crate::extras::user_studies) const AFTER_EACH: Text = Text::of("After each condition", "Nach jeder Bedingung");
 pub(in crate::extras::user_studies) const AT_END: Text = Text::of("At the end", "Am Ende");

@@ -139,7 +139,7 @@ fn a_fault_in_each_chapter_is_explained_and_the_chapter_restarts() {
     let (mut console, is_silent) = of_silent(SPEED);
     press(&mut console, "Demo");
     until(&mut console, "engaged", |tick| tick.state == LoopState::Engaged);
-    press(&mut console, "Pause");
+    press(&mut console, "Pause demo");
     for (chapter, mode, delay_s) in [
         ("1. What you see", Mode::Best, 0.05),
         ("2. Direct reflection", Mode::Dfr, 0.3),
@@ -201,7 +201,7 @@ fn the_demonstration_lets_go_with_and_without_the_governor_and_leaves_everything
     press(&mut harness, "Demo");
     press(&mut harness, "7. Letting go");
     until(&mut harness, "without a governor", |tick| tick.gate_settings.handle_kg == 0.0);
-    press(&mut harness, "Pause");
+    press(&mut harness, "Pause demo");
     until(&mut harness, "the handle flies to where its mechanism ends", |tick| tick.leader_m.z > 0.07);
     harness.get_by_label_contains("The handle moved");
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged, "nothing ends it");

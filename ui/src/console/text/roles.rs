@@ -93,10 +93,10 @@ pub(in crate::console) const DEMO_YOUR_TURN_CAPTION: Text = Text::of(
      Modus ist jetzt Bestes aus beiden; er mischt Verankert und Abgeglichen nach ihren letzten Fehlern. Mit dem \
      Aufbau „desk“ geht auch eine SpaceMouse.",
 );
-pub(in crate::console) const PLAY: Text = Text::of("Play", "Abspielen");
+pub(in crate::console) const PLAY: Text = Text::of("Resume demo", "Demo fortsetzen");
 pub(in crate::console) const PLAY_HOVER: Text =
     Text::of("Continues with the next chapter automatically", "Geht selbst zum nächsten Kapitel weiter");
-pub(in crate::console) const HOLD: Text = Text::of("Pause", "Pause");
+pub(in crate::console) const HOLD: Text = Text::of("Pause demo", "Demo pausieren");
 pub(in crate::console) const HOLD_HOVER: Text = Text::of(
     "Stays in this chapter; the control loop keeps running",
     "Bleibt in diesem Kapitel; die Regelung läuft weiter",

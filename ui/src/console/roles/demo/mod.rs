@@ -30,7 +30,7 @@ use crate::console::{
 pub use self::state::DemoState;
 
 /// Below this width the chapters need two rows.
-const ONE_ROW: f32 = 1270.0;
+const ONE_ROW: f32 = 1310.0;
 /// Below this height the force-space plot is left out.
 const LEAST_SPACE: f32 = 190.0;
 

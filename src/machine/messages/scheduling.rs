@@ -42,7 +42,7 @@ pub enum Lack {
 impl Lack {
     pub const fn words(self) -> [&'static str; 2] {
         match self {
-            Self::NotLinux => ["real-time scheduling is used on Linux only", "expect more missed ticks here"],
+            Self::NotLinux => ["real-time scheduling is available on Linux only", "expect more missed ticks here"],
             Self::Priority => [
                 "no real-time priority",
                 "add the line \"@realtime - rtprio 95\" to /etc/security/limits.d/realtime.conf, join the group realtime and log in again",

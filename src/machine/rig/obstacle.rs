@@ -15,8 +15,8 @@ pub enum Obstacle {
     Waiting(Awaited),
     #[error("{}", .0.words())]
     Exchanged(Exchange),
-    /// An obstacle at the other end of a network; the screen there shows it.
-    #[error("the follower's machine says that it cannot: its own screen names the reason")]
+    /// Something at the other end of a network, where the screen says what.
+    #[error("the follower's machine refuses to engage; its screen shows the reason")]
     FarEnd,
 }
 
@@ -32,7 +32,7 @@ pub enum Awaited {
 impl Awaited {
     const fn words(self) -> &'static str {
         match self {
-            Self::Servos => "the servos have not answered yet",
+            Self::Servos => "the servos have not responded yet",
             Self::Markers => "the tracker has not seen the markers of both instruments yet",
         }
     }
@@ -55,12 +55,12 @@ impl Exchange {
     /// Returns the swapped devices, as a clause without a full stop.
     pub const fn words(self) -> &'static str {
         match self {
-            Self::Handles => "the right and the left handle are exchanged",
-            Self::Arms => "the right and the left arm, or their mounts in the rig file, are exchanged",
-            Self::Sensors => "the right and the left sensor are exchanged",
-            Self::Servos => "the servos of the right and the left instrument are exchanged",
-            Self::Markers => "the markers of the right and the left instrument are exchanged",
-            Self::Trocars => "the right and the left trocar are exchanged, or the instruments stand in each other's",
+            Self::Handles => "the right and left handles are swapped",
+            Self::Arms => "the right and left arms, or their mounts in the rig file, are swapped",
+            Self::Sensors => "the right and left sensors are swapped",
+            Self::Servos => "the servos of the right and left instruments are swapped",
+            Self::Markers => "the markers of the right and left instruments are swapped",
+            Self::Trocars => "the right and left trocars are swapped, or each instrument is in the other's trocar",
         }
     }
 }

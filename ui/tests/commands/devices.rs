@@ -45,7 +45,7 @@ fn the_handle_that_leads_a_simulated_rig_is_tested_and_keeps_the_real_clock() {
     run.args(["run", "--virtual", "--seconds", "1", "--rig"]).arg(&path);
     let refused = run.env("NIMA_DATA_DIR", folder.path()).output().unwrap();
     let why = String::from_utf8(refused.stderr).unwrap();
-    assert!(!refused.status.success() && why.contains("remove --virtual"), "{why}");
+    assert!(!refused.status.success() && why.contains("omit --virtual"), "{why}");
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn an_unknown_kind_names_the_known_ones_in_one_line() {
     assert!(!output.status.success() && told.lines().count() == 1 && told.contains("serial=PORT@BAUD"), "{told}");
 }
 
-/// Whoever tests an emulated rig before its emulators run is not sent to look for plugs.
+/// The test of an emulated rig without running emulators must not suggest checking plugs.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_emulated_rig_that_nobody_serves_names_the_command_that_does() {

@@ -1,5 +1,5 @@
-//! The pages for users and contributors against the program: links lead somewhere, commands and flags exist, files that are named are there, and
-//! the glossary has every gate, mode and state.
+//! Checks the pages for users and contributors against the program: links lead somewhere, commands and flags exist, named
+//! files exist, and the glossary has every gate, mode and state.
 
 use std::{
     collections::HashMap,
@@ -24,13 +24,13 @@ fn pages() -> Vec<(PathBuf, String)> {
         let files = std::fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path());
         paths.extend(files.filter(|path| path.extension().is_some_and(|extension| extension == "md")));
     }
-    // The site's list of pages names some that are made for it; a test of its own looks at it.
+    // The site's list of pages names generated pages; a separate test checks it.
     paths.retain(|path| !path.ends_with("SUMMARY.md"));
     paths.sort();
     paths.into_iter().map(|path| (path.clone(), std::fs::read_to_string(path).unwrap())).collect()
 }
 
-/// The anchor that a heading gets.
+/// The anchor of a heading.
 fn anchor(heading: &str) -> String {
     let kept = heading.trim_start_matches('#').trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
     kept.collect::<String>().to_lowercase().replace(' ', "-")
@@ -102,7 +102,7 @@ fn every_command_and_flag_in_the_pages_exists() {
     for (page, text) in pages() {
         for command in commands(&text) {
             let words: Vec<String> = command.split_whitespace().skip(1).map(str::to_owned).collect();
-            // Some commands have a second word of their own: `nima study faults`.
+            // Some commands have a second word: `nima study faults`.
             let depth = if ["study", "train", "evaluate", "calibrate", "check", "department", "user-study"]
                 .contains(&words[0].as_str())
             {
@@ -146,7 +146,7 @@ fn every_file_that_the_pages_name_is_there() {
             let ours = ["src/", "ui/", "tests/", "benches/", "config/", "assets/", "docs/"]
                 .iter()
                 .any(|top| code.starts_with(top));
-            // A recipe names what is to be written, and places for names are in capitals or starred.
+            // A recipe names files to be written, and placeholders are in capitals or starred.
             let example = ["Write ", "folder ", "add ", "Add "].iter().any(|verb| before.ends_with(verb))
                 || code.contains(['*', '<', ' '])
                 || code.contains("NAME");

@@ -1,5 +1,3 @@
-//! The table.
-
 use std::sync::LazyLock;
 
 use egui::Key;
@@ -44,7 +42,7 @@ fn entry(action: Action, (title, does): (Text, Text), keys: Keys, place: Place) 
     named(action, title.get(), does.get(), keys, place)
 }
 
-/// The same with words that are made of others.
+/// A command whose name is built from other texts.
 fn named(action: Action, title: impl Into<String>, does: &'static str, keys: Keys, place: Place) -> Entry {
     Entry { action, title: title.into(), english: String::new(), does, keys, place }
 }
@@ -83,7 +81,7 @@ fn screen() -> Vec<Entry> {
     let menu = Place::ViewMenu;
     let [larger, smaller] = SIZE;
     let [undo, redo] = UNDO;
-    // Each in itself: who does not read the present language finds the own one.
+    // Each language by its own name, so that users who cannot read the current one find theirs.
     let languages = Language::CHOICES
         .map(|one| named(Action::Language(one), names::language(one.name()), names::LANGUAGE_DOES.get(), &[], menu));
     let mut entries = vec![
@@ -174,7 +172,7 @@ fn past() -> Vec<Entry> {
     ]
 }
 
-/// Last: nobody should come upon them by accident.
+/// Last, so that no one reaches these commands by accident.
 fn machine() -> Vec<Entry> {
     const STOP: Keys = &[Stroke::plain(Key::Space), Stroke::plain(Key::Escape)];
     vec![

@@ -96,10 +96,7 @@ fn exchanged_sensors_or_tools_have_no_calibration_in_force_and_are_told_as_excha
         let mut in_force = in_force(&exchanged);
         assert_eq!(has_gravity(&mut in_force, &exchanged), [false; SIDES], "no force is known, so nothing engages");
         let [words] = &in_force.told()[..] else { panic!("{:?}", in_force.told()) };
-        assert!(
-            words.contains("are exchanged") && words.contains("R-1") && words.contains("Exchange Sensors"),
-            "{words}"
-        );
+        assert!(words.contains("are swapped") && words.contains("R-1") && words.contains("Swap sensors"), "{words}");
     }
 }
 

@@ -251,7 +251,7 @@ fn an_export_that_is_ended_leaves_nothing_behind() {
         let status = export.ended();
         let mut told = String::new();
         export.0.stderr.take().unwrap().read_to_string(&mut told).unwrap();
-        assert!(!status.success() && told.lines().count() == 1 && told.contains("ended as asked"), "{out}: {told}");
+        assert!(!status.success() && told.lines().count() == 1 && told.contains("ended on request"), "{out}: {told}");
         assert_eq!(there(), ["session.mcap"]);
     }
 }

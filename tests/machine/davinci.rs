@@ -55,7 +55,7 @@ fn unseen_recordings_meet_the_goal_within_the_trained_loads_and_below_them_and_d
 }
 
 #[test]
-#[ignore = "takes minutes, prints the table of docs/calibration.md: `./dev figures` runs it"]
+#[ignore = "takes minutes, prints the table of docs/results/calibration.md: `./dev figures` runs it"]
 fn all_fifteen_splits_with_the_default_settings() {
     for (first, a) in FILES.into_iter().enumerate() {
         for b in FILES.into_iter().skip(first + 1) {

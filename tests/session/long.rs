@@ -23,7 +23,7 @@ fn memory_mb() -> Option<f64> {
 
 /// Two arms on the virtual clock for `NIMA_MINUTES`, or one.
 #[test]
-#[ignore = "minutes: figures for docs/replay.md"]
+#[ignore = "minutes: figures for docs/results/replay.md"]
 fn figures_of_a_long_session() {
     let minutes: u64 = std::env::var("NIMA_MINUTES").map_or(1, |minutes| minutes.parse().unwrap());
     let folder = tempfile::tempdir().unwrap();
@@ -73,7 +73,7 @@ fn figures_of_a_long_session() {
 
 /// Two arms and one, replayed tick by tick in one thread and like `nima replay`, in turn.
 #[test]
-#[ignore = "a minute: figures for docs/replay.md"]
+#[ignore = "a minute: figures for docs/results/replay.md"]
 fn figures_of_replay() {
     const SECONDS: f64 = 120.0;
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! Every fault of every emulated device in the running loop: the report, its delay, the change of the force, and the
-//! recovery of the device. The complete run writes the table in `docs/devices.md`.
+//! Every fault of every emulated device in the running loop: what is reported, how soon, how the force changes, and
+//! whether the device recovers. The whole writes the table in `docs/results/device-faults.md`.
 #![cfg(target_os = "linux")]
 use std::{
     cell::{Cell, RefCell},

@@ -393,7 +393,7 @@ fn minute(examples: &Examples, seconds: u64) {
 }
 
 #[test]
-#[ignore = "a minute each, for the figures of docs/external-device.md"]
+#[ignore = "a minute each, for the figures of docs/results/external-device.md"]
 fn figures_of_a_minute_in_c() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
@@ -403,7 +403,7 @@ fn figures_of_a_minute_in_c() {
 }
 
 #[test]
-#[ignore = "a minute each, for the figures of docs/external-device.md"]
+#[ignore = "a minute each, for the figures of docs/results/external-device.md"]
 fn figures_of_a_minute_in_python() {
     let _alone = alone();
     minute(&Examples::Python, 60);

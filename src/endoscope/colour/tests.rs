@@ -166,7 +166,7 @@ fn fuzz_pictures_that_are_not_compressed() {
 }
 
 #[test]
-#[ignore = "figures of docs/endoscope.md: some seconds, alone"]
+#[ignore = "figures of docs/results/endoscope.md: some seconds, alone"]
 fn figures_of_colours() {
     for size_px @ [width, height] in [[1280, 720], [1920, 1080]] {
         let rgb: Vec<u8> = (0..3 * width * height).map(|at| (at * 7 / 3) as u8).collect();
@@ -188,7 +188,7 @@ fn figures_of_colours() {
 }
 
 #[test]
-#[ignore = "figure of docs/endoscope.md: the difference from ffmpeg, whose program NIMA_FFMPEG names"]
+#[ignore = "figure of docs/results/endoscope.md: the difference from ffmpeg, whose program NIMA_FFMPEG names"]
 fn figures_of_colours_beside_ffmpeg() {
     let Ok(ffmpeg) = std::env::var("NIMA_FFMPEG") else {
         unjudged::left_out("NIMA_FFMPEG names no program");

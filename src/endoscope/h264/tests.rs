@@ -135,7 +135,7 @@ fn fuzz_damaged_streams() {
 }
 
 #[test]
-#[ignore = "figures of docs/endoscope.md: some seconds, alone"]
+#[ignore = "figures of docs/results/endoscope.md: some seconds, alone"]
 fn figures_of_h264() {
     for size_px in [[1280, 720], [1920, 1080]] {
         let stream = stream(size_px, 40);

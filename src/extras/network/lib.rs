@@ -4,7 +4,7 @@
 //! control loop and never blocks it. [`stream::Stream`] is the same without socket and handshake, for a virtual clock.
 //! [`impairment`] simulates an impaired line, for a study or, as a [`relay`], between two real ends.
 //!
-//! Design and measurements: `docs/network.md`.
+//! Design: `docs/network.md`. Figures: `docs/results/stream.md`.
 
 pub mod clock;
 pub mod control;

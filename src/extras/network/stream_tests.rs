@@ -282,7 +282,7 @@ fn fuzz_datagrams() {
     nima_testing::fuzz::rounds(|seed| assert_eq!(attack(20_000, seed), 0));
 }
 
-/// Prints the table of lines in docs/network.md.
+/// What to expect of a line: prints the table of docs/results/stream.md.
 #[test]
 #[ignore = "ten seconds: ./dev figures"]
 fn figures_of_lines() {

@@ -1,4 +1,4 @@
-//! Every measure: id, unit, definition and source. A test compares them with `docs/score.md`.
+//! Every measure: id, unit, definition and source. `docs/reference/measures.md` is generated from them.
 
 /// Definition of a measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

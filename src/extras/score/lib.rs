@@ -1,11 +1,9 @@
 //! The score of a trial of a training task: peg transfer, palpation, wire loop.
 //!
-//! Takes [`Sample`]s of motion (m) and force (N) of both hands at about 1 kHz, and
-//! [`Happening`](nima_core::task::Happening)s (a ring placed, a wire touched); returns a [`Score`] of named measures,
-//! each with unit, definition and source. [`Proficiency`] and [`LearningCurve`] judge a sequence of trials,
-//! [`Guidance`] decides after which of them the trainee is shown the result. [`scored`] scores the ticks of a loop, or
-//! a recorded session; the rest is independent of loop, devices, files, threads and clocks. `docs/score.md` lists the
-//! measures.
+//! Takes [`Sample`]s of motion (m) and force (N) of both hands at about 1 kHz, and [`Happening`](nima_core::task::Happening)s (a ring placed, a wire touched); returns a
+//! [`Score`] of named measures, each with unit, definition and source. [`Proficiency`] and [`LearningCurve`] judge a sequence of
+//! trials, [`Guidance`] says after which of them the trainee is told the result. [`scored`] scores the ticks of a loop, or a recorded
+//! session; everything else knows no loop, device, file, thread or clock. `docs/reference/measures.md` lists the measures.
 //!
 //! ```
 //! use nalgebra::Vector3;

@@ -34,7 +34,7 @@ pub struct StudyFile {
     /// The scored task, instead of the scene's.
     #[serde(default)]
     pub task: Option<TaskFile>,
-    /// The primary measure, chosen before the first trial: a key of `docs/score.md`, with the hand if it has one.
+    /// The measure that decides, chosen before the first trial: a key of `docs/reference/measures.md`, with the hand where it has one.
     pub primary: String,
     /// Further measures of the report.
     #[serde(default)]
@@ -267,7 +267,7 @@ impl StudyFile {
             if !is_measure(key) {
                 let key = shown(key);
                 wrong.push(format!(
-                    "there is no measure \"{key}\": docs/score.md lists them; one of a hand ends with _left or _right"
+                    "there is no measure \"{key}\": docs/reference/measures.md lists them; one of a hand ends with _left or _right"
                 ));
             }
         }

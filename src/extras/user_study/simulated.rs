@@ -1,8 +1,8 @@
 //! Simulated people: skill, learning, fatigue and answers, reproducible with the same seed.
 //!
-//! They test everything from a study file to its report before the first real participant. They have force perception:
-//! a force above the intended one slows the hand down, and the hand yields (`docs/studies.md`). They are not a model of
-//! surgeons: the spread of skill and intended force is our choice, and their answers do not depend on the condition.
+//! They test the whole way from a study file to its report before the first person comes. They feel: what is more than the force that a person
+//! means to use slows the hand down, and it gives way (`docs/simulated.md`). They are no model of surgeons: the spread of skill and intended force is
+//! made up, and their answers do not depend on the condition.
 
 use fastrand::Rng;
 

@@ -1,8 +1,7 @@
 //! The file of a recorded session: MCAP (<https://mcap.dev/spec>) that is valid at every moment.
 //!
-//! [`Writer`] writes it; [`Reader`] reads our files and those of others. The crate `mcap` is used only in our tests, as
-//! a reader: its writer makes a file valid only at the end and compresses through C libraries. docs/sessions.md
-//! compares the two with measurements.
+//! [`Writer`] makes it, [`Reader`] reads it and those of others. Not with the crate `mcap`: its writer makes a file valid at its end
+//! only, and compresses through C libraries; our tests read with it. docs/decisions/own-mcap-writer.md compares the two.
 
 mod at;
 mod chunk;

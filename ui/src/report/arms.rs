@@ -1,4 +1,4 @@
-//! What the page says of one arm.
+//! The part of the page about one arm.
 
 use std::fmt::Write as _;
 
@@ -15,13 +15,16 @@ pub(super) fn arm(session: &Figures, arm: &ArmFigures) -> String {
     let mut out = format!("<section>\n<h2>The {} arm</h2>\n", arm.side);
     out.push_str("<h3>States</h3>\n");
     out.push_str(&plots::states(session, arm));
-    out.push_str("<p class=\"note\">Triangles: black for faults, white for refused commands and alarms. Numbered lines: marks of the operator.</p>\n");
+    out.push_str(
+        "<p class=\"note\">Triangles: black for faults, white for refused commands and alarms. Numbered lines: \
+     operator marks.</p>\n",
+    );
     out.push_str(&seconds(session, arm));
     out.push_str("<h3>Forces</h3>\n");
     out.push_str(&plots::forces(session, arm));
     out.push_str(
-        "<p class=\"note\">Lengths of the force vectors; each column spans the least and the largest value in it. \
-        Delayed: as the link delivers it. Rendered: given to the hand, after the gates.</p>\n",
+        "<p class=\"note\">Magnitudes of the forces; each column spans the minimum and maximum of its time. \
+         Delayed: as delivered by the link. Rendered: to the hand, after the gates.</p>\n",
     );
     out.push_str(&forces(arm));
     out.push_str("<h3>Gates</h3>\n");
@@ -57,7 +60,7 @@ fn forces(arm: &ArmFigures) -> String {
     let rows: Vec<_> =
         FORCES.iter().zip(&arm.forces).filter_map(|(name, of)| Some(force(name, of.as_ref()?))).collect();
     if rows.is_empty() {
-        return "<p>The arm was never engaged: no figures of forces.</p>\n".to_owned();
+        return "<p>The arm was never engaged: no force results.</p>\n".to_owned();
     }
     let heads = [
         "while engaged",
@@ -95,7 +98,8 @@ fn gates(arm: &ArmFigures) -> String {
     };
     let rows: Vec<_> = arm.gates.iter().map(|of| row(of.gate, of.share)).collect();
     format!(
-        "{}<p>Dead band: withheld {} N on average while engaged, {} N at most. Energy: at least {} mJ were left for the hand.</p>\n",
+        "{}<p>Dead band: withheld {} N on average while engaged, maximum {} N. Energy: minimum {} mJ left for \
+         the hand.</p>\n",
         table(&["gate", "reduced the force", "meaning"], &rows),
         digits(arm.withheld_mean_n),
         digits(arm.withheld_max_n),
@@ -112,12 +116,12 @@ fn identification(of: &Identified) -> String {
             .map_or_else(|| "-".to_owned(), |n| format!("{:.2}", error_n / n));
         Some(vec![escape(name), digits(error_n), ratio])
     };
-    let names = Mode::ALL.iter().map(|mode| mode_name(*mode)).chain(["the rig's method of others"]);
+    let names = Mode::ALL.iter().map(|mode| mode_name(*mode)).chain(["the rig's baseline method"]);
     let rows: Vec<_> = names.zip(&of.error_n).filter_map(|(name, error_n)| row(name, error_n)).collect();
     if rows.is_empty() {
         return "<p>No mode predicted a force.</p>\n".to_owned();
     }
-    let mut out = table(&["mode, where computed", "mean error at the horizon (N)", "over direct (DFR)"], &rows);
+    let mut out = table(&["mode, where computed", "mean prediction error (N)", "over direct (DFR)"], &rows);
     let shares = |(name, shares): (&&str, &Option<[f64; 6]>)| {
         let shares = (*shares)?;
         Some(std::iter::once((*name).to_owned()).chain(shares.map(percent)).collect())
@@ -126,14 +130,22 @@ fn identification(of: &Identified) -> String {
     if !rows.is_empty() {
         out.push_str(&table(&["degree chosen by", "none", "1", "2", "3", "4", "5"], &rows));
     }
-    writeln!(out, "<p>Without contact, so that nothing was learnt: {} of engaged time.</p>", percent(of.resting_share))
-        .ok();
+    writeln!(
+        out,
+        "<p>Without contact, and therefore without learning: {} of engaged time.</p>",
+        percent(of.resting_share)
+    )
+    .ok();
     if let Some(network) = of.network {
-        writeln!(out, "<p>Network: {} of the force at the tip came from it; {} of the time was outside of its training; largest doubt {} (1: limit of \
-             its training).</p>",
+        writeln!(
+            out,
+            "<p>Network: {} of the tip force came from a network; {} of the time was outside its training data; largest \
+             uncertainty {} (1: limit of its training).</p>",
             percent(network.share),
             percent(network.outside_share),
-            digits(network.doubt_max)).ok();
+            digits(network.doubt_max)
+        )
+        .ok();
     } else {
         out.push_str("<p>No network gave the force at the tip.</p>\n");
     }

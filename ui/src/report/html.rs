@@ -1,6 +1,6 @@
-//! Pieces of a page.
+//! Building blocks of a page.
 
-/// Text that is no markup, in an element or in an attribute.
+/// Escapes text for an element or an attribute.
 pub(crate) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -41,7 +41,6 @@ pub(crate) fn digits(value: f64) -> String {
     }
 }
 
-/// A share in percent.
 pub(super) fn percent(share: f64) -> String {
     match share {
         0.0 => "0 %".to_owned(),
@@ -50,7 +49,6 @@ pub(super) fn percent(share: f64) -> String {
     }
 }
 
-/// A time within a session.
 pub(super) fn time(t_s: f64) -> String {
     if t_s < 60.0 { format!("{t_s:.3} s") } else { format!("{}:{:06.3} min", (t_s / 60.0).floor(), t_s % 60.0) }
 }

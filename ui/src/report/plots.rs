@@ -12,14 +12,13 @@ const LEFT: f64 = 64.0;
 const RIGHT: f64 = 14.0;
 const BAND: f64 = 26.0;
 const PLOT: f64 = 130.0;
-/// Most marks in a band: more would hide it.
+/// Maximum number of marks in a band: more would hide it.
 const MARKS: usize = 200;
-/// The numbers of marks stand above the triangles, and one label is for all that are closer together than this.
+/// Height of the row of mark numbers above the triangles; marks closer together than this share a label.
 const NUMBERS: f64 = 14.0;
 const APART: f64 = 20.0;
-/// Ticks that are further apart than this do not follow each other, s.
+/// Ticks further apart than this are not consecutive, s.
 const GAP_S: f64 = 0.02;
-/// Where nothing was recorded.
 pub(super) const NOT_RECORDED: &str = "not recorded";
 
 /// Name, colour and whether it is hatched: no two states differ by colour alone.
@@ -59,7 +58,7 @@ fn time_axis(out: &mut String, length_s: f64, top: f64, bottom: f64) {
     let mut t_s = 0.0;
     while t_s <= length_s + 1e-9 {
         let x = across(t_s, length_s);
-        // Writing into a String cannot fail, here and below.
+        // Writing to a String cannot fail, here and below.
         writeln!(out, "<path d=\"M{x:.1} {top}V{bottom}\" stroke=\"#cccccc\"/>").ok();
         writeln!(out, "<text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{t_s:.decimals$}</text>", bottom + 15.0).ok();
         t_s += step_s;
@@ -67,7 +66,8 @@ fn time_axis(out: &mut String, length_s: f64, top: f64, bottom: f64) {
     writeln!(out, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">time (s)</text>", LEFT - 8.0, bottom + 15.0).ok();
 }
 
-/// The states of an arm as a band, with a triangle at each warning and each error, and a numbered line at each mark of the operator.
+/// Draws the states of an arm as a band, with a triangle at each warning and error, and a numbered line at each operator
+/// mark.
 pub(super) fn states(session: &Figures, arm: &ArmFigures) -> String {
     let top = NUMBERS + 16.0;
     let bottom = top + BAND;
@@ -114,7 +114,7 @@ pub(super) fn states(session: &Figures, arm: &ArmFigures) -> String {
     out
 }
 
-/// Frames where nothing was recorded, so that nobody takes them for a state.
+/// Frames the gaps of the recording, so that they are not mistaken for a state.
 fn gaps(out: &mut String, length_s: f64, states: &[Span], top: f64) {
     let mut before_s = 0.0;
     let ends = states.iter().map(|span| (span.from_s, span.to_s));
@@ -135,9 +135,9 @@ fn gaps(out: &mut String, length_s: f64, states: &[Span], top: f64) {
     }
 }
 
-/// Places and texts of the numbers of marks at these places: those that are close together share one, such as 1-3.
+/// Positions and texts of the mark numbers; close marks share one label, such as 1-3.
 fn labels(places: &[f64]) -> Vec<(f64, String)> {
-    // First and last number, first and last place.
+    // First and last number, first and last position.
     let mut groups: Vec<(usize, usize, f64, f64)> = Vec::new();
     for (number, x) in (1..).zip(places) {
         match groups.last_mut() {
@@ -152,7 +152,7 @@ fn labels(places: &[f64]) -> Vec<(f64, String)> {
     groups.into_iter().map(label).collect()
 }
 
-/// The lengths of the three forces, one above the other on the same scale.
+/// Draws the magnitudes of the three forces, one above the other on the same scale.
 pub(super) fn forces(session: &Figures, arm: &ArmFigures) -> String {
     let largest_n = arm.traces.iter().map(Trace::largest).fold(0.1, f64::max);
     let names = [("measured", COLOURS[4]), ("delayed", COLOURS[3]), ("rendered", COLOURS[0])];

@@ -66,7 +66,7 @@ fn the_standard_deviations_are_those_of_many_calibrations() {
 }
 
 #[test]
-#[ignore = "figures of docs/endoscope.md: some minutes; `./dev figures` runs it"]
+#[ignore = "figures of docs/results/endoscope.md: some minutes; `./dev figures` runs it"]
 fn figures_of_calibrations_from_rendered_boards() {
     let mut rng = Rng::with_seed(14);
     let mut errors = Vec::new();

@@ -80,7 +80,7 @@ fn value(score: &Score, id: &str) -> f64 {
 
 #[track_caller]
 fn near(what: &str, ours: f64, known: f64, relative: f64) {
-    // `NIMA_SCORE_SHOW` prints every comparison, for docs/score.md.
+    // `NIMA_SCORE_SHOW` prints every comparison, for docs/results/statistics.md.
     if std::env::var_os("NIMA_SCORE_SHOW").is_some() {
         eprintln!("| {what} | {ours:.9e} | {known:.9e} | {:.1e} |", ((ours - known) / known).abs());
     }

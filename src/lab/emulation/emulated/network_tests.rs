@@ -59,7 +59,7 @@ fn checked(flaws: Flaws) -> Option<Check> {
     Some(check)
 }
 
-/// Prints a column of the table of flaws in docs/devices.md.
+/// Prints a column of the table of flaws in docs/results/devices.md.
 #[test]
 #[ignore = "minutes: trains a network for each flaw; `./dev figures` runs it"]
 fn figures_of_flaws_and_the_network() {

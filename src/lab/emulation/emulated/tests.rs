@@ -340,7 +340,7 @@ pub(super) fn fitted(flaws: Flaws) -> Option<(Bench, Fitted)> {
     Some((bench, Fitted { gravity: model, correspondence, told }))
 }
 
-/// Prints the table of docs/devices.md.
+/// Prints the table of docs/results/devices.md.
 #[test]
 fn flaws_of_real_devices_break_the_verdicts_that_the_pages_say() {
     let good = Verdict::Accepted;

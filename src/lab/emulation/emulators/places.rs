@@ -14,7 +14,7 @@ pub(super) fn taken<T>(port: u16, protocol: &str, bound: Result<T>) -> Result<T>
     bound.map_err(|error| {
         let reason = match error.kind() {
             ErrorKind::AddrInUse => {
-                "is used by another program, perhaps by another emulated rig: end it, or change the port"
+                "is in use by another program, perhaps by another emulated rig: end it, or change the port"
             }
             ErrorKind::PermissionDenied => "needs more rights (as all below 1024): take another port",
             _ => return error,

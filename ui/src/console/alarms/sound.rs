@@ -1,7 +1,7 @@
 //! Sound of alarms, off by default: bursts of pulses as in IEC 60601-1-8, ten for high priority, three for medium.
 //!
-//! Played by an installed program (`pw-play`, `paplay` or `aplay`), so that no library is needed. If there is none, or
-//! it fails, the menu shows that. Nothing here waits: a burst is a child process that is checked in each frame.
+//! An installed program (`pw-play`, `paplay` or `aplay`) plays them, so no library is needed. The menu shows if none is
+//! installed or it fails. Nothing here blocks: a burst is a child process that is checked in each frame.
 
 use crate::console::text;
 use std::{
@@ -15,14 +15,13 @@ use tempfile::TempDir;
 
 use super::Priority;
 
-/// Programs that take a file's path as their only argument, the most common first.
+/// Programs that take a file path as their only argument, the most common first.
 const PLAYERS: [&str; 3] = ["pw-play", "paplay", "aplay"];
 const RATE_HZ: u32 = 22_050;
 /// Interval between the starts of two bursts of high priority, s.
 const HIGH_EVERY_S: f64 = 6.0;
 const MEDIUM_EVERY_S: f64 = 12.0;
 
-/// The player and its state.
 #[derive(Debug, Default)]
 pub struct Sound {
     player: Option<PathBuf>,
@@ -35,7 +34,7 @@ pub struct Sound {
 }
 
 impl Sound {
-    /// Searches the players in these folders instead of the search path.
+    /// Searches for the players in these folders instead of the search path.
     #[cfg(all(test, unix))]
     fn of(folders: &[&Path]) -> Self {
         let mut sound = Self::default();
@@ -44,7 +43,7 @@ impl Sound {
         sound
     }
 
-    /// Why no sound can be played, for the menu; `None` if it can.
+    /// Reason why no sound can be played, for the menu; `None` if it can.
     pub fn trouble(&mut self) -> Option<String> {
         self.look();
         match (&self.player, &self.failure) {

@@ -273,7 +273,7 @@ fn a_wrong_page_and_a_wrong_setting_are_told() {
 }
 
 #[test]
-#[ignore = "figures of docs/endoscope.md: 20 s, alone; a 1280 x 720 picture 30 times a second"]
+#[ignore = "figures of docs/results/endoscope.md: 20 s, alone; a 1280 x 720 picture 30 times a second"]
 fn figures_of_a_picture_on_its_way() {
     let serving = Emulated::of(&scene(), 0).with(&scene(), in_the_air(&scene())).serve().unwrap();
     let feed = Feed::start(serving.endpoint.parse().unwrap(), Some([1280, 720]), || {}).unwrap();

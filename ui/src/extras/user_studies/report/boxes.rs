@@ -1,4 +1,4 @@
-//! Box plots of a measure, a box for each condition.
+//! Box plots of a measure, one box per condition.
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
@@ -15,10 +15,10 @@ const RIGHT: f64 = 16.0;
 const TOP: f64 = 14.0;
 const BOTTOM: f64 = 34.0;
 const HALF_BOX: f64 = 28.0;
-/// Lines reach the farthest value within so many heights of the box (Tukey 1977, Exploratory Data Analysis).
+/// Maximum length of the whiskers, in box heights (Tukey 1977, Exploratory Data Analysis).
 const REACH: f64 = 1.5;
 
-/// The means of the participants under each condition, in this order; empty if there are none.
+/// The means of the participants under each condition, in this order; empty without values.
 pub(super) fn svg(table: &Table, measure: &str, order: &[String], axis: &str) -> String {
     let groups: Vec<(&String, Vec<f64>)> =
         order.iter().map(|name| (name, means(table, measure, name))).filter(|(_, values)| !values.is_empty()).collect();
@@ -39,7 +39,7 @@ pub(super) fn svg(table: &Table, measure: &str, order: &[String], axis: &str) ->
     for mark in (low / apart).ceil() as i64..=(high / apart).floor() as i64 {
         let value = mark as f64 * apart;
         let y = down(value);
-        // Writing into a String cannot fail, here and below.
+        // Writing to a String cannot fail, here and below.
         writeln!(out, "<path d=\"M{LEFT} {y:.1}H{}\" stroke=\"#dddddd\"/>", WIDTH - RIGHT).ok();
         writeln!(out, "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{value:.decimals$}</text>", LEFT - 6.0, y + 4.0)
             .ok();
@@ -84,7 +84,7 @@ fn group(out: &mut String, x: f64, values: &[f64], colour: &str, down: impl Fn(f
     )
     .ok();
     for (place, value) in values.iter().enumerate() {
-        // Beside the box, in columns, so that equal values are seen.
+        // Next to the box, in columns, so that equal values remain visible.
         let aside = HALF_BOX + 8.0 + 5.0 * (place % 4) as f64;
         writeln!(out, "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"2.5\" fill=\"{colour}\"/>", x + aside, down(*value)).ok();
     }

@@ -1,4 +1,4 @@
-//! Tables and sentences of a report in Markdown as HTML: no more of Markdown than those reports have.
+//! Converts tables and sentences of a report from Markdown to HTML; supports only the Markdown that those reports use.
 
 use std::fmt::Write as _;
 
@@ -24,7 +24,7 @@ pub(super) fn html(text: &str) -> String {
                     &rows,
                 ));
             }
-            // Writing into a String cannot fail.
+            // Writing to a String cannot fail.
             _ => drop(writeln!(out, "<p>{}</p>", escape(block))),
         }
     }

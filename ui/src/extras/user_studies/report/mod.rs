@@ -1,4 +1,4 @@
-//! The report of a user study: one page that needs nothing beside it, the tables it was made from, and scripts for R.
+//! The report of a user study: one self-contained page, the tables behind it, and scripts for R.
 //!
 //! The statistics are those of `nima study trials`, on the same tables.
 
@@ -32,10 +32,10 @@ use crate::{
 pub(super) const PAGE: &str = "report.html";
 const TRIALS: &str = "trials.csv";
 const QUESTIONNAIRES: &str = "questionnaires.csv";
-/// Scores of questionnaires that are compared; the single scales of the NASA-TLX are in the table alone.
+/// Compared questionnaire scores; the single scales of the NASA-TLX are only in the table.
 const SCORES: [&str; 4] = ["nasa_tlx_weighted", "nasa_tlx_raw", "sus", "realism"];
 
-/// Writes the report of a study into a folder, which is made if it is missing; gives the page.
+/// Writes the report of a study into a folder, which is created if missing; returns the path of the page.
 pub(super) fn write(study: &Study, out: &Path, all: bool) -> anyhow::Result<PathBuf> {
     let journal = study.folder().join(nima_user_study::JOURNAL);
     output::folder(out, &[PAGE, TRIALS, QUESTIONNAIRES], &[&journal])?;
@@ -48,7 +48,7 @@ pub(super) fn write(study: &Study, out: &Path, all: bool) -> anyhow::Result<Path
     let wanted = if all { columns(&trials.csv, |name| !named.iter().any(|known| known == name)) } else { Vec::new() };
     let wanted: Vec<String> = named.into_iter().chain(wanted).collect();
     let measures = Analysed::of(study, out, TRIALS, &trials.csv, &wanted, "trials")?;
-    // Only those that were asked.
+    // Only questionnaires of this study.
     let scores = columns(&questionnaires.csv, |name| SCORES.contains(&name));
     let scores = Analysed::of(study, out, QUESTIONNAIRES, &questionnaires.csv, &scores, "questionnaires")?;
     let page = page(study, &trials, measures.as_ref(), scores.as_ref());
@@ -56,7 +56,7 @@ pub(super) fn write(study: &Study, out: &Path, all: bool) -> anyhow::Result<Path
     Ok(out.join(PAGE))
 }
 
-/// Names of the columns of numbers that a filter lets through.
+/// Names of numeric columns that pass a filter.
 fn columns(csv: &str, filter: impl Fn(&str) -> bool) -> Vec<String> {
     let names = csv.lines().next().unwrap_or_default().split(',');
     names
@@ -69,7 +69,7 @@ fn columns(csv: &str, filter: impl Fn(&str) -> bool) -> Vec<String> {
 struct Analysed {
     table: Table,
     report: Report,
-    /// Measures that no trial has.
+    /// Measures without a value in any trial.
     absent: Vec<String>,
 }
 
@@ -91,7 +91,7 @@ impl Analysed {
         }
         let path = out.join(file);
         let table = Table::read(&path, &measures)?;
-        // Before the unblinding the reference would tell its condition.
+        // Before unblinding, the reference would reveal its condition.
         let reference = study.opened().and_then(|opened| opened.reference().map(str::to_owned));
         let reference = reference.filter(|name| table.conditions().contains(name));
         let trials = Trials { path, measures, reference, confidence: 0.95, power: None };
@@ -119,7 +119,8 @@ fn page(
     );
     if study.state().is_simulated() {
         page.push_str(
-            "<p class=\"error\">Simulated: trials or answers of simulated people are in this study. It says nothing about people.</p>\n",
+            "<p class=\"error\">Simulated: this study contains trials or answers of simulated people. It is not \
+             evidence about real people.</p>\n",
         );
     }
     page.push_str(&conditions(study));
@@ -135,7 +136,7 @@ fn page(
     page
 }
 
-/// Whether the study is blind, and what its conditions are.
+/// Blindness of the study, and its conditions.
 fn conditions(study: &Study) -> String {
     let plan = study.plan();
     let state = study.state();
@@ -143,13 +144,17 @@ fn conditions(study: &Study) -> String {
     match (&state.unblinding, plan.blind) {
         (_, false) => text.push_str("<p>The study is not blind.</p>\n"),
         (None, true) => text.push_str(
-            "<p class=\"warning\">Blind: the conditions are shown by their labels. They are compared with the first label. \
-             Measures that would tell the condition are left out until the unblinding.</p>\n",
+            "<p class=\"warning\">Blind: the conditions are shown by their labels. They are compared with the \
+             first label. Measures that would reveal the condition are left out until unblinding.</p>\n",
         ),
         (Some(by), true) => {
             let after = state.results() - by.trials_before.min(state.results());
             let [who, why, at] = [&by.who, &by.why, &by.at].map(|words| escape(words));
-            let when = if by.complete { "after everybody had finished" } else { "before everybody had finished" };
+            let when = if by.complete {
+                "after all participants had finished"
+            } else {
+                "before all participants had finished"
+            };
             writeln!(
                 text,
                 "<p class=\"{}\">Unblinded by {who} at {at}, {when}: {why}. Trials with a result after that: {after}.</p>",
@@ -185,7 +190,6 @@ fn conditions(study: &Study) -> String {
     text
 }
 
-/// What a measure is.
 fn definition(key: &str) -> Option<&'static Definition> {
     let is = |definition: &&Definition| {
         let of = |side: Side| format!("{}_{}", definition.id, side.word()) == key;
@@ -194,11 +198,11 @@ fn definition(key: &str) -> Option<&'static Definition> {
     MEASURES.iter().find(is)
 }
 
-/// The tables and the picture of each measure that a filter lets through.
+/// The tables and the plot of each measure that passes a filter.
 fn section(page: &mut String, title: &str, study: &Study, analysed: Option<&Analysed>, filter: impl Fn(&str) -> bool) {
     writeln!(page, "<section>\n<h2>{title}</h2>").ok();
     let Some(Analysed { table, report, absent }) = analysed else {
-        page.push_str("<p>There is nothing to compare yet.</p>\n</section>\n");
+        page.push_str("<p>Nothing to compare yet.</p>\n</section>\n");
         return;
     };
     let order: Vec<String> = match study.opened() {

@@ -1,4 +1,4 @@
-//! The participants in the report: what they did, what is left out, what they said, how they learnt.
+//! The participants in the report: progress, exclusions, remarks, learning.
 
 use std::fmt::Write as _;
 
@@ -8,10 +8,9 @@ use nima_user_study::{Answers, Exclusion, Learning, Study, Table};
 
 use crate::report::html::{digits, escape, table};
 
-/// Most participants whose times are drawn: more lines cannot be told apart.
+/// Maximum number of participants whose times are drawn: more lines would be indistinguishable.
 const DRAWN: usize = 7;
 
-/// Who did what.
 pub(super) fn participants(study: &Study) -> String {
     let plan = study.plan();
     let state = study.state();
@@ -36,7 +35,7 @@ pub(super) fn participants(study: &Study) -> String {
     format!("<section>\n<h2>Participants</h2>\n{}</section>\n", table(&heads, &rows))
 }
 
-/// What the analysis leaves out, and why.
+/// Exclusions from the analysis, with reasons.
 pub(super) fn left_out(trials: &Table) -> String {
     let excluded = trials.excluded.iter().map(|Exclusion { participant, trial, why }| {
         let what = trial.map_or_else(|| "everything".to_owned(), |trial| format!("trial {trial}"));
@@ -48,10 +47,10 @@ pub(super) fn left_out(trials: &Table) -> String {
     let rows: Vec<Vec<String>> = excluded.chain(missing).collect();
     let body =
         if rows.is_empty() { "<p>Nothing.</p>\n".to_owned() } else { table(&["participant", "what", "why"], &rows) };
-    format!("<section>\n<h2>Left out of the analysis</h2>\n{body}</section>\n")
+    format!("<section>\n<h2>Excluded from the analysis</h2>\n{body}</section>\n")
 }
 
-/// Scores at the end, free texts, and notes of the people who ran the study.
+/// Scores at the end, free texts, and notes of the experimenters.
 pub(super) fn remarks(study: &Study) -> String {
     let mut scores = Vec::new();
     let mut rows = Vec::new();
@@ -93,7 +92,7 @@ pub(super) fn remarks(study: &Study) -> String {
 /// Proficiency and learning curves.
 pub(super) fn learning(study: &Study) -> String {
     let all = study.learning();
-    // A task without an end, such as touching for a time, has no completion times.
+    // A task without an end, such as touching for a given time, has no completion times.
     if all.iter().all(|of| of.practice == 0 && of.times_s.iter().all(Option::is_none)) {
         return String::new();
     }
@@ -129,7 +128,7 @@ fn curve_in_words(curve: &LearningCurve) -> String {
     };
     let plateau = match (curve.trials_to_plateau, curve.plateau_seen) {
         (Some(trial), true) => format!("reached in trial {trial}"),
-        (Some(trial), false) => format!("not seen; expected in trial {trial}"),
+        (Some(trial), false) => format!("not reached; expected in trial {trial}"),
         (None, _) => "out of reach".to_owned(),
     };
     format!("{shape}, plateau {} s, {plateau}", digits(curve.asymptote_s))

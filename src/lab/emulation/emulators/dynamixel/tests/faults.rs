@@ -115,7 +115,7 @@ fn a_bus_that_falls_quiet_stops_the_servos_and_that_is_told() {
     assert!((later_rad - stopped_rad).abs() < 0.05 && later_rad < 0.9, "{stopped_rad} {later_rad}");
     let (loss, _) = until_lost(&bench, &mut driver).unwrap();
     let Loss::Device { code } = loss else { panic!("{loss:?}") };
-    assert_eq!(Fault::of_code(code).error.to_string(), "its bus watchdog expired");
+    assert_eq!(Fault::of_code(code).error.to_string(), "the bus watchdog expired");
 }
 
 #[test]

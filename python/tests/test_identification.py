@@ -181,7 +181,7 @@ FEW = np.linspace(0.0, 1.0, 500)
         ({"rate_hz": 1000.0, "window_s": 0.0}, "the window of 0 s"),
         ({"rate_hz": 1000.0, "window_s": 0.6}, "has 500 samples; a window of 600 ms"),
         ({"rate_hz": 1000.0, "max_degree": 9}, "the highest degree 9 is out of range"),
-        ({"rate_hz": 1000.0, "ridge": -1.0}, "the ridge is -1"),
+        ({"rate_hz": 1000.0, "ridge": -1.0}, "the ridge -1 is out of range"),
         ({"rate_hz": 1000.0, "reading": "sideways"}, "reading: unknown variant `sideways`"),
         ({"rate_hz": 1000.0, "choice": "best"}, "choice: unknown variant `best`"),
         ({"times_s": np.zeros(500)}, "times_s, row 1: time does not rise (0 s, then 0 s)"),

@@ -1,8 +1,8 @@
-# Tests of what is built on its own: features with large libraries, programs and packages of their own. Sourced by ./dev.
+# Tests of features with large libraries and of separate programs and packages. Sourced by ./dev.
 # shellcheck shell=bash
 
-# What is built with the feature `live`: its own tests, and the third-party clients, one of which reads the messages while they are recorded; and
-# Rerun's check of sessions. On its own, because foxglove and Rerun are large.
+# Tests of the feature `live`, with third-party clients (one reads the messages while they are recorded) and Rerun's check of sessions.
+# Separate, because foxglove and Rerun are large.
 live() {
   need "${build_packages[@]}" python3 python3-venv || exit 1
   need_cargo
@@ -12,14 +12,14 @@ live() {
   # With a test of the same crate: the program alone would be built with other features of its libraries.
   timed cargo test --locked --workspace --no-run --test commands --features nima-console/live
   timed "$peers_folder/bin/python" tests/peers/run.py "${CARGO_TARGET_DIR:-target}/debug/nima" session
-  # Too large for every run of the tests: 800 MB.
+  # 800 MB: too large for every run of the tests.
   local large=${CARGO_TARGET_DIR:-target}/peers-large
   [ -x "$large/bin/python" ] || python3 -m venv "$large"
   "$large/bin/python" -m pip install --quiet --disable-pip-version-check -r tests/peers/requirements-large.txt
   timed "$large/bin/python" tests/peers/run.py "${CARGO_TARGET_DIR:-target}/debug/nima" rerun
 }
 
-# The bridges: the example client of the OpenIGTLink library, built here, and what clients cost the loop. Judged by nobody: the figures are printed.
+# Tests of the bridges: the example client of the OpenIGTLink library, built here, and the loop's cost of clients (figures are printed, without a limit).
 bridges() {
   need "${build_packages[@]}" g++ libopenigtlink-dev openigtlink-examples python3 python3-venv || exit 1
   need_cargo
@@ -30,8 +30,8 @@ bridges() {
   timed cargo test --locked --workspace --lib -- --ignored --nocapture figures_of_the_bridge
 }
 
-# The bridge to ROS 2, a program of its own with DDS in it, and Eclipse Cyclone DDS as its peer. It reads from the `nima` that was built last; only
-# where there is none the workspace is built.
+# Tests of the bridge to ROS 2, a separate program with DDS, with Eclipse Cyclone DDS as its peer. It reads from the `nima` that was built last; the
+# workspace is built only if there is none.
 ros2() {
   need "${build_packages[@]}" python3 python3-venv || exit 1
   need_cargo
@@ -47,7 +47,7 @@ ros2() {
   NIMA_BRIDGE_ROS2=$built/debug/nima-bridge-ros2 timed "$peers/bin/python" tests/peers/run.py "$nima" ros2
 }
 
-# The tests of what is built with the feature `department`: a rig and its watchers over TLS. On their own, because zenoh takes minutes to build.
+# Tests of the feature `department`: a rig and its watchers over TLS. Separate, because zenoh takes minutes to build.
 department() {
   need "${build_packages[@]}" || exit 1
   need_cargo
@@ -56,12 +56,12 @@ department() {
   timed cargo test --locked -p nima-console --features department --test commands department
 }
 
-# The tests of what is built with the feature `h264`: the endoscope's picture over RTSP, beside ffmpeg. On their own, because the decoder is C++.
+# Tests of the feature `h264`: endoscope video over RTSP, compared with ffmpeg. Separate, because the decoder is C++.
 h264() {
   need "${build_packages[@]}" g++ || exit 1
   need_cargo
   as_the_tests_build
-  # Where it is installed, itself or as a wheel; without it these tests say so.
+  # Uses ffmpeg if it is installed, as a program or as a wheel; without it these tests report that they were left out.
   local ffmpeg
   ffmpeg=$(command -v ffmpeg || python3 -c 'import imageio_ffmpeg; print(imageio_ffmpeg.get_ffmpeg_exe())' 2>/dev/null) || true
   [ -z "$ffmpeg" ] || export NIMA_FFMPEG=$ffmpeg
@@ -70,8 +70,8 @@ h264() {
   timed cargo test --locked -p nima-console --features h264 --lib a_recorded_stream
 }
 
-# The Python package: builds the wheel, installs it into an environment of its own, runs its tests and notebooks there. On its own, because PyO3 and a
-# release build serve nothing else in the tests. --speed also compares its time with that of the same in Rust.
+# Builds the wheel of the Python package, installs it into a separate environment, and runs its tests and notebooks there. Separate, because no other
+# test needs PyO3 and a release build. --speed also compares its time with that of the same in Rust.
 python_package() {
   [[ -z ${1:-} || ${1:-} == --speed ]] || { say "give nothing, or --speed"; exit 2; }
   need "${build_packages[@]}" python3 python3-venv || exit 1

@@ -1,11 +1,11 @@
 # The tests of `./dev test` when everything is built. Sourced by ./dev.
 # shellcheck shell=bash
 
-# The product itself, which knows none of the other crates.
+# The product's crates, which depend on none of the others.
 ring1=(nima-testing nima-files nima-core nima-devices nima-recording nima-machine nima-session nima-training nima-endoscope nima-simulation)
 told=${CARGO_TARGET_DIR:-target}/lanes
 
-# The product alone, for daily work.
+# Tests the product's crates only, for daily work.
 only_ring1() {
   local failed=0
   timed cargo test --locked "${ring1[@]/#/-p}" --no-run || return
@@ -15,8 +15,8 @@ only_ring1() {
   verdict && return $failed
 }
 
-# Two lanes in real time, which wait far more than they compute, side by side, each with one rig at a time; two compute in the time that they
-# leave, and take none from them. Each lane's output comes whole, when it has ended.
+# Runs four lanes in parallel. Two run in real time, each with one rig at a time, and mostly wait; the other two compute at idle priority in the
+# remaining time. The output of a lane is printed as a whole when it has ended.
 lanes() {
   local lane failed=0 leaves_time=yes
   is_quiet || leaves_time=no
@@ -30,7 +30,7 @@ lanes() {
     cat "$told/$lane.txt"
   done
   list_unjudged "$told"/*.txt
-  # The rest is judged when nothing else runs, or not at all: beside other work it would take its time for nothing.
+  # The rest needs a quiet machine. While other work is running it would take its time without a result, so it is left out.
   if is_quiet; then
     alone >"$told/alone.txt" 2>&1 || failed=1
     cat "$told/alone.txt"
@@ -44,23 +44,23 @@ lanes() {
   verdict && return $failed
 }
 
-# The devices on their wires, and the third-party clients. (`--bins`, which has no tests: of `wires` alone cargo would build the libraries again, with other features.)
+# Tests the emulated devices on real connections, and the third-party clients. (`--bins` has no tests, but for `wires` alone cargo would rebuild the libraries with other features.)
 wires() {
   local failed=0
   timed cargo test --locked --workspace --no-fail-fast --bins --test wires || failed=1
   timed cargo test --locked --workspace --lib -- --ignored bota::wire_tests ndi::driver_tests endpoint::tests endpoint::two_hosts_tests || failed=1
-  # The clients of others have time limits of their own: one that gives up beside the other lanes is judged when nothing else runs.
+  # Third-party clients have their own time limits: a client that gives up while the other lanes run is tested again alone.
   peers || touch "$told/peers-again"
   return $failed
 }
 
-# What is judged by milliseconds, rates or small motions: faults of every device in the running loop, what the panel measures of each, an arm
-# that presses, its jaws, how it is left, a marker that must follow, and a person who plays with rings in the real window. Beside any other work, even of the lowest priority, they are judged again and again, for minutes.
+# Tests of milliseconds, rates or small motions: faults of every device in the running loop, the panel's measurements of them, an arm that
+# presses, its jaws, its shutdown, a marker that must follow, and a simulated user with rings in the real window. While any other work is running, even at the lowest priority, they would be repeated for minutes.
 alone=(connecting:: what_goes_wrong_with_any_device killed::a_killed_process the_pid_holds the_sensor_feels an_engaged_arm a_marker_that_follows a_person_carries_a_ring
   when_a_program_in_c nobody_else_is_heard the_examples_in_python a_haply_handle_feels)
 alone() { timed cargo test --locked --workspace --no-fail-fast --test commands --test screen --test window --test wires -- --ignored "${alone[@]}"; }
 
-# The real window, the commands, and the examples in the documentation.
+# Tests the real window, the commands, and the examples in the documentation.
 screens() {
   local failed=0
   timed cargo test --locked --workspace --no-fail-fast --test window --test commands || failed=1
@@ -68,11 +68,11 @@ screens() {
   return $failed
 }
 
-# The product first: what fails there explains what fails after it.
+# The product's crates first: their failures explain later failures.
 units() {
   only_idle_time
   local failed=0
-  # More threads than cores: many of these wait for simulated time, which runs at the pace of the real one, or for a line.
+  # More threads than cores: many of these tests wait for a simulation in real time, or for a connection.
   export RUST_TEST_THREADS=4
   timed cargo test --locked "${ring1[@]/#/-p}" --no-fail-fast --lib || failed=1
   if [ $failed = 0 ]; then say "passed: units of ring 1"; else say "FAILED: units of ring 1"; fi 2>&3
@@ -85,7 +85,7 @@ panels() {
   RUST_TEST_THREADS=4 timed cargo test --locked --workspace --no-fail-fast --bins --test screen --test machine --test session --test allocation
 }
 
-# Of the processors' time in one second.
+# Prints the idle percentage of the processors' time in one second.
 idle_percent() {
   [ -r /proc/stat ] || { echo 100; return; }
   { head -n 1 /proc/stat; sleep 1; head -n 1 /proc/stat; } | awk '
@@ -94,14 +94,14 @@ idle_percent() {
     END { printf "%d\n", 100 * (idle - idle_before) / (all - all_before + 1e-9) }'
 }
 
-# A second may be one in which something ends: only the third busy one tells of other work.
+# One busy second may be the end of our own work: only the third busy second in a row indicates other work.
 is_quiet() {
   local _
   for _ in 1 2 3; do [ "$(idle_percent)" -lt 50 ] || return 0; done
   return 1
 }
 
-# This shell and what it starts run only when nothing else would; beside other work, which leaves no such time, they take their share.
+# Runs this shell and its children at idle priority, unless other work leaves no idle time.
 only_idle_time() {
   [ "$leaves_time" = yes ] || return 0
   chrt --idle --pid 0 "$BASHPID" 2>/dev/null || renice -n 19 "$BASHPID" >/dev/null

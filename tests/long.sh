@@ -2,7 +2,7 @@
 # shellcheck shell=bash
 
 # The first day of the emulated rig in the real window, from an empty folder to both arms engaged: a quarter of an hour; a whole peg transfer there. The day by commands,
-# judged by the forces at the tips; the frame calibrations against what only the emulators know; every fault of every device.
+# judged by the forces at the tips; the frame calibrations compared with the emulators' ground truth; every fault of every device.
 walk() {
   need "${build_packages[@]}" "${window_packages[@]}" "${test_packages[@]}" || exit 1
   need_cargo
@@ -78,8 +78,8 @@ processors() {
   rm -r "$NIMA_SESSIONS"
 }
 
-# The unit tests of every crate, cross-built for Windows, under wine; of the named crates alone, where some are named. On its own, because everything
-# is built once more for them.
+# Cross-builds the unit tests of every crate (or of the named crates) for Windows and runs them under wine. Separate, because everything is built
+# again for them.
 windows() {
   local target=${CARGO_TARGET_DIR:-$PWD/target} work lacks status=0
   # shellcheck source=assets/package/windows.sh

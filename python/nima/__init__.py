@@ -3,9 +3,9 @@
 Everything here calls the same code as the program ``nima``: results agree to the last bit. Research software, not for
 clinical use.
 
-Units are SI (m, s, N, rad) and part of the names. Arrays are float64; those are read where they are, without a copy.
-What cannot be used raises :class:`ValueError`, what cannot be read :class:`OSError`, each with one line that says what,
-where, and what to do.
+Units are SI (m, s, N, rad) and part of the names. Arrays are float64; float64 input is read without a copy.
+Unusable values raise :class:`ValueError`, unreadable files :class:`OSError`, each with one line: what failed, where,
+and what to do.
 """
 
 from __future__ import annotations

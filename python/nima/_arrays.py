@@ -1,4 +1,4 @@
-"""Arrays as the library takes them."""
+"""Conversion of array arguments."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ Floats = npt.NDArray[np.float64]
 
 
 def as_floats(name: str, values: npt.ArrayLike) -> Floats:
-    """The values as float64: themselves where they are, else a copy (of other types, and of numbers that lie at odd addresses)."""
+    """Returns the values as float64, without a copy if possible (other types and unaligned numbers are copied)."""
     try:
         return np.require(np.asarray(values, dtype=np.float64), requirements="A")
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name}: these are no numbers ({error})") from None
+        raise ValueError(f"{name}: the values are not numbers ({error})") from None
 
 
 def columns(name: str, values: npt.ArrayLike) -> list[Floats]:
-    """One view for each axis of an array of shape (n,) or (n, axes)."""
+    """Returns one view per axis of an array of shape (n,) or (n, axes)."""
     array = as_floats(name, values)
     if array.ndim == 1:
         return [array]
@@ -37,7 +37,7 @@ def table(name: str, values: npt.ArrayLike) -> Floats:
 
 
 def optional_table(name: str, values: npt.ArrayLike | None) -> Floats | None:
-    """The same, if it is given."""
+    """Returns an array of shape (n, k), or ``None`` if it is not given."""
     return None if values is None else table(name, values)
 
 
@@ -50,5 +50,5 @@ def line(name: str, values: npt.ArrayLike) -> Floats:
 
 
 def is_frame(source: Any) -> bool:
-    """Whether it is a table with named columns, as of pandas or polars."""
+    """Whether the source is a table with named columns (pandas, polars)."""
     return hasattr(source, "columns") and hasattr(source, "__getitem__") and not isinstance(source, np.ndarray)

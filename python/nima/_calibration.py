@@ -70,8 +70,8 @@ def fit_gravity(
     Raises
     ------
     ValueError
-        A shape, a number that is not finite, a quaternion that is none, a dead accelerometer. Poses that determine nothing
-        or fit badly are no error: the verdict says so, with its reason.
+        Wrong shape, a number that is not finite, an invalid quaternion, or an accelerometer without signal. Poses that
+        determine nothing or fit badly do not raise: the verdict says so, with its reason.
     """
     report = _nima.fit_gravity(
         table("forces_n", forces_n),
@@ -92,21 +92,21 @@ def remove_gravity(
     accelerations_m_s2: npt.ArrayLike | None = None,
     world_from_sensor_wxyz: npt.ArrayLike | None = None,
 ) -> tuple[Floats, Floats | None]:
-    """Take weight and bias out of readings; returns forces and torques (``None`` if none were given), shape (n, 3).
+    """Remove weight and bias from readings; returns forces and torques (``None`` if none were given), shape (n, 3).
 
-    Without the low-pass of the loop, so that a row depends on nothing but itself.
+    The loop's low-pass is not applied, so that each row depends on itself only.
 
     Parameters
     ----------
     model
         A report of :func:`fit_gravity` with a chosen model, or the model itself (``report["fits"][i]["model"]``).
     forces_n, torques_nm, accelerations_m_s2, world_from_sensor_wxyz
-        As for :func:`fit_gravity`; the source of orientation must be the model's.
+        See :func:`fit_gravity`; the source of orientation must be the model's.
 
     Raises
     ------
     ValueError
-        No model was chosen, a shape, a number that is not finite, or the model's source of orientation is missing.
+        No model was chosen, wrong shape, a number that is not finite, or the model's source of orientation is missing.
     """
     if "fits" in model:
         chosen = [fit["model"] for fit in model["fits"] if fit["kind"] == model["chosen"]]
@@ -129,24 +129,24 @@ def fit_correspondence(
     sensor_from_camera_wxyz: npt.ArrayLike | None = None,
     flip_tissue: bool = False,
 ) -> CorrespondenceReport:
-    """Fit the rotation between the sensor under the tissue and the one at the wrist to pushes that both have felt.
+    """Fit the rotation between the sensor under the tissue and the sensor at the wrist to pushes that both measured.
 
     Source: ``nima_core::calibration::correspondence::fit``.
 
     Parameters
     ----------
     wrist_forces_n, tissue_forces_n
-        Forces of both sensors in each push, shape (n, 3), N, in their own frames; those of the wrist free of gravity.
+        Forces of both sensors in each push, shape (n, 3), N, in their own frames; wrist forces without gravity.
     sensor_from_camera_wxyz
-        The known part of the chain in each push, shape (n, 4), unit quaternions w, x, y, z, where the wrist turned between
-        the pushes.
+        The known part of the chain in each push, shape (n, 4), unit quaternions w, x, y, z; needed if the wrist turned
+        between the pushes.
     flip_tissue
         The sensor under the tissue measures the force on the tissue, not on the instrument.
 
     Raises
     ------
     ValueError
-        A shape, or a number that is no force or rotation. Pushes that determine nothing are no error: the verdict says so.
+        Wrong shape, or an invalid force or rotation. Pushes that determine nothing do not raise: the verdict says so.
     """
     report = _nima.fit_correspondence(
         table("wrist_forces_n", wrist_forces_n),

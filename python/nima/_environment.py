@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     _Observation = Dict[str, Floats]
 
     class _Base:
-        """What :class:`gymnasium.Env` gives, where it is installed."""
+        """Members of :class:`gymnasium.Env`, if it is installed."""
 
         np_random: np.random.Generator
 
@@ -27,7 +27,7 @@ else:
     except ImportError:
 
         class _Base:
-            """Stands for gymnasium.Env where that is not installed: only the seed."""
+            """Replaces gymnasium.Env if it is not installed: only the seed."""
 
             def reset(self, *, seed=None, options=None):
                 if seed is not None or not hasattr(self, "np_random"):
@@ -35,7 +35,7 @@ else:
 
 
 CONTROLS: tuple[str, ...] = ("nothing", "handle_position", "handle_force", "rendered_force")
-"""What an action can be; see :class:`Environment`."""
+"""Kinds of actions; see :class:`Environment`."""
 
 _HANDLE_MAX_M = 0.2
 _FORCE_MAX_N = 20.0
@@ -45,7 +45,7 @@ _VECTORS = ("handle_m", "handle_m_s", "command_m", "delayed_tip_m", "delayed_n",
 class Environment(_Base):
     """The whole loop (handle, link, arm, tissue, identification, gates) on a simulated scene, on its own clock.
 
-    ``reset`` and ``step`` are those of gymnasium, which need not be installed; where it is, this is a ``gymnasium.Env``.
+    ``reset`` and ``step`` follow gymnasium, which need not be installed; if it is, this is a ``gymnasium.Env``.
 
     Parameters
     ----------
@@ -57,19 +57,19 @@ class Environment(_Base):
     delay_s
         One-way delay from follower to leader, s; by default the rig's.
     control
-        What an action is:
+        Meaning of an action:
 
         ``"handle_position"``
-            Where the handle shall be at the end of the step, (3,), m, in the workspace frame; it gets there in even steps,
-            at 1 m/s at most.
+            Position of the handle at the end of the step, (3,), m, in the workspace frame; reached in even steps, at
+            1 m/s at most.
         ``"handle_force"``
             Force of your controller on the handle, (3,), N. The handle moves as the scene's mass of hand and handle under
-            this force and the one that is rendered.
+            this force and the rendered force.
         ``"rendered_force"``
-            Force in the hand, (3,), N, in place of a mode: your own rendering, through the same gates. The scene's simulated
-            hand holds the handle and feels it.
+            Force in the hand, (3,), N, instead of a mode: your own rendering, through the same gates. It acts on the
+            scene's simulated hand, which holds the handle.
         ``"nothing"``
-            No action: the scene's hand works, a mode renders; ``step()`` without an argument.
+            No action: the scene's hand moves the handle and a mode renders; call ``step()`` without an argument.
 
         In a scene with rings an action on the handle has a fourth number, the opening of the gripper (rad).
     substeps
@@ -81,21 +81,22 @@ class Environment(_Base):
 
     Notes
     -----
-    The observation is what a controller at the leader can know, each (3,), float64: ``handle_m``, ``handle_m_s``,
-    ``command_m`` (commanded tip), ``delayed_tip_m`` and ``delayed_n`` (tip and force one delay ago), ``rendered_n``. A space of
-    gymnasium has no NaN: until the first force has come over the link, ``delayed_n`` is 0 and ``info["has_force"]`` false.
+    The observation has the values available to a controller at the leader, each (3,), float64: ``handle_m``,
+    ``handle_m_s``, ``command_m`` (commanded tip), ``delayed_tip_m`` and ``delayed_n`` (tip and force one delay ago), ``rendered_n``. A space of
+    gymnasium has no NaN: until the first force has arrived over the link, ``delayed_n`` is 0 and ``info["has_force"]`` false.
 
-    The reward is the share of the scene's task that was done in this step (0 in a scene without one). ``terminated``: the
-    task is done, or a fault of the loop ended the engagement (``info["fault"]``). ``info`` has what only a simulation knows:
-    ``t_s``, ``state``, ``fault``, ``mode``, ``tip_m`` and ``measured_n`` of now, ``asked_n`` (before the gates), ``gate`` (the
-    first that acted), ``has_force`` (a force has come over the link), ``task``. An unknown ``measured_n`` is NaN.
+    The reward is the fraction of the scene's task that was done in this step (0 in a scene without a task). ``terminated``: the
+    task is done, or a fault of the loop ended the engagement (``info["fault"]``). ``info`` has values that only a simulation
+    can provide: ``t_s``, ``state``, ``fault``, ``mode``, the current ``tip_m`` and ``measured_n``, ``asked_n`` (before the
+    gates), ``gate`` (the first that acted), ``has_force`` (a force has arrived over the link), ``task``. An
+    unknown ``measured_n`` is NaN.
 
     Deterministic: the same seed and actions give the same numbers to the last bit.
 
     Raises
     ------
     ValueError
-        A scene, rig, mode or control that is not known, a value out of its range, or a scene that measures at the wrist.
+        An unknown scene, rig, mode or control, a value out of its range, or a scene that measures at the wrist.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}
@@ -136,23 +137,23 @@ class Environment(_Base):
 
     @property
     def mode(self) -> str:
-        """Rendering mode in force."""
+        """Current rendering mode."""
         return self._native.mode
 
     @property
     def ceiling_n(self) -> float:
-        """Largest force that the gates let through, N."""
+        """Maximum force that passes the gates, N."""
         return self._native.ceiling_n
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[_Observation, dict[str, Any]]:
-        """Begin anew and run until the arm is engaged.
+        """Restart and run until the arm is engaged.
 
         Parameters
         ----------
         seed
-            Of the scene: tremor, sensor noise, hidden lumps. Without one the next is drawn.
+            Seed of the scene: tremor, sensor noise, hidden lumps. By default the next one is drawn.
         options
             Not used.
 
@@ -178,7 +179,7 @@ class Environment(_Base):
         Raises
         ------
         ValueError
-            An action of another shape or with a number that is not finite; an episode that is over or has not begun.
+            An action of the wrong shape or with a number that is not finite; an episode that is over or has not begun.
         """
         if not self._running:
             raise ValueError("the episode is over or has not begun: call reset")
@@ -194,19 +195,19 @@ class Environment(_Base):
         return observation, reward, terminated, truncated, info
 
     def score(self) -> dict[str, Any] | None:
-        """The score of the episode so far, as ``nima run --json`` has it; ``None`` in a scene without a task, or where it was
-        asked for already: it ends with this."""
+        """Returns the score of the episode so far, in the format of ``nima run --json``; ``None`` in a scene without a task,
+        and on a second call: the first call ends the scoring."""
         score = self._native.score()
         return None if score is None else cast("dict[str, Any]", json.loads(score))
 
     def render(self) -> None:
-        """Nothing is drawn: record and look at it in the console."""
+        """Draws nothing: record the session and open it in the console."""
 
     def close(self) -> None:
-        """Nothing is left to close."""
+        """Does nothing."""
 
     def _set_spaces(self) -> None:
-        """Spaces of gymnasium, where it is installed."""
+        """Sets the spaces of gymnasium, if it is installed."""
         try:
             from gymnasium.spaces import Box, Dict
         except ImportError:

@@ -15,7 +15,7 @@ from . import _nima
 from ._arrays import Floats, as_floats, columns, is_frame, line
 
 MODES: tuple[str, ...] = tuple(_nima.modes())
-"""Every rendering mode: the program's own, then the baselines."""
+"""All rendering modes: the program's own, then the baselines."""
 
 GATES: tuple[str, ...] = (
     "open",
@@ -67,7 +67,7 @@ class Figures(TypedDict):
 
 
 class Parcels(TypedDict):
-    """What the follower sends in each of ``n`` samples, for ``a`` axes.
+    """The follower's messages in each of ``n`` samples, for ``a`` axes.
 
     ``*_coefficients`` is the paper's ``M``: columns ``u, u', u'', ..., u^5, u'^5, u''^5`` (N per SI unit of the column).
     """
@@ -92,20 +92,20 @@ class Identification:
     """Result of :func:`identify` for ``n`` samples of ``a`` axes."""
 
     forces_n: Floats
-    """Rendered force before the gates, shape (n, a): for time t, from data up to t - delay and the motion at t. NaN where
-    nothing had come yet or the mode has nothing valid."""
+    """Rendered force before the gates, shape (n, a): for time t, from data up to t - delay and the motion at t. NaN
+    before the first data arrived, or if the mode has nothing valid."""
     held_n: Floats
     """Force measured one delay ago (delayed reflection), shape (n, a); NaN before the first."""
     degrees: npt.NDArray[np.uint8]
-    """Degree used, shape (n,); 0 for none."""
+    """Degree used, shape (n,); 0 for no model."""
     conditions: Floats
-    """Condition number of the scaled regression, shape (n,); 0 while there is none."""
+    """Condition number of the scaled regression, shape (n,); 0 without a regression."""
     gates: npt.NDArray[np.uint8]
     """The first gate that would change this force, shape (n,): index into :data:`GATES`."""
     figures: Figures
     """The figures of ``nima identify --json``."""
     parcels: Parcels | None
-    """What crosses the link in each sample, if it was asked for."""
+    """The messages over the link in each sample, if requested."""
 
     @property
     def errors(self) -> dict[str, ErrorFigures]:
@@ -134,7 +134,7 @@ class Recording:
     rate_hz: float
     """One over the median time step, Hz."""
     axes: list[str]
-    """Names of the axes: of ``x``, ``y``, ``z``."""
+    """Names of the axes, from ``x``, ``y``, ``z``."""
     positions_m: Floats
     """Positions of the tip, shape (n, a), m."""
     forces_n: Floats
@@ -156,17 +156,17 @@ def read_recording(
     path
         CSV file with ``t_s``, ``x_m, y_m, z_m`` and ``fx_n, fy_n, fz_n`` (one to three axes), or a session.
     map
-        Other column names with an optional factor: ``{"x": "px_mm*0.001"}`` or ``["x=px_mm*0.001"]``; of three axes at
+        Other column names with an optional factor: ``{"x": "px_mm*0.001"}`` or ``["x=px_mm*0.001"]``; for three axes at
         once ``{"xyz": "px_mm,py_mm,pz_mm*0.001"}``; ``lx``, ``ly``, ``lz`` or ``lxyz`` for the leader's own motion.
     arm
-        ``"right"`` or ``"left"``, of a session that has both.
+        ``"right"`` or ``"left"``, for a session with both arms.
 
     Raises
     ------
     OSError
         The file cannot be read.
     ValueError
-        A column is missing, a field is not a number, or time does not rise: with its line.
+        A column is missing, a field is not a number, or time does not rise; the error names the line.
     """
     return Recording(**_nima.read_recording(path, _map_texts(map), arm))
 
@@ -201,18 +201,18 @@ def identify(
         Positions of the tip in m, shape (n,) or (n, axes) with one to three axes, C or Fortran order or any view; float64
         is not copied. Or a :class:`Recording`, or a frame (pandas, polars) with the columns of a recording.
     forces_n
-        Forces at the tip in N, of the same shape. Left out with a recording or a frame.
+        Forces at the tip in N, of the same shape. Omit them with a recording or a frame.
     rate_hz
-        Samples per second, 20 to 10000; by default that of ``times_s``. One of both is needed with arrays.
+        Samples per second, 20 to 10000; by default computed from ``times_s``. Arrays need one of the two.
     delay_s
         One-way delay of the link, s, 0 to 1.
     mode
         One of :data:`MODES`.
     times_s
-        Times of the samples, shape (n,), s, which rise. A step longer than 0.05 s (and ten periods) is a hole: nothing is
-        learnt or rendered across it. By default the samples are evenly spaced.
+        Rising times of the samples, shape (n,), s. A step longer than 0.05 s (and ten periods) is a gap: nothing is
+        identified or rendered across it. By default the samples are evenly spaced.
     leader_positions_m
-        The leader's own motion in the same samples, mapped to the tip, m. The force is then made of it, as the loop does
+        The leader's own motion in the same samples, mapped to the tip, m. The force is then computed from it, as in the loop
         with ``own_motion = "handle"``.
     map
         Columns of a frame; see :func:`read_recording`.
@@ -223,10 +223,10 @@ def identify(
     cross_talk
         The force on each axis may depend on the motion of all axes (matched and best; slower).
     reading, choice, constant, ridge
-        How *literal* and *linear* read the paper: ``"increments"`` or ``"displacement"``; ``"window"`` or ``"next"``; a free
+        How *literal* and *linear* interpret the paper: ``"increments"`` or ``"displacement"``; ``"window"`` or ``"next"``; a free
         constant force; ridge per row of the window, 0 to 1e6.
     parcels
-        Also return what crosses the link in each sample.
+        Also return the messages over the link in each sample.
 
     Returns
     -------
@@ -235,7 +235,7 @@ def identify(
     Raises
     ------
     ValueError
-        A shape, a value that is not finite, a time that does not rise, or a setting out of its range.
+        Wrong shape, a value that is not finite, a time that does not rise, or a setting out of its range.
     """
     axes: list[str] | None = None
     times: Floats | None
@@ -244,7 +244,7 @@ def identify(
         recording = positions_m
         _only_one_source(forces_n, map)
         if times_s is not None or leader_positions_m is not None:
-            raise ValueError("times_s and leader_positions_m are part of the recording: leave them away")
+            raise ValueError("times_s and leader_positions_m are part of the recording: omit them")
         axes, rate_hz = recording.axes, recording.rate_hz if rate_hz is None else rate_hz
         positions, forces = columns("positions_m", recording.positions_m), columns("forces_n", recording.forces_n)
         times = recording.times_s
@@ -257,13 +257,13 @@ def identify(
         if forces_n is None:
             raise ValueError("forces_n is missing: give one force for each position")
         if map:
-            raise ValueError("map names columns of a frame, and positions_m is an array: leave it away")
+            raise ValueError("map names columns of a frame, and positions_m is an array: omit it")
         positions, forces = columns("positions_m", positions_m), columns("forces_n", forces_n)
         times = None if times_s is None else line("times_s", times_s)
         leader = None if leader_positions_m is None else columns("leader_positions_m", leader_positions_m)
     if rate_hz is None:
         if times is None:
-            raise ValueError("rate_hz or times_s is needed")
+            raise ValueError("rate_hz and times_s are missing: give one of them")
         rate_hz = _nima.rate_of(times)
     places = range(len(positions)) if axes is None else [_AXES.index(axis) for axis in axes]
     result = _nima.identify(
@@ -290,9 +290,9 @@ def identify(
 
 def _only_one_source(forces_n: Any, map: Any) -> None:
     if forces_n is not None:
-        raise ValueError("forces_n is part of the recording: leave it away")
+        raise ValueError("forces_n is part of the recording: omit it")
     if map:
-        raise ValueError("map is for read_recording: leave it away")
+        raise ValueError("map is for read_recording: omit it")
 
 
 def _map_texts(map: Mapping[str, str] | Sequence[str]) -> list[str]:
@@ -304,14 +304,14 @@ def _map_texts(map: Mapping[str, str] | Sequence[str]) -> list[str]:
 
 
 def _sources(map: Mapping[str, str] | Sequence[str]) -> dict[str, tuple[str, float]]:
-    """Column and factor of every quantity that is mapped, checked by the program's own parser."""
+    """Returns column and factor of each mapped quantity, checked by the program's own parser."""
     return {quantity: (column, scale) for quantity, column, scale in _nima.parse_map(_map_texts(map))}
 
 
 def _of_frame(
     frame: Any, map: Mapping[str, str] | Sequence[str]
 ) -> tuple[list[str], Floats, list[Floats], list[Floats], list[Floats] | None]:
-    """Axes, times, positions, forces and the leader's motion of a frame, as they would be read from its CSV."""
+    """Returns axes, times, positions, forces and the leader's motion of a frame, as if read from its CSV file."""
     mapped = _sources(map)
     names = [str(name) for name in frame.columns]
 

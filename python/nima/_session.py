@@ -16,7 +16,7 @@ from ._identification import Recording, read_recording
 
 @dataclass(frozen=True)
 class Ticks:
-    """What is plotted of an arm in ``n`` ticks; frame ``world``."""
+    """Plots of an arm in ``n`` ticks; frame ``world``."""
 
     t_s: Floats
     """Time since the session began, shape (n,), s."""
@@ -29,13 +29,13 @@ class Ticks:
     measured_n: Floats
     """Force at the tip, shape (n, 3), N; NaN where it was unknown."""
     delayed_n: Floats
-    """The same as the link delivered it then, shape (n, 3), N; NaN before the first, and once it was too old."""
+    """Force at the tip as delivered by the link, shape (n, 3), N; NaN before the first, and when it is too old."""
     asked_n: Floats
     """Force of the mode before the gates, shape (n, 3), N."""
     rendered_n: Floats
     """Force on the hand, after the gates, shape (n, 3), N."""
     state: list[str]
-    """State of the arm in a word."""
+    """State of the arm."""
 
 
 class Event(NamedTuple):
@@ -64,19 +64,19 @@ class Attachment(NamedTuple):
 
 
 class Session:
-    """A recorded session. Chunks are read when they are asked for.
+    """A recorded session. Chunks are read on demand.
 
     Parameters
     ----------
     path
-        Session file (.mcap), finished or cut short.
+        Session file (.mcap), finished or truncated.
 
     Raises
     ------
     OSError
         The file cannot be read.
     ValueError
-        It is no session, or damaged.
+        It is not a session, or it is damaged.
     """
 
     def __init__(self, path: str | PathLike[str]) -> None:
@@ -85,12 +85,12 @@ class Session:
 
     @property
     def arms(self) -> list[str]:
-        """The arms that are plotted: of ``right`` and ``left``."""
+        """The plotted arms: ``right``, ``left`` or both."""
         return self._native.arms
 
     @property
     def channels(self) -> list[Channel]:
-        """Topic, schema and number of messages of every channel (``None`` where the file does not say it)."""
+        """Topic, schema and number of messages of every channel (``None`` if unknown)."""
         return [Channel(*channel) for channel in self._native.channels]
 
     @property
@@ -99,17 +99,17 @@ class Session:
         return [Attachment(*one) for one in self._native.attachments]
 
     def attachment(self, name: str) -> bytes:
-        """The data of an attached file; :class:`ValueError` if there is none of this name."""
+        """Returns the data of an attached file; raises :class:`ValueError` if no file has this name."""
         return self._native.attachment(name)
 
     @property
     def metadata(self) -> dict[str, dict[str, str]]:
-        """The tables of the file, by their names."""
+        """Metadata tables of the file, by name."""
         return self._native.metadata
 
     @property
     def notes(self) -> list[str]:
-        """What is wrong with the file, one line each; nothing with a sound one."""
+        """Defects of the file, one line each; empty for an intact file."""
         return self._native.notes
 
     @property
@@ -124,45 +124,45 @@ class Session:
 
     @property
     def end_s(self) -> float:
-        """Its end, s since it began."""
+        """End of the session, s since it began."""
         return self._native.end_s
 
     def ticks(self, arm: str | None = None, *, from_s: float | None = None, to_s: float | None = None) -> Ticks:
-        """What is plotted of an arm in every tick of a stretch (from ``from_s``, before ``to_s``, s since it began).
+        """Returns the plots of an arm in every tick of a time range (``from_s`` to before ``to_s``, s since it began).
 
         Raises
         ------
         ValueError
-            The session has no such arm, or two and ``arm`` chooses none; a stretch that is none; a damaged chunk.
+            The session lacks this arm, or has two and ``arm`` is missing; an empty time range; a damaged chunk.
         """
         return Ticks(**self._native.ticks(arm, from_s, to_s))
 
     def plot(self, topic: str, *, from_s: float | None = None, to_s: float | None = None) -> dict[str, Floats]:
-        """The named numbers of a channel such as ``right/identification`` or ``timing``, each of shape (n,), and ``t_s``.
+        """Returns the named numbers of a channel such as ``right/identification`` or ``timing``, each of shape (n,), and ``t_s``.
 
         Raises
         ------
         ValueError
-            No such channel, one with other messages, a stretch that is none, or a damaged chunk.
+            The channel is missing or has other messages, the time range is empty, or a chunk is damaged.
         """
         return self._native.plot(topic, from_s, to_s)
 
     def events(self, *, from_s: float | None = None, to_s: float | None = None) -> list[Event]:
-        """What happened: states, faults, commands, marks, alarms; the oldest first.
+        """Returns the events: states, faults, commands, marks, alarms; the oldest first.
 
         Raises
         ------
         ValueError
-            A stretch that is none, or a damaged chunk.
+            An empty time range, or a damaged chunk.
         """
         return [Event(*line) for line in self._native.events(from_s, to_s)]
 
     def recording(self, arm: str | None = None) -> Recording:
-        """Motion and force of an arm, for :func:`nima.identify`; the same as ``nima identify SESSION.mcap``.
+        """Returns motion and force of an arm, for :func:`nima.identify`; the same as ``nima identify SESSION.mcap``.
 
         Raises
         ------
         ValueError
-            As :meth:`ticks`; a value that is not finite; fewer than three ticks.
+            See :meth:`ticks`; also a value that is not finite, or fewer than three ticks.
         """
         return read_recording(self._path, arm=arm)

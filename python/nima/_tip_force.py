@@ -19,29 +19,29 @@ class Estimates:
     """Predictions of a network for ``n`` rows and ``k`` outputs."""
 
     output: Floats
-    """Shape (n, k), in the outputs' own units; zero where the inputs cannot be used."""
+    """Shape (n, k), in the outputs' own units; zero for unusable inputs."""
     spread: Floats
     """Largest deviation of a member of the ensemble from the mean, shape (n, k)."""
     doubt: Floats
-    """Distance from the training data, shape (n,); 1 is the limit, infinite for inputs that cannot be used."""
+    """Distance from the training data, shape (n,); 1 is the limit, infinite for unusable inputs."""
     in_doubt: npt.NDArray[np.bool_]
     """Whether a prediction is unreliable, shape (n,)."""
 
 
 @dataclass(frozen=True)
 class TipForce:
-    """The force at the tip for ``n`` samples, as the loop makes it."""
+    """Force at the tip for ``n`` samples, computed as in the loop."""
 
     forces_n: Floats
     """Force of the tissue on the tip, shape (n, 3), N, in the wrist sensor's frame."""
     network_share: Floats
-    """Share of the network in it, shape (n,), 0 to 1; the rest is the fallback."""
+    """Weight of the network in it, shape (n,), 0 to 1; the rest is the fallback."""
     doubt: Floats
     """Distance from the training data, shape (n,); 1 is the limit, infinite before the instrument has moved."""
 
 
 class TipForceModel:
-    """A network that ``nima train tip-force`` wrote.
+    """A network written by ``nima train tip-force``.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class TipForceModel:
     OSError
         The file cannot be read.
     ValueError
-        It is no network of this program.
+        It is not a network of this program.
     """
 
     def __init__(self, path: str | PathLike[str]) -> None:
@@ -71,7 +71,7 @@ class TipForceModel:
 
     @property
     def origin(self) -> dict[str, Any]:
-        """Where the network comes from: files, settings, errors, sensor and tool."""
+        """Origin of the network: files, settings, errors, sensor and tool."""
         return cast("dict[str, Any]", json.loads(self._native.origin))
 
     def estimate(self, inputs: npt.ArrayLike) -> Estimates:
@@ -80,7 +80,7 @@ class TipForceModel:
         Raises
         ------
         ValueError
-            Another number of columns, or a number that is not finite.
+            Wrong number of columns, or a number that is not finite.
         """
         return Estimates(**self._native.estimate(table("inputs", inputs)))
 
@@ -99,7 +99,7 @@ class TipForceModel:
         Parameters
         ----------
         times_s
-            Times, shape (n,), s, which rise; after a gap of more than 20 ms the network knows no direction of friction.
+            Rising times, shape (n,), s; after a gap of more than 20 ms the direction of friction is unknown.
         forces_n, torques_nm
             Gravity-free wrench at the wrist, shape (n, 3), N and Nm, in the sensor's frame.
         world_from_sensor_wxyz
@@ -112,7 +112,7 @@ class TipForceModel:
         Raises
         ------
         ValueError
-            A shape, a number that is not finite, or a network with inputs that the loop does not know.
+            Wrong shape, a number that is not finite, or a network with inputs that the loop does not have.
         """
         result = self._native.infer(
             line("times_s", times_s),

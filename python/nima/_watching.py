@@ -18,7 +18,7 @@ PORT = 18944
 
 # Version, type, device, time (seconds and their 2^-32 parts since 1970), size of the body and its check, all big-endian.
 _HEADER = struct.Struct(">H12s20sIIQQ")
-# No message of ours but a picture, which is not asked for, is larger.
+# Larger than any message of the program except images, which are not requested.
 _LARGEST_BODY = 1 << 20
 
 
@@ -50,14 +50,14 @@ def _request(kind: bytes, body: bytes = b"") -> bytes:
 
 @dataclass(frozen=True)
 class ArmNow:
-    """An arm in one tick; frame ``world``. Numbers that are not known are NaN."""
+    """An arm in one tick; frame ``world``. Unknown numbers are NaN."""
 
     state: str
-    """State in a word: ``Engaged``, ``Fault`` ..."""
+    """State: ``Engaged``, ``Fault`` ..."""
     tip_m: Floats
     """Position of the instrument's tip, shape (3,), m."""
     leader_m: Floats
-    """Where the hand leads it, shape (3,), m."""
+    """Commanded position of the tip, shape (3,), m."""
     measured_n: Floats
     """Force of the tissue on the tip, shape (3,), N; NaN while it is unknown."""
     rendered_n: Floats
@@ -69,17 +69,17 @@ class Now:
     """One tick of a running loop."""
 
     t_s: float
-    """Since the run began, s."""
+    """Time since the run began, s."""
     time_ns: int
-    """Time of the tick, ns since 1970 (UTC), within 1 ns: that of the session file of the same run."""
+    """Time of the tick, ns since 1970 (UTC), within 1 ns of the time in the session file of the same run."""
     arms: dict[str, ArmNow]
-    """By side: ``right``, ``left``; without an arm whose devices are missing."""
+    """Arms by side: ``right``, ``left``; an arm whose devices are missing is omitted."""
 
 
 class Watching:
     """The newest ticks of a running loop, one after the other; ends when the program does.
 
-    Nothing that it sends reaches the loop. A reader that is slow gets fewer ticks, each of them the newest.
+    Nothing that it sends reaches the loop. A slow reader receives fewer ticks, always the newest.
 
     >>> with nima.watch("127.0.0.1:18944") as watching:  # doctest: +SKIP
     ...     for now in watching:
@@ -88,7 +88,7 @@ class Watching:
 
     def __init__(self, address: str = f"127.0.0.1:{PORT}", rate_hz: float = 60.0, timeout_s: float = 5.0) -> None:
         if not 1.0 <= rate_hz <= 100.0:
-            raise ValueError(f"rate_hz is {rate_hz}: the program tells 1 to 100 ticks a second")
+            raise ValueError(f"rate_hz is {rate_hz}: give 1 to 100 ticks a second")
         host, _, port = address.rpartition(":")
         if not host or not port.isdigit():
             raise ValueError(f'address is "{address}": give HOST:PORT, as the program prints it')
@@ -100,7 +100,7 @@ class Watching:
             reason = error.strerror or str(error)
             raise ConnectionError(f"{address}: {reason}; start the program there with --igtl") from error
         self._line.settimeout(timeout_s)
-        # The JSON has everything, and each number with all of its digits.
+        # The JSON message contains everything, each number with all of its digits.
         for kind in (b"STP_TRANS", b"STP_TDATA", b"STP_SENSOR"):
             self._line.sendall(_request(kind))
         self._line.sendall(_request(b"STT_STRING"))
@@ -134,23 +134,23 @@ class Watching:
             return None
         _, kind, device, seconds, parts, size, check = _HEADER.unpack(head)
         if size > _LARGEST_BODY:
-            raise ConnectionError(f"{self._address}: a message of {size} bytes came, which this program never sends")
+            raise ConnectionError(f"{self._address}: received {size} bytes in one message, more than this program sends")
         body = self._take(size)
         if body is None:
             return None
         kind, device = kind.rstrip(b"\0"), device.rstrip(b"\0")
         if kind == b"STRING" and _crc64(body) != check:
-            raise ConnectionError(f"{self._address}: what came is damaged (checksum)")
+            raise ConnectionError(f"{self._address}: received a damaged message (checksum)")
         return kind, device, (seconds, parts), body
 
     def _take(self, size: int) -> bytes | None:
-        """So many bytes; ``None`` where the program has ended."""
+        """Returns this many bytes; ``None`` if the program has ended."""
         while len(self._buffer) < size:
             try:
                 more = self._line.recv(1 << 16)
             except socket.timeout as error:
                 waited_s = self._line.gettimeout()
-                raise TimeoutError(f"{self._address}: nothing came for {waited_s:g} s") from error
+                raise TimeoutError(f"{self._address}: received nothing for {waited_s:g} s") from error
             except ConnectionResetError:
                 more = b""
             if not more:
@@ -181,10 +181,10 @@ def _now(stamp: tuple[int, int], told: dict[str, Any]) -> Now:
 
 
 def watch(address: str = f"127.0.0.1:{PORT}", rate_hz: float = 60.0, timeout_s: float = 5.0) -> Watching:
-    """Watches a loop that was started with ``--igtl``.
+    """Watch a loop that was started with ``--igtl``.
 
-    ``address`` is what the program prints, ``rate_hz`` 1 to 100 ticks a second. During a trial of a blind study, and
-    where no loop runs, nothing comes: :class:`TimeoutError` after ``timeout_s``. Raises :class:`ConnectionError` where
-    nobody listens.
+    ``address`` is printed by the program; ``rate_hz`` is 1 to 100 ticks a second. Raises :class:`TimeoutError` if nothing
+    arrives for ``timeout_s`` (during a trial of a blind study, or while no loop runs), and :class:`ConnectionError` if no
+    program listens at the address.
     """
     return Watching(address, rate_hz, timeout_s)

@@ -103,7 +103,7 @@ pub(crate) fn table<'a>(
     if found != columns || rows.is_some_and(|rows| rows != found_rows) {
         let wanted = rows.map_or_else(|| "n".to_owned(), |rows| rows.to_string());
         return Err(value(format_args!(
-            "{name} has the shape ({found_rows}, {found}), ({wanted}, {columns}) is needed"
+            "{name} has the shape ({found_rows}, {found}); give the shape ({wanted}, {columns})"
         )));
     }
     if let Some(((row, _), number)) = view.indexed_iter().find(|(_, number)| !number.is_finite()) {

@@ -241,14 +241,11 @@ pub(crate) fn read_recording<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let is_session = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"));
     if is_session && !map.is_empty() {
-        return Err(value(format_args!(
-            "map names columns of a table, and {} is a session: leave it away",
-            path.display()
-        )));
+        return Err(value(format_args!("map names columns of a table, and {} is a session; omit map", path.display())));
     }
     if !is_session && arm.is_some() {
         return Err(value(format_args!(
-            "arm chooses an arm of a session, and {} is a table: leave it away",
+            "arm chooses an arm of a session, and {} is a table; omit arm",
             path.display()
         )));
     }

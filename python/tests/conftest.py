@@ -37,7 +37,7 @@ def program() -> Program:
     path = Path(os.environ.get("NIMA", ROOT / "target" / "debug" / "nima"))
     if not path.exists():
         # ./dev python builds it and sets NIMA.
-        assert "NIMA" not in os.environ, f"{path} is not there"
+        assert "NIMA" not in os.environ, f"{path} not found"
         pytest.skip(f"the program {path} is not built")
     return Program(path)
 

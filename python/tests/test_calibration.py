@@ -76,8 +76,8 @@ def test_poor_poses_are_a_verdict_and_impossible_ones_an_error():
     assert alike["verdict"] != "accepted" and alike["reason"]
     for call, words in [
         (lambda: nima.fit_gravity(forces_n), "give either accelerations_m_s2 or world_from_sensor_wxyz"),
-        (lambda: nima.fit_gravity(forces_n[:, :2], world_from_sensor_wxyz=wxyz), r"forces_n has the shape \(8, 2\), \(n, 3\) is needed"),
-        (lambda: nima.fit_gravity(forces_n, world_from_sensor_wxyz=wxyz[1:]), r"shape \(7, 4\), \(8, 4\) is needed"),
+        (lambda: nima.fit_gravity(forces_n[:, :2], world_from_sensor_wxyz=wxyz), r"forces_n has the shape \(8, 2\); give the shape \(n, 3\)"),
+        (lambda: nima.fit_gravity(forces_n, world_from_sensor_wxyz=wxyz[1:]), r"shape \(7, 4\); give the shape \(8, 4\)"),
         (lambda: nima.fit_gravity(forces_n, world_from_sensor_wxyz=wxyz * 2.0), "row 0: the quaternion has length 2.000"),
         (lambda: nima.fit_gravity(forces_n * np.nan, world_from_sensor_wxyz=wxyz), "forces_n, row 0: NaN"),
         (lambda: nima.fit_gravity(forces_n, world_from_sensor_wxyz=wxyz, model="magic"), 'model is "magic"; give one of physical'),

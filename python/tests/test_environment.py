@@ -125,7 +125,7 @@ def test_own_rendering_goes_through_the_same_gates():
         largest_n = max(largest_n, float(np.linalg.norm(observation["rendered_n"])))
         acted.add(info["gate"])
         assert abs(info["asked_n"][2] - wanted_n[2]) < 1e-9
-    assert 0.9 < largest_n <= environment.ceiling_n + 1e-9, "50 N were asked for"
+    assert 0.9 < largest_n <= environment.ceiling_n + 1e-9, "50 N were commanded"
     # A hand that is pushed like this is taken for gone: the governor brakes too.
     assert acted >= {"slew", "governor", "dead_band", "open"}, acted
     environment.step([0.0, 0.0, 1e5])
@@ -143,7 +143,7 @@ def test_own_reflection_of_the_delayed_force_is_nearly_the_mode_dfr():
         reference, *_ = ours.step()
         assert not terminated, info
         errors.append(np.linalg.norm(observation["rendered_n"] - reference["rendered_n"]))
-    # One tick late, so the hand is elsewhere by a little, and its tremor goes on.
+    # One tick late, so the hand is elsewhere by a little, and its tremor continues.
     assert np.mean(errors) < 0.1 and np.max(np.abs(reference["rendered_n"])) >= 0.0
 
 
@@ -207,7 +207,7 @@ def test_jaws_take_a_fourth_number():
         ({"rig": "emulated"}, "has devices; give a simulated one"),
         ({"scene": "gravity"}, "cannot be engaged"),
         ({"mode": "smith"}, 'unknown mode "smith"'),
-        ({"mode": "best", "control": "rendered_force"}, "leave it away"),
+        ({"mode": "best", "control": "rendered_force"}, "omit mode"),
         ({"control": "thought"}, "handle_position"),
         ({"delay_s": 3.0}, "delay_s is 3"),
         ({"substeps": 0}, "substeps is 0"),

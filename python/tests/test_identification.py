@@ -29,7 +29,7 @@ def same(left: np.ndarray, right: np.ndarray) -> bool:
 
 
 def agrees(result: nima.Identification, program: Program, out: Path, *arguments: object) -> None:
-    """The program's figures and trace for these arguments are those of this result."""
+    """The program's figures and trace for these arguments equal this result."""
     figures = program.json("identify", *arguments, "--out", out)
     ours = dict(result.figures)
     # What differs from run to run: how long a tick took.
@@ -172,7 +172,7 @@ FEW = np.linspace(0.0, 1.0, 500)
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ({}, "rate_hz or times_s is needed"),
+        ({}, "rate_hz and times_s are missing"),
         ({"rate_hz": 1000.0, "mode": "smith"}, 'unknown mode "smith": use one of literal'),
         ({"rate_hz": 1000.0, "delay_s": 5.0}, "the delay of 5 s is out of range: use 0 to 1 s"),
         ({"rate_hz": 1000.0, "delay_s": float("nan")}, "the delay of NaN s is out of range"),
@@ -181,7 +181,7 @@ FEW = np.linspace(0.0, 1.0, 500)
         ({"rate_hz": 1000.0, "window_s": 0.0}, "the window of 0 s"),
         ({"rate_hz": 1000.0, "window_s": 0.6}, "has 500 samples; a window of 600 ms"),
         ({"rate_hz": 1000.0, "max_degree": 9}, "the highest degree 9 is out of range"),
-        ({"rate_hz": 1000.0, "ridge": -1.0}, "the ridge is -1"),
+        ({"rate_hz": 1000.0, "ridge": -1.0}, "the ridge -1 is out of range"),
         ({"rate_hz": 1000.0, "reading": "sideways"}, "reading: unknown variant `sideways`"),
         ({"rate_hz": 1000.0, "choice": "best"}, "choice: unknown variant `best`"),
         ({"times_s": np.zeros(500)}, "times_s, row 1: time does not rise (0 s, then 0 s)"),
@@ -190,7 +190,7 @@ FEW = np.linspace(0.0, 1.0, 500)
         ({"rate_hz": 1000.0, "positions_m": np.zeros((500, 0)), "forces_n": np.zeros((500, 0))}, "positions_m has 0 axes"),
         ({"rate_hz": 1000.0, "positions_m": np.zeros((500, 2))}, "positions_m has the shape (500, 2), forces_n has (500, 1)"),
         ({"rate_hz": 1000.0, "positions_m": np.zeros((5, 5, 5))}, "positions_m has 3 dimensions"),
-        ({"rate_hz": 1000.0, "positions_m": ["a"] * 500}, "positions_m: these are no numbers"),
+        ({"rate_hz": 1000.0, "positions_m": ["a"] * 500}, "positions_m: the values are not numbers"),
         ({"rate_hz": 1000.0, "forces_n": np.where(FEW == FEW[70], np.nan, FEW)}, "forces_n, row 70: NaN is not a finite number"),
         ({"rate_hz": 1000.0, "forces_n": np.where(FEW == FEW[9], -np.inf, FEW)}, "forces_n, row 9: -inf"),
         ({"rate_hz": 1000.0, "forces_n": None}, "forces_n is missing"),
@@ -214,7 +214,7 @@ def test_files_that_cannot_be_read_are_told_apart(tmp_path, write):
     path = write("nan.csv", t_s=np.arange(5.0), x_m=np.array([0.0, 1.0, np.nan, 3.0, 4.0]), fx_n=np.arange(5.0))
     with pytest.raises(ValueError, match='line 4, column "x_m": "nan" is not a finite number'):
         nima.read_recording(path)
-    with pytest.raises(ValueError, match="is a table: leave it away"):
+    with pytest.raises(ValueError, match="is a table; omit arm"):
         nima.read_recording(path, arm="right")
     with pytest.raises(ValueError, match='map names columns of a table, and .*s.mcap is a session'):
         nima.read_recording(tmp_path / "s.mcap", map=["x=a"])

@@ -70,7 +70,7 @@ def test_inference_begins_with_the_first_motion(model):
 
 def test_what_cannot_be_used_is_one_clear_line(model, tmp_path):
     network = nima.TipForceModel(model)
-    with pytest.raises(ValueError, match=r"inputs has the shape \(5, 3\), \(n, 15\) is needed"):
+    with pytest.raises(ValueError, match=r"inputs has the shape \(5, 3\); give the shape \(n, 15\)"):
         network.estimate(np.zeros((5, 3)))
     with pytest.raises(ValueError, match="inputs, row 4: NaN"):
         network.estimate(np.vstack([np.zeros((4, 15)), np.full((1, 15), np.nan)]))

@@ -52,7 +52,7 @@ def test_nobody_silence_and_damage_are_told():
         nima.watch(rate_hz=0.5)
     with socket.create_server(("127.0.0.1", 0)) as server:
         address = "127.0.0.1:%d" % server.getsockname()[1]
-        with nima.watch(address, timeout_s=0.1) as silent, pytest.raises(TimeoutError, match="nothing came"):
+        with nima.watch(address, timeout_s=0.1) as silent, pytest.raises(TimeoutError, match="received nothing"):
             next(iter(silent))
         server.accept()[0].close()
         text = b"\0\3\0\2{}"

@@ -280,7 +280,7 @@ mod tests {
             };
             next(&mut *source).unwrap_err().to_string()
         };
-        assert!(told(folder.path().join("missing.mjpeg")).contains("not there"));
+        assert!(told(folder.path().join("missing.mjpeg")).contains("no such file or folder"));
         assert!(told(folder.path().to_owned()).contains("no whole JPEG"));
         let text = folder.path().join("text");
         fs::write(&text, "no picture").unwrap();

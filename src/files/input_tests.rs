@@ -88,7 +88,7 @@ mod unix {
             open_table(&path).and_then(|mut input| input.read_to_string(&mut text)).map(|_| text)
         };
         let to = path.clone();
-        assert!(soon(move || all(to)).unwrap_err().to_string().contains("nobody writes"));
+        assert!(soon(move || all(to)).unwrap_err().to_string().contains("no process writes"));
         // Opened for reading and writing, so that the writer does not wait for a reader.
         let mut writer = fs::OpenOptions::new().read(true).write(true).open(&path).unwrap();
         writer.write_all(b"a,b\n1,").unwrap();

@@ -125,7 +125,7 @@ pattern("subject-not-imperative",
         r"Tests? |Figures |Words |It |Its |Both |Only |Nothing |Some |Each |\S+'s )",
         "imperative verb first: Add, Fix, Refuse, Measure, Rename, Merge", "g", 0)
 pattern("subject-too-long", r"^.{73,}$", "at most 72 characters; details go into the body", "g", 0)
-pattern("subject-merge", r"^Join |^Merge (?:what|the (?:newest|last|main))", "Merge branch 'NAME': what it adds", "g", 0)
+pattern("subject-merge", r"^(?:Join|Merge) (?:what|the (?:newest|last|main))\b", "Merge branch 'NAME': what it adds", "g", 0)
 
 # Identifiers -----------------------------------------------------------------------------------------------------------
 BAD_MODULES = {

@@ -1,6 +1,6 @@
 """The manufacturer's own client (`bota-driver`) against our emulated sensors, on all three transports.
 
-Values are checked: the emulator moves by a formula of its own clock, which every frame carries.
+Values are checked: the emulator's motion is a formula of its clock, and every frame contains the clock.
 """
 
 import contextlib

@@ -1,5 +1,5 @@
 """Third-party players of motion JPEG against our emulated endoscope: ffmpeg and GStreamer, where they are installed; and the libraries of MCAP with Pillow
-against a session with its pictures. The time code in the picture is read here, from what the player decoded."""
+against a session with its pictures. The time code in the image is read here, from the player's decoded output."""
 
 import io
 import json
@@ -102,7 +102,7 @@ def in_a_session(nima):
             for _, channel, message, picture in reader.iter_decoded_messages(topics=["endoscope/picture"]):
                 peer.check("kind", picture.format == "jpeg" and picture.frame_id == "endoscope", picture.format)
                 stamp = picture.timestamp.seconds * 10**9 + picture.timestamp.nanos
-                peer.check("its stamp is that of the message", stamp == message.log_time, (stamp, message.log_time))
+                peer.check("its stamp equals the message's time", stamp == message.log_time, (stamp, message.log_time))
                 image = Image.open(io.BytesIO(picture.data))
                 peer.check("size", image.size == (WIDTH, HEIGHT), image.size)
                 code = time_code(image.convert("L").tobytes())

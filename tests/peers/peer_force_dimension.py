@@ -1,6 +1,6 @@
 """The published Python binding `forcedimension-core` on the stand-in library, against `nima emulate force-dimension`.
 
-The binding loads a library while it is imported, so each case is a process of its own: this file again, with the case's name.
+The binding loads a library while it is imported, so each case runs in its own process: this file again, with the case's name.
 """
 
 import ctypes
@@ -38,7 +38,7 @@ def sdk_with(library, folder):
 
 
 def case(name, sdk, address):
-    """Runs one case in a process; what it checked, as (what, good, got)."""
+    """Runs one case in a process; returns its checks as (what, good, got)."""
     environment = {**os.environ, "FDSDK": str(sdk)}
     environment.pop("NIMA_EMULATED_HANDLE", None)
     if address:
@@ -58,7 +58,7 @@ def run(nima):
         peer.skip("the binding searches for the library elsewhere on this system")
         return [peer]
     if library is None:
-        sys.exit(f"peer {NAME}: no libdrd beside {nima}: cargo build --workspace makes it")
+        sys.exit(f"peer {NAME}: no libdrd next to {nima}; run cargo build --workspace")
     with tempfile.TemporaryDirectory() as folder:
         sdk = sdk_with(library, folder)
         told = case("no_device", sdk, None)

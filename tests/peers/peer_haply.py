@@ -21,7 +21,7 @@ def run(nima):
         identity = device.device_wakeup_dict()
         peer.check("device id", int(identity["device_id"]) == 0x0A1B, identity)
         for force in ([0.0, 0.0, 0.0], [1.5, 0.0, 0.0], [0.0, -2.0, 3.0]):
-            # The answer knows the force of its own request.
+            # The answer depends on the force of the same request.
             for _ in range(100):
                 position, velocity = device.end_effector_force(force)
                 offset = [p - c - f / SPRING_N_M for p, c, f in zip(position, CENTRE_M, force)]

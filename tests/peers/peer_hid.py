@@ -62,7 +62,7 @@ def pyspacemouse_peer(nima, model, spec_name, ids, lengths):
         while time.monotonic() - begin < 1.0:
             state = device.read()
             reads += 1
-        peer.check("the lengths are those of the model", node.lengths == lengths, node.lengths)
+        peer.check("the lengths match the model", node.lengths == lengths, node.lengths)
         expected_hz = 125 if model == "split" else 62.5
         peer.check("the rate is the device's", 0.6 * expected_hz < reads < 1.3 * expected_hz, reads)
         # In its old convention: x, -y, -z of the device, pitch -Rx, roll -Ry, yaw +Rz, the device being turned half around x from us.

@@ -1,4 +1,4 @@
-"""pyigtl reads poses, forces and the endoscope's picture from a running loop over OpenIGTLink, and what it reads is what is recorded."""
+"""pyigtl reads poses, forces and the endoscope image from a running loop over OpenIGTLink; its values must equal the recorded ones."""
 
 import json
 import pathlib
@@ -124,7 +124,7 @@ def raw_peer(nima):
 
 
 def picture_peer(nima, folder):
-    peer = Peer("pyigtl (the endoscope's picture on request)")
+    peer = Peer("pyigtl (the endoscope image on request)")
     import pyigtl
 
     simulated = pathlib.Path(__file__).parent.parent.parent / "config" / "rigs" / "simulated.toml"
@@ -147,7 +147,7 @@ def picture_peer(nima, folder):
         peer.check("one slice in colours", image.image.shape == (1, HEIGHT, WIDTH, 3), image.image.shape)
         code = time_code(image.image[0].mean(axis=2).flatten())
         peer.check("the time code is sound", code is not None)
-        # The stamp is that of its arrival.
+        # The stamp is the time of its arrival.
         peer.check("at the time of its arrival", -0.05 < image.timestamp - code * 1e-6 < 5, (image.timestamp, code))
     peer.check("each is another one", len({image.timestamp for image in images}) == 3)
     return peer

@@ -113,7 +113,7 @@ def protobuf_peer(path):
         peer.check("arrow: place", [at.x, at.y, at.z] == numbers[3:] and entity.frame_id == "world", entity)
         shape = (arrow.shaft_length, arrow.shaft_diameter, arrow.head_length, arrow.head_diameter, arrow.color.g)
         peer.check("arrow: shape", shape == (0.05, 0.002, 0.01, 0.004, 0.5) and entity.frame_locked, arrow)
-        peer.check("arrow: what is not there is empty", len(entity.cubes) == len(scene.deletions) == 0)
+        peer.check("arrow: unused parts are empty", len(entity.cubes) == len(scene.deletions) == 0)
     peer.check("log", len(found["/log"]) == len(lines), len(found["/log"]))
     for row, (log_ns, _, line) in zip(lines, found["/log"]):
         peer.check("log: times", log_ns == int(row[0]) == stamp_ns(line.timestamp), row)

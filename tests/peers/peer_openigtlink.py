@@ -1,5 +1,5 @@
 """The example client of the OpenIGTLink library in C++ (Debian's packages libopenigtlink-dev and openigtlink-examples) reads what a running loop sends.
-`NIMA_OPENIGTLINK` names a folder that holds them in place of the system's root."""
+`NIMA_OPENIGTLINK` names a folder that holds them instead of the system's root."""
 
 import os
 import pathlib
@@ -36,7 +36,7 @@ def run(nima):
     for kind, least in {"TRANSFORM": 400, "TDATA": 100, "STATUS": 4, "STRING": 100}.items():
         count = told.count(f"Receiving {kind}")
         peer.check(f"{kind} comes", count >= least, (count, told[:2000]))
-    peer.check("SENSOR is passed over", told.count("Receiving : SENSOR") >= 400)
+    peer.check("SENSOR is ignored", told.count("Receiving : SENSOR") >= 400)
     peer.check("states", " Error Name: Engaged" in told, told[:2000])
     names = set(re.findall(r"Name *: (\S+)", told))
     peer.check("names of tools", {"right.tip", "left.tip", "right.leader", "left.leader"} <= names, names)

@@ -15,7 +15,7 @@ KILLED = 20
 
 def check(rerun, home, path):
     """Exit status, and the status of each topic."""
-    # Every timeline and every message is decoded. It would tell its makers that it was used: not from here.
+    # Every timeline and every message is decoded. Rerun's usage reports are switched off.
     environment = dict(os.environ, HOME=str(home))
     subprocess.run([rerun, "analytics", "disable"], env=environment, check=True, capture_output=True)
     ran = subprocess.run([rerun, "mcap", "check", "--full", path], env=environment, capture_output=True, text=True)
@@ -50,7 +50,7 @@ def run(nima):
         for path in sessions:
             status, topics, told = check(rerun, folder, path)
             peer.check(f"{path.stem}: accepted", status == 0, told)
-            peer.check(f"{path.stem}: both arms are there", {"right/forces", "left/gates"} <= set(topics), told)
+            peer.check(f"{path.stem}: both arms are present", {"right/forces", "left/gates"} <= set(topics), told)
             for topic, found in topics.items():
                 peer.check(f"{path.stem}: {topic}", found == "ok", told)
     return [peer]

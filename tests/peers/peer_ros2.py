@@ -117,7 +117,7 @@ class Reader:
         return found
 
     def state_before(self):
-        """Whether a reader that comes now is told a state from before. One comes by itself once a second: the first of three decides."""
+        """Whether a new reader receives the last state. A state is sent once a second anyway, so the first of three decides."""
         for _ in range(3):
             now, reader = time.time(), self.reader("right/operating_state", self.state, self.late)
             while not (samples := reader.take(N=1)):
@@ -261,7 +261,7 @@ def run(nima):
             publishes.wait()
         compare(peer, found, recorded(path))
     for name, samples in again.items():
-        peer.check(f"{name} comes of the next run too", len(samples) > (1 if "state" in name else 50), len(samples))
+        peer.check(f"{name} is also sent by the next run", len(samples) > (1 if "state" in name else 50), len(samples))
     peer.check("engaged again", "ENABLED" in [sample.state for _, sample in again["right/operating_state"]])
     peer.check("topics, types and quality of service", publications == documented(), publications)
     peer.check("it subscribes to nothing", subscriptions == {}, subscriptions)

@@ -101,7 +101,7 @@ def axes(field):
 
 
 def watch(address, messages, channels, failed):
-    """Subscribes to everything and takes what comes until the server ends: (topic, time, bytes)."""
+    """Subscribes to everything and returns all messages until the server ends: (topic, time, bytes)."""
     from websockets.exceptions import ConnectionClosed
     from websockets.sync.client import connect
 

@@ -1,6 +1,6 @@
 """Third-party clients against this program: `python run.py NIMA_BINARY [NAME]`, all of them or one. Fails at the first check that does not hold.
 
-Every module `peer_*.py` beside this file has `run(nima) -> [Peer, ...]`.
+Every module `peer_*.py` in this folder has `run(nima) -> [Peer, ...]`.
 """
 
 import importlib

@@ -66,7 +66,7 @@ class Program:
         """Tests of the source that this program has not: those of features that are off, and those for other systems."""
         here = {name.rsplit("::", 1)[-1] for name in names}
         root = self.folder / "src" if (self.folder / "src" / "lib.rs").exists() else self.folder
-        # Programs that are no part of the workspace stand in folders of crates.
+        # Programs outside the workspace are in folders of crates.
         others = [manifest.parent for manifest in root.rglob("Cargo.toml") if manifest.parent != root]
         files = [path for path in root.rglob("*.rs") if not any(path.is_relative_to(other) for other in others)]
         texts = {path.relative_to(root): path.read_text() for path in files}

@@ -85,7 +85,7 @@ impl Simulation {
             (Control::RenderedForce, None) => Mode::Dfr,
             (Control::RenderedForce, Some(mode)) => {
                 return Err(value(format_args!(
-                    "mode is {mode}, and control \"rendered_force\" renders itself: leave it away"
+                    "mode is {mode}, and control \"rendered_force\" renders the force itself; omit mode"
                 )));
             }
             (_, mode) => mode.unwrap_or(rig.mode),

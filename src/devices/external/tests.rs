@@ -347,7 +347,7 @@ fn who_must_not_be_let_in_is_told_with_what_to_do() {
     let command = told(Kind::Handle, |datagram| datagram.message = Message::Command(Kind::Handle), &usual);
     assert!(matches!(command, Trouble::WrongProduct { .. }), "{command}");
     let unwatched = told(Kind::Handle, |datagram| datagram.watchdog_us = 500_000, &usual);
-    assert!(unwatched.to_string().contains("its own watchdog is 500 ms"), "{unwatched}");
+    assert!(unwatched.to_string().contains("its watchdog time is 500 ms"), "{unwatched}");
     let other = Settings { serial_number: Some("T-2".to_owned()), ..usual.clone() };
     assert!(matches!(told(Kind::Handle, |_| {}, &other), Trouble::OtherSerial { .. }));
     // It sends once and never receives.

@@ -307,7 +307,7 @@ fn poses_without_a_weight_make_no_calibration() {
         let input = folder.write("poses.csv", &poses(mass_kg));
         let output = nima(&["calibrate", "gravity", &input, "--out", &out]);
         let line = String::from_utf8(output.stderr).unwrap();
-        assert!(!output.status.success() && line.contains("Poor data: no weight is seen"), "{mass_kg} kg: {line}");
+        assert!(!output.status.success() && line.contains("Poor data: no weight was measured"), "{mass_kg} kg: {line}");
         assert!(!Path::new(&out).exists());
     }
 }

@@ -250,7 +250,7 @@ fn bad_studies_and_steps_are_one_line() {
     assert!(new(&with("participants = 2\ntrials = 1\nrig = 'desktop'", BLIND)).contains("desktop"));
     assert!(!place.exists(), "nothing is made of a file with mistakes");
     told(&["user-study", "new", &with("participants = 2\ntrials = 1", BLIND), "--out", study]);
-    assert!(new("short").contains("there already"));
+    assert!(new("short").contains("exists already"));
     let next = |more: &[&str]| refused(&[&["user-study", "next", study, "--participant"], more].concat());
     assert!(next(&["P07", "--virtual"]).contains("P01, P02") || next(&["P07", "--virtual"]).contains("P01 to P02"));
     assert!(next(&["P01"]).contains("--virtual"));

@@ -114,7 +114,7 @@ fn a_library_that_is_missing_or_none_is_told_with_its_cure_in_one_line() {
     std::fs::create_dir_all(&folder).unwrap();
     let text = folder.join("liblsl.so");
     std::fs::write(&text, "no library").unwrap();
-    for (path, words) in [(folder.join("absent.so"), "is not installed"), (text, "cannot be used")] {
+    for (path, words) in [(folder.join("absent.so"), "not found"), (text, "cannot be used")] {
         let error = Marker::start(Some(&path), "test", "here").unwrap_err().to_string();
         assert!(error.contains(words) && error.contains("--lsl FILE") && error.contains(".so"), "{error}");
         assert_eq!(error.lines().count(), 1);

@@ -185,5 +185,5 @@ fn a_servo_that_does_not_keep_what_is_written_is_told() {
     let told = open_over(Meddler(ours), &mut bench, &wanted, &reboots).err();
     let Some(Trouble::Refused { place, command, answer }) = told else { panic!("{told:?}") };
     assert_eq!((place.as_str(), command.as_str()), ("servo 1 on test", "0 in register 64"));
-    assert_eq!(answer, "it keeps 1");
+    assert_eq!(answer, "it remains 1");
 }

@@ -35,6 +35,7 @@ use crate::{
 pub enum Role {
     /// The field as seen by the endoscope, large; six numbers; alarms.
     Surgeon,
+    /// Every panel.
     #[default]
     Technician,
     /// An automatic demonstration.

@@ -63,7 +63,7 @@ pub const DEAD_BAND_M_S: Limits = Limits::new(0.0, 0.1, "m/s");
 /// Dead band on the slider of the window, for a fine resolution around the paper's 1 mm/s.
 pub const SLIDER_DEAD_BAND_M_S: Limits = Limits::new(0.0, 0.01, "m/s");
 
-/// Force ceiling of a rig file that does not set one, N: the ceiling of the studies in `docs/release.md`.
+/// Force ceiling of a rig file that does not set one, N: the ceiling of the studies in `docs/results/release.md`.
 pub const USUAL_CEILING_N: f64 = 4.0;
 /// Highest force ceiling of a rig file, N: the force of the strongest handle that has a built-in driver (omega.7).
 pub const MAX_CEILING_N: f64 = OMEGA7_FORCE_N;

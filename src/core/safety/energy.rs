@@ -18,7 +18,7 @@ use super::{EnergyMode, Reason};
 
 /// Energy that the hand may get without having put it in, J. It bounds what a free handle can get to 30 mJ and, with
 /// [`LEAK_S`], 15 mW: in 100 million adversarial requests the most in 2 s was 58 mJ, without gates 43 J
-/// (`docs/release.md`).
+/// (`docs/results/release.md`).
 pub const ALLOWANCE_J: f64 = 0.030;
 /// Maximum energy stored for the hand to get back, J.
 pub const MOST_J: f64 = 0.200;

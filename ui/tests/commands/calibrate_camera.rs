@@ -79,7 +79,7 @@ fn what_cannot_be_used_is_told_in_one_line() {
         (vec![from, "--board", "8x6"], "upside down"),
         (vec![from, "--square-mm", "0"], "0.5 to 200 mm"),
         (vec!["/nowhere"], "cannot read the images in /nowhere"),
-        (vec![rig], "cannot read the pictures"),
+        (vec![rig], "cannot read the images"),
         (vec!["http://127.0.0.1:1/"], "no response from"),
         (vec!["ftp://127.0.0.1/"], "not an address"),
     ] {

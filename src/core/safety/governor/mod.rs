@@ -19,8 +19,8 @@
 //! A device that reads on a clock of its own gives readings that are up to a period older than their times. How much is measured while the
 //! handle moves, and widens the error of the hand's force; where that says nothing any more, a longer window is asked.
 //!
-//! Measured, not certain: how far a released handle travels, and how rarely a hand looks like none (`docs/release.md`,
-//! `docs/hands.md`). Below about 1.5 N a slowly opening hand and a fast voluntary motion look the same; there the handle travels
+//! Measured, not certain: how far a released handle travels, and how rarely a hand looks like none (`docs/results/release.md`,
+//! `docs/results/hands.md`). Below about 1.5 N a slowly opening hand and a fast voluntary motion look the same; there the handle travels
 //! farther, because a hand that is there must never be braked.
 
 mod evidence;

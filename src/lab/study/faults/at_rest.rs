@@ -101,7 +101,7 @@ fn let_go() -> Result<Special, FaultsError> {
         what: "the hand opens, no presence detection".to_owned(),
         verdict: Verdict::Bounded,
         told: format!(
-            "governor: {:.1} mJ, {:.1} mm (no presence switch; docs/release.md)",
+            "governor: {:.1} mJ, {:.1} mm (no presence switch; docs/safety.md)",
             row.energy_mj, row.travel_mm
         ),
         detection_ms: None,

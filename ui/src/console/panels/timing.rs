@@ -98,11 +98,20 @@ fn table_ui(ui: &mut Ui, timings: &[Timing<'_>]) {
             });
             let Quantiles { p50, p99, p999, max } = *quantiles;
             for value in [p50, p99, p999, max] {
-                right(ui, RichText::new(format!("{value:.0}")).font(theme::strong(14.0)));
+                right(ui, RichText::new(short(value)).font(theme::strong(14.0)));
             }
             ui.end_row();
         }
     });
+}
+
+/// Microseconds, in six characters at most: from 10 000 us on with a larger unit, which the heading of the table does not name.
+fn short(us: f64) -> String {
+    match us {
+        us if us < 9_999.5 => format!("{us:.0}"),
+        us if us < 999_500.0 => format!("{:.0} ms", us / 1e3),
+        us => format!("{:.0} s", us / 1e6),
+    }
 }
 
 fn right(ui: &mut Ui, text: RichText) {
@@ -135,7 +144,12 @@ pub(super) fn grouped(number: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::grouped;
+    use super::{grouped, short};
+
+    #[test]
+    fn long_durations_have_a_larger_unit() {
+        assert_eq!([4.2, 9_999.0, 10_000.0, 999_000.0, 1_234_567.0].map(short), ["4", "9999", "10 ms", "999 ms", "1 s"]);
+    }
 
     #[test]
     fn digits_stand_in_groups() {
